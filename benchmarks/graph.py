@@ -68,21 +68,21 @@ def _closed(text: str, at: int, opening: str, closing: str) -> int:
 def measured(repository: str, listed: bool) -> Counter[str]:
     """Prints a repository's line and returns its counts."""
     from rosimpact.impact.analysis.session import open_tree
-    from rosimpact.impact.facts.kinds import kind_of
+    from rosimpact.impact.facts.kinds import find_kind
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.model.flow.workspace import code_of, facts_of, graph_of, linked
+    from rosimpact.impact.model.flow.workspace import get_facts, link_for_flow, list_code, make_graph
 
     path, _, revision = repository.partition("@")
     with tempfile.TemporaryDirectory() as cache:
         cold, warm = _command(path, revision, pathlib.Path(cache))
         tree = open_tree(pathlib.Path(path), revision)
         with Store(pathlib.Path(cache)) as store:
-            workspace = linked(tree, store)
-            graph = graph_of(workspace, store)
-        kinds = facts_of(workspace).kinds
-        sources = [each for each in code_of(workspace) if kinds[each] == "flow_cpp"]
+            workspace = link_for_flow(tree, store)
+            graph = make_graph(workspace, store)
+        kinds = get_facts(workspace).kinds
+        sources = [each for each in list_code(workspace) if kinds[each] == "flow_cpp"]
     data = {each: tree.read(each) for each in sources}
-    whole = [tree.read(entry.path) for entry in tree.entries() if kind_of(entry.path) == "cpp"]
+    whole = [tree.read(entry.path) for entry in tree.list_entries() if find_kind(entry.path) == "cpp"]
     bare = _bare(whole)
     have = {"publisher": Counter(), "subscriber": Counter(), "publish": Counter()}
     for endpoint in graph.endpoints:

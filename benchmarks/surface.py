@@ -393,11 +393,11 @@ ALL_TRAITS = frozenset(("const", "static", "virtual", "pure", "explicit", "delet
 
 def bare(type_: str) -> str:
     """A type without the scopes that one side resolves and the other leaves as written."""
-    from rosimpact.databuild.extract.cpp_types import argument, tokens_of
+    from rosimpact.databuild.extract.cpp_types import read_parameter, split_tokens
 
     if type_ is None:
         return ""
-    text = argument([*tokens_of(type_)]).type if type_ else ""
+    text = read_parameter([*split_tokens(type_)]).type if type_ else ""
     text = re.sub(r"\b\w+::", "", text)
     return re.sub(r"\b_Bool\b", "bool", text).replace(" ", "")
 

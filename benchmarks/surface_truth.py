@@ -278,7 +278,7 @@ def precision(folder: Path, count: int, listed: int) -> int:
     from rosimpact.databuild.surface.clones import Clones
     from rosimpact.databuild.surface.compare import RepositorySurfaces, compare
     from rosimpact.impact.facts.store import Store
-    from rosimpact.impact.targets.version import parts
+    from rosimpact.impact.targets.version import parse
 
     clones = Clones(folder)
     totals: Counter[tuple[str, str]] = Counter()
@@ -286,16 +286,16 @@ def precision(folder: Path, count: int, listed: int) -> int:
     wrong: list[str] = []
     used = 0
     with Store() as store:
-        for clone in sorted(clones.all(), key=lambda c: c.name):
+        for clone in sorted(clones.list_clones(), key=lambda c: c.name):
             versions = sorted(
-                {v: names for each in clones.releases(clone).values() for v, names in each.items()}.items(),
-                key=lambda item: parts(item[0]),
+                {v: names for each in clones.list_clone_releases(clone).values() for v, names in each.items()}.items(),
+                key=lambda item: parse(item[0]),
             )
             tagged = [(v, names, tag) for v, names in versions if (tag := clone.tag(v)) is not None]
             if len(tagged) < 2 or used >= count:
                 continue
             (_, names, first), (_, others, last) = tagged[len(tagged) // 3], tagged[-1]
-            before, after = (RepositorySurfaces(clone.surfaces(tag, store)) for tag in (first, last))
+            before, after = (RepositorySurfaces(clone.read_surfaces(tag, store)) for tag in (first, last))
             old_folders, new_folders = folders(clone.place, first), folders(clone.place, last)
             done = 0
             for package in sorted(names & others & before.surfaces.keys() & after.surfaces.keys()):
@@ -351,7 +351,7 @@ def recall(folder: Path, table: Path, listed: int) -> int:
             key = (clone.name, revision)
             if key not in states:
                 try:
-                    states[key] = RepositorySurfaces(clone.surfaces(revision, store))
+                    states[key] = RepositorySurfaces(clone.read_surfaces(revision, store))
                 except TreeError:
                     states[key] = None
             return states[key]

@@ -39,7 +39,7 @@ def triage(
 
     def work() -> None:
         _format(format)
-        with _foreseen():
+        with _convert_errors():
             _triage(report, format, jsonl, model, commands)
 
     _end(work, "interrupted")
@@ -48,30 +48,30 @@ def triage(
 def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: Collection[str]) -> None:
     from itertools import chain
 
-    from ..edges.files import too_large
-    from ..edges.limits import limits
+    from ..edges.files import make_size_error
+    from ..edges.limits import get_limits
     from .model import ClassifierError, load
-    from .triage import as_json, as_text, from_argument, from_text, post_of, triage_all
+    from .triage import interpret_argument, make_post, parse_post, render_json, render_triage, triage_all
     from .triage import triage as judge
 
     own = load(file) if file else None  # before an address is asked in vain
-    found = from_argument(report)
+    found = interpret_argument(report)
     model = own or load()
     if found is None or isinstance(found, Path):
         name = "standard input" if found is None else str(found)
         try:
-            with _text_of(found) as stream:
-                lines = _lines(stream, name)
+            with _open_text(found) as stream:
+                lines = _read_lines(stream, name)
                 first = next(lines, "")
-                if jsonl or (first.lstrip().startswith("{") and post_of(first) is not None):
+                if jsonl or (first.lstrip().startswith("{") and parse_post(first) is not None):
                     triage_all(model, chain([first], lines), name)
                     return
-                text = first + stream.read(limits().text)
+                text = first + stream.read(get_limits().text)
                 if stream.read(1):
-                    raise too_large(name, limits().text)
+                    raise make_size_error(name, get_limits().text)
                 if found is not None and "\0" in text:
                     raise ClassifierError(f"{name}: is no text; give a report as text or as JSON Lines")
-                found = from_text(text, name)
+                found = make_post(text, name)
         except BrokenPipeError:
             raise  # of whoever reads the answers
         except OSError as error:
@@ -81,21 +81,21 @@ def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: 
     if not (found.title or found.body):
         raise ClassifierError("the report is empty; give a text, a file, an address or - for standard input")
     answer = judge(model, found, commands)
-    _print(as_json(answer) if format == "json" else as_text(answer), format)
+    _print(render_json(answer) if format == "json" else render_triage(answer), format)
 
 
-def _lines(stream: IO[str], name: str) -> Iterator[str]:
+def _read_lines(stream: IO[str], name: str) -> Iterator[str]:
     """The lines of a stream, of which none may be longer than a text. Raises OSError."""
-    from ..edges.files import too_large
-    from ..edges.limits import limits
+    from ..edges.files import make_size_error
+    from ..edges.limits import get_limits
 
-    while line := stream.readline(limits().text + 1):
-        if len(line) > limits().text:
-            raise too_large(name, limits().text)
+    while line := stream.readline(get_limits().text + 1):
+        if len(line) > get_limits().text:
+            raise make_size_error(name, get_limits().text)
         yield line
 
 
-def _text_of(file: Path | None) -> IO[str]:
+def _open_text(file: Path | None) -> IO[str]:
     """A file, or standard input, as text without a byte-order mark. Raises OSError."""
     from ..edges.files import open_regular
 
@@ -121,20 +121,20 @@ def train(
 
     def work() -> None:
         from ..corpus.outputs import need_file
-        from ..edges.console import counted, steps
+        from ..edges.console import format_count, make_step_reporter
 
         need_file(output)
-        file = _labels(labels, reports)
-        with _foreseen():
-            from .training import examples
+        file = _find_labels(labels, reports)
+        with _convert_errors():
+            from .training import read_examples
             from .training import train as fit
 
-            progress = steps()
-            made = fit(examples(file, reports, progress), seed, progress)
+            progress = make_step_reporter()
+            made = fit(read_examples(file, reports, progress), seed, progress)
             made.save(output)
         about = made.about
         _print(
-            f"{output}: {counted(about['reports'], 'report')}, {counted(len(made.labels), 'label')}, "
+            f"{output}: {format_count(about['reports'], 'report')}, {format_count(len(made.labels), 'label')}, "
             f"abstains below {made.threshold:.2f}\n"
             f"labels {about['labels_digest']}\ntexts  {about['texts_digest']}\n",
             "text",
@@ -154,29 +154,29 @@ def evaluate(
     """Measure the classifier on labelled reports, judging each by a model that has not seen its repository."""
 
     def work() -> None:
-        from ..edges.console import steps
+        from ..edges.console import make_step_reporter
 
         _format(format)
-        file = _labels(labels, reports)
-        with _foreseen():
-            from .evaluate import as_text
+        file = _find_labels(labels, reports)
+        with _convert_errors():
             from .evaluate import evaluate as measure
-            from .training import examples
+            from .evaluate import render_text
+            from .training import read_examples
 
-            progress = steps()
-            found = examples(file, reports, progress)
+            progress = make_step_reporter()
+            found = read_examples(file, reports, progress)
             result = measure(found, seed=seed, ablations=ablations, progress=progress)
         if format == "json":
             import json
 
             _print(json.dumps(result, indent=1), format)
         else:
-            _print(as_text(result), format)
+            _print(render_text(result), format)
 
     _end(work)
 
 
-def _labels(file: Path | None, reports: Path) -> Path:
+def _find_labels(file: Path | None, reports: Path) -> Path:
     """The file of the labels. It and the reports are looked into before scikit-learn is imported, which takes seconds.
     Raises CorpusError when one cannot be read."""
     from ..corpus.report import LABELS_FILE, read_labels
@@ -196,7 +196,7 @@ def _format(format: str) -> None:
 
 
 @contextmanager
-def _foreseen() -> Iterator[None]:
+def _convert_errors() -> Iterator[None]:
     """What the classifier cannot do ends a command as what the corpus cannot do does."""
     from ..corpus.report import CorpusError
     from .model import ClassifierError

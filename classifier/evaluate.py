@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..corpus.report import LABELS
-from .model import softmax
+from .model import compute_softmax
 from .reading import VIEWS
-from .training import EVERYTHING, SEED, Examples, Progress, Settings, calibrate, digests, fit, splits
+from .training import EVERYTHING, SEED, Examples, Progress, Settings, calibrate, compute_digests, fit, make_splits
 
 FOLDS = 10
 BINS = 15
@@ -61,20 +61,20 @@ class Score(NamedTuple):
     high: float
 
 
-def out_of_fold(
+def judge_out_of_fold(
     found: Examples, settings: Settings = EVERYTHING, *, calibrated: bool, seed: int = SEED,
     progress: Progress | None = None, name: str = "",
 ) -> Judged:  # fmt: skip
     """Judges every report by a model trained on other repositories. calibrated: in each fold, which takes longer."""
     chances = np.zeros((len(found.rows), len(LABELS)))
     abstained = np.zeros(len(found.rows), bool)
-    parts = splits(found, FOLDS, seed)
+    parts = make_splits(found, FOLDS, seed)
     for number, (learn, judge) in enumerate(parts, 1):
-        seen = found.part(learn)
+        seen = found.select_rows(learn)
         calibration = calibrate(seen, settings, seed) if calibrated else None
         model = fit(seen, settings)
-        scores = model.scores(found.counts.part(judge))
-        part = softmax(scores / (calibration.temperature if calibration else 1.0))
+        scores = model.compute_scores(found.counts.select_rows(judge))
+        part = compute_softmax(scores / (calibration.temperature if calibration else 1.0))
         chances[np.ix_(judge, np.array([LABELS.index(label) for label in model.labels]))] = part
         if calibration:
             abstained[judge] = part.max(axis=1) < calibration.threshold
@@ -83,20 +83,20 @@ def out_of_fold(
     return Judged(chances, abstained)
 
 
-def rivals(found: Examples, seed: int = SEED, progress: Progress | None = None) -> dict[str, np.ndarray]:
+def judge_by_rivals(found: Examples, seed: int = SEED, progress: Progress | None = None) -> dict[str, np.ndarray]:
     """What simpler means say of each report, on the same splits: name to places in LABELS."""
     from sklearn.feature_extraction.text import TfidfVectorizer
     from sklearn.linear_model import LogisticRegression
 
     texts = [f"{example.report.title}\n{example.report.body}" for example in found.rows]
-    truth = truths(found)
+    truth = list_truths(found)
     said = {name: np.zeros(len(texts), int) for name in ("majority", "keyword rule", "nearest neighbours (10)")}
     said["plain TF-IDF with logistic regression"] = np.zeros(len(texts), int)
     rules = [(LABELS.index(label), re.compile(pattern, re.IGNORECASE)) for label, pattern in _KEYWORDS]
     for row, text in enumerate(texts):
         hits = (place for place, pattern in rules if pattern.search(text))
         said["keyword rule"][row] = next(hits, LABELS.index("other"))
-    parts = splits(found, FOLDS, seed)
+    parts = make_splits(found, FOLDS, seed)
     for number, (learn, judge) in enumerate(parts, 1):
         said["majority"][judge] = np.bincount(truth[learn]).argmax()
         vectoriser = TfidfVectorizer(sublinear_tf=True, min_df=2, ngram_range=(1, 2))
@@ -113,12 +113,12 @@ def rivals(found: Examples, seed: int = SEED, progress: Progress | None = None) 
     return said
 
 
-def truths(found: Examples) -> np.ndarray:
+def list_truths(found: Examples) -> np.ndarray:
     """The places of the true labels in LABELS."""
     return np.array([LABELS.index(label) for label in found.labels])
 
 
-def f1_scores(truth: np.ndarray, said: np.ndarray) -> np.ndarray:
+def compute_f1(truth: np.ndarray, said: np.ndarray) -> np.ndarray:
     """F1 of each of LABELS; not a number where a label is neither true nor said."""
     size = len(LABELS)
     table = np.bincount(truth * size + said, minlength=size * size).reshape(size, size)
@@ -127,12 +127,12 @@ def f1_scores(truth: np.ndarray, said: np.ndarray) -> np.ndarray:
         return np.where(total > 0, 2 * np.diag(table) / np.maximum(total, 1), np.nan)
 
 
-def macro_f1(truth: np.ndarray, said: np.ndarray) -> float:
+def average_f1(truth: np.ndarray, said: np.ndarray) -> float:
     """The mean of F1 over the labels that are there."""
-    return float(np.nanmean(f1_scores(truth, said)))
+    return float(np.nanmean(compute_f1(truth, said)))
 
 
-def interval(
+def estimate_interval(
     number: Callable[[np.ndarray, np.ndarray], float], truth: np.ndarray, said: np.ndarray,
     groups: Sequence[str] | np.ndarray, seed: int = SEED, resamples: int = RESAMPLES,
 ) -> Score:  # fmt: skip
@@ -148,7 +148,7 @@ def interval(
     return Score(number(truth, said), float(low), float(high))
 
 
-def calibration_error(sure: np.ndarray, right: np.ndarray, bins: int = BINS) -> float:
+def compute_calibration_error(sure: np.ndarray, right: np.ndarray, bins: int = BINS) -> float:
     """Expected calibration error of the likeliest label, with bins of equal mass."""
     order = np.argsort(sure, kind="stable")
     parts = np.array_split(order, min(bins, len(order)))
@@ -160,21 +160,21 @@ def evaluate(
     progress: Progress | None = None,
 ) -> dict:  # fmt: skip
     """All the numbers, as JSON takes them. progress: called with what is done, how many of how many."""
-    judged = out_of_fold(found, calibrated=True, seed=seed, progress=progress)
-    truth, said = truths(found), judged.chances.argmax(axis=1)
+    judged = judge_out_of_fold(found, calibrated=True, seed=seed, progress=progress)
+    truth, said = list_truths(found), judged.chances.argmax(axis=1)
     groups, reports = found.groups, [example.report for example in found.rows]
     sure, right = judged.chances.max(axis=1), said == truth
 
-    def scored(rows: np.ndarray) -> dict:
+    def score_rows(rows: np.ndarray) -> dict:
         return {
             "reports": int(rows.sum()),
-            "macro_f1": interval(macro_f1, truth[rows], said[rows], groups[rows], seed, resamples)._asdict(),
+            "macro_f1": estimate_interval(average_f1, truth[rows], said[rows], groups[rows], seed, resamples)._asdict(),
             "right": float(right[rows].mean()),
             "labels": {
                 label: {
                     "reports": int((truth[rows] == place).sum()),
-                    "f1": interval(
-                        lambda t, s, place=place: float(f1_scores(t, s)[place]), truth[rows], said[rows], groups[rows],
+                    "f1": estimate_interval(
+                        lambda t, s, place=place: float(compute_f1(t, s)[place]), truth[rows], said[rows], groups[rows],
                         seed, resamples,
                     )._asdict(),
                     "precision": _share(truth[rows] == place, said[rows] == place),
@@ -187,7 +187,7 @@ def evaluate(
 
     original = np.array([report.wording == "original" for report in reports])
     subsets = {"all": np.ones(len(reports), bool), "wording original": original, "wording abridged": ~original}
-    subsets["read twice, wording original"] = _twice_original(found)
+    subsets["read twice, wording original"] = _select_twice_original(found)
     for source in sorted({report.source for report in reports}):
         subsets[f"source {source}"] = np.array([report.source == source for report in reports])
     order = np.argsort(-sure, kind="stable")
@@ -195,24 +195,26 @@ def evaluate(
     result = {
         "reports": len(reports),
         "repositories": len(set(groups)),
-        "folds": len(splits(found, FOLDS, seed)),
-        **digests(found.rows),
-        "scores": {name: scored(rows) for name, rows in subsets.items() if rows.any()},
+        "folds": len(make_splits(found, FOLDS, seed)),
+        **compute_digests(found.rows),
+        "scores": {name: score_rows(rows) for name, rows in subsets.items() if rows.any()},
         "confusion": np.bincount(truth * len(LABELS) + said, minlength=len(LABELS) ** 2)
         .reshape(len(LABELS), len(LABELS))
         .tolist(),
-        "calibration_error": calibration_error(sure, right),
+        "calibration_error": compute_calibration_error(sure, right),
         "risk_coverage": [
             {"answered": share, "right": float(right[order[: max(1, round(share * len(order)))]].mean())}
             for share in COVERAGES
         ],
         "abstaining": {"answered": float(answered.mean()), "right": _share(right, answered)},
     }
-    result["beside"] = beside(found, judged, seed=seed, resamples=resamples, ablations=ablations, progress=progress)
+    result["beside"] = score_rivals(
+        found, judged, seed=seed, resamples=resamples, ablations=ablations, progress=progress
+    )
     return result
 
 
-def beside(
+def score_rivals(
     found: Examples, judged: Judged, *, seed: int = SEED, resamples: int = RESAMPLES, ablations: bool = True,
     progress: Progress | None = None,
 ) -> dict[str, dict]:  # fmt: skip
@@ -220,24 +222,24 @@ def beside(
 
     judged: what the whole classifier says of the same reports; its own scores stand among the ablations.
     """
-    said = rivals(found, seed, progress)
+    said = judge_by_rivals(found, seed, progress)
     if ablations:
         said[WHOLE] = judged.chances.argmax(axis=1)
         for name, settings in ABLATIONS.items():
-            part = out_of_fold(found, settings, calibrated=False, seed=seed, progress=progress, name=name)
+            part = judge_out_of_fold(found, settings, calibrated=False, seed=seed, progress=progress, name=name)
             said[name] = part.chances.argmax(axis=1)
-    truth, groups, twice = truths(found), found.groups, _twice_original(found)
+    truth, groups, twice = list_truths(found), found.groups, _select_twice_original(found)
     return {
         name: {
-            "macro_f1": interval(macro_f1, truth, answer, groups, seed, resamples)._asdict(),
-            "read_twice_original": macro_f1(truth[twice], answer[twice]) if twice.any() else None,
+            "macro_f1": estimate_interval(average_f1, truth, answer, groups, seed, resamples)._asdict(),
+            "read_twice_original": average_f1(truth[twice], answer[twice]) if twice.any() else None,
             "right": float((answer == truth).mean()),
         }
         for name, answer in said.items()
     }
 
 
-def _twice_original(found: Examples) -> np.ndarray:
+def _select_twice_original(found: Examples) -> np.ndarray:
     return np.array([example.twice and example.report.wording == "original" for example in found.rows])
 
 
@@ -245,7 +247,7 @@ def _share(what: np.ndarray, among: np.ndarray) -> float | None:
     return float(what[among].mean()) if among.any() else None
 
 
-def as_text(result: dict) -> str:
+def render_text(result: dict) -> str:
     """The numbers for people."""
 
     def score(value: dict) -> str:

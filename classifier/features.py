@@ -45,7 +45,7 @@ class Counts(NamedTuple):
     signs: np.ndarray
     groups: np.ndarray
 
-    def part(self, rows: np.ndarray) -> Counts:
+    def select_rows(self, rows: np.ndarray) -> Counts:
         """The same of some of the reports."""
         grams = {view: csr_matrix(matrix[rows]) for view, matrix in self.grams.items()}
         return Counts(grams, self.names, self.signs[rows], self.groups[rows])
@@ -67,37 +67,37 @@ def count(readings: Iterable[ReportReading], groups: Sequence[str]) -> Counts:
         for reading in readings:
             for view, spool in spools.items():
                 counted = reading.grams[view]
-                places = _places(view, counted)
+                places = _compute_places(view, counted)
                 seen[places] += seen[places] < 255
                 packed = zlib.compress(marshal.dumps(dict(counted)), 1)
                 spool.write(len(packed).to_bytes(4, "big") + packed)
             signs.extend(reading.signs)
         codes = np.unique(np.array(groups), return_inverse=True)[1].astype(np.int32)
         for view, spool in spools.items():
-            names[view], grams[view] = _counted(view, spool, seen, codes)
+            names[view], grams[view] = _count_view(view, spool, seen, codes)
     return Counts(grams, names, np.frombuffer(signs).reshape(-1, len(SIGNS)), codes)
 
 
-def _fewest(view: str, reports: int) -> int:
+def _compute_fewest(view: str, reports: int) -> int:
     return (FEW if reports >= MANY else FEW // 2) * VIEWS[view].rare
 
 
-def _places(view: str, grams: Iterable[str]) -> np.ndarray:
+def _compute_places(view: str, grams: Iterable[str]) -> np.ndarray:
     hashes = np.fromiter(map(hash, grams), np.int64)
     return (hashes ^ hash(view)) & (_BUCKETS - 1)
 
 
-def _spooled(spool: IO[bytes]) -> Iterator[dict[str, int]]:
+def _read_spool(spool: IO[bytes]) -> Iterator[dict[str, int]]:
     spool.seek(0)
     while head := spool.read(4):
         yield marshal.loads(zlib.decompress(spool.read(int.from_bytes(head, "big"))))
 
 
-def _counted(view: str, spool: IO[bytes], seen: np.ndarray, codes: np.ndarray) -> tuple[list[str], csr_matrix]:
-    names = _learnable(view, spool, seen, codes)
+def _count_view(view: str, spool: IO[bytes], seen: np.ndarray, codes: np.ndarray) -> tuple[list[str], csr_matrix]:
+    names = _list_learnable(view, spool, seen, codes)
     known = {name: column for column, name in enumerate(names)}
     columns, times, starts = array("i"), array("B"), array("q", [0])
-    for grams in _spooled(spool):
+    for grams in _read_spool(spool):
         row = sorted((known[gram], min(number, 255)) for gram, number in grams.items() if gram in known)
         columns.extend(column for column, _ in row)
         times.extend(number for _, number in row)
@@ -109,13 +109,13 @@ def _counted(view: str, spool: IO[bytes], seen: np.ndarray, codes: np.ndarray) -
     return names, csr_matrix(arrays, shape)
 
 
-def _learnable(view: str, spool: IO[bytes], seen: np.ndarray, codes: np.ndarray) -> list[str]:
+def _list_learnable(view: str, spool: IO[bytes], seen: np.ndarray, codes: np.ndarray) -> list[str]:
     """The n-grams of a view that stand in enough reports of enough repositories, sorted."""
-    fewest = _fewest(view, len(codes))
+    fewest = _compute_fewest(view, len(codes))
     places: dict[str, int] = {}
     often, homes = np.zeros(1_024, np.int32), np.full((HOMES, 1_024), -1, np.int32)
-    for code, grams in zip(codes, _spooled(spool), strict=True):
-        common = seen[_places(view, grams)] >= fewest
+    for code, grams in zip(codes, _read_spool(spool), strict=True):
+        common = seen[_compute_places(view, grams)] >= fewest
         row = np.array([places.setdefault(gram, len(places)) for gram in compress(grams, common)], np.int64)
         if len(places) > len(often):
             often = np.append(often, np.zeros(len(places), np.int32))
@@ -129,7 +129,7 @@ def _learnable(view: str, spool: IO[bytes], seen: np.ndarray, codes: np.ndarray)
     return sorted(gram for gram, place in places.items() if kept[place])
 
 
-def _common(counts: Any, codes: np.ndarray, fewest: int) -> np.ndarray:
+def _select_common(counts: Any, codes: np.ndarray, fewest: int) -> np.ndarray:
     """The columns of what stands in enough reports of enough repositories."""
     homes = np.unique(codes)
     often = np.bincount(counts.indices, minlength=counts.shape[1]) >= fewest
@@ -152,7 +152,7 @@ class Words(BaseEstimator, TransformerMixin):
     def fit(self, counts: Counts, groups: object = None) -> Words:
         """Learns the vocabulary and the weights."""
         matrix: Any = counts.grams[self.view]
-        self.columns_ = _common(matrix, counts.groups, _fewest(self.view, matrix.shape[0]))
+        self.columns_ = _select_common(matrix, counts.groups, _compute_fewest(self.view, matrix.shape[0]))
         names = counts.names[self.view]
         self.vocabulary_ = [names[column] for column in self.columns_]
         self.weights_ = TfidfTransformer(sublinear_tf=True)

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..edges.console import UserError
-from ..edges.files import read_file, writing
-from ..edges.limits import limits, size_text
+from ..edges.files import open_for_replacing, read_file
+from ..edges.limits import format_size, get_limits
 from .reading import VIEWS, ReportReading
 from .signs import DIGEST, LIMIT, SIGNS
 
@@ -80,7 +80,7 @@ class Model:
             self._names: list[tuple[str, str]] = []
             self._columns: dict[str, dict[str, int]] = {}
             for view in VIEWS:
-                grams = _lines(arrays[f"vocabulary {view}"])
+                grams = _unpack_lines(arrays[f"vocabulary {view}"])
                 start = len(self._names)
                 self._columns[view] = {gram: start + column for column, gram in enumerate(grams)}
                 self._names.extend((view, gram) for gram in grams)
@@ -102,43 +102,43 @@ class Model:
         except (KeyError, ValueError, TypeError, IndexError, RecursionError):
             raise ClassifierError(f"{name}: is incomplete; {cure}") from None
 
-    def scores(self, reading: ReportReading) -> np.ndarray:
+    def compute_scores(self, reading: ReportReading) -> np.ndarray:
         """The score of each label, before calibration."""
-        columns, values = self._words(reading)
-        signs = self._signs(reading)
+        columns, values = self._weigh_words(reading)
+        signs = self._scale_signs(reading)
         words = len(self._names)
         return values @ self._coefficients[columns] + signs @ self._coefficients[words:] + self.arrays["intercept"]
 
-    def verdict(self, reading: ReportReading) -> ModelVerdict:
+    def judge(self, reading: ReportReading) -> ModelVerdict:
         """Label, calibrated probabilities, and whether it abstains: unsure of the label, or no word known."""
-        chances = softmax(self.scores(reading) / self.temperature)
+        chances = compute_softmax(self.compute_scores(reading) / self.temperature)
         best = int(chances.argmax())
         probabilities = {label: float(chance) for label, chance in zip(self.labels, chances, strict=True)}
         abstains = not self._knows(reading) or bool(chances[best] < self.threshold)
         return ModelVerdict(self.labels[best], probabilities, abstains)
 
-    def reasons(self, reading: ReportReading, label: str, most: int = 8) -> list[Reason]:
+    def list_reasons(self, reading: ReportReading, label: str, most: int = 8) -> list[Reason]:
         """The words and signs that spoke most for a label, strongest first."""
         place = self.labels.index(label)
         others = [other for other in range(len(self.labels)) if other != place]
         lead = self._coefficients[:, place] - self._coefficients[:, others].mean(axis=1)
-        columns, values = self._words(reading)
+        columns, values = self._weigh_words(reading)
         found: dict[tuple[str, str], float] = {}
         for column, weight in zip(columns, values * lead[columns], strict=True):
             view, gram = self._names[column]
             if VIEWS[view].shown:
                 key = (VIEWS[view].shown, gram)
                 found[key] = found.get(key, 0.0) + float(weight)
-        signs = self._signs(reading) * lead[len(self._names) :]
+        signs = self._scale_signs(reading) * lead[len(self._names) :]
         for name, strength, weight in zip(SIGNS, reading.signs, signs, strict=True):
             if strength > 0:
                 found["sign", name] = float(weight)
         best = sorted(((weight, *key) for key, weight in found.items() if weight > 0), reverse=True)[:most]
         return [Reason(where, what, weight) for weight, where, what in best]
 
-    def nearest(self, reading: ReportReading, most: int = 5) -> list[KnownReport]:
+    def find_nearest(self, reading: ReportReading, most: int = 5) -> list[KnownReport]:
         """The known reports whose words are most like those of a report; none when it shares no word with them."""
-        columns, values = self._words(reading)
+        columns, values = self._weigh_words(reading)
         vector = values @ self.arrays["projection"][columns].astype(np.float32)
         length = float(np.linalg.norm(vector))
         if length < 1e-9 or not len(self.seen) or not self._knows(reading):
@@ -152,7 +152,7 @@ class Model:
         words = ((reading.grams[view], known) for view, known in self._columns.items() if VIEWS[view].shown)
         return any(gram in known for grams, known in words for gram in grams)
 
-    def _words(self, reading: ReportReading) -> tuple[np.ndarray, np.ndarray]:
+    def _weigh_words(self, reading: ReportReading) -> tuple[np.ndarray, np.ndarray]:
         columns: list[int] = []
         parts: list[np.ndarray] = []
         for view, known in self._columns.items():
@@ -165,14 +165,14 @@ class Model:
             parts.append(VIEWS[view].weight * strength / np.linalg.norm(strength))
         return np.array(columns, np.int64), np.concatenate(parts) if parts else np.zeros(0)
 
-    def _signs(self, reading: ReportReading) -> np.ndarray:
+    def _scale_signs(self, reading: ReportReading) -> np.ndarray:
         scaled = (np.array(reading.signs) - self.arrays["sign means"]) / self.arrays["sign scales"]
         return np.clip(scaled, -LIMIT, LIMIT) / np.sqrt(len(SIGNS))
 
     def save(self, file: Path) -> None:
         """Writes the model; the same model gives the same bytes. Raises ClassifierError."""
         try:
-            with writing(file) as stream:
+            with open_for_replacing(file) as stream:
                 np.savez_compressed(stream, allow_pickle=False, **self.arrays)
         except OSError as error:
             raise ClassifierError(f"{file}: cannot be written: {error.strerror}; give another file") from None
@@ -183,7 +183,7 @@ def load(file: Path | None = None) -> Model:
     file = file or SHIPPED
     none = f"{file}: is no model of rosimpact; make one with `rosimpact classifier train`"
     try:
-        data = read_file(file, limits().report)
+        data = read_file(file, get_limits().report)
     except OSError as error:
         raise ClassifierError(
             f"{file}: cannot be read: {error.strerror or error}; make one with `rosimpact classifier train`"
@@ -191,8 +191,10 @@ def load(file: Path | None = None) -> Model:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as packed:
             # zipfile gives no more bytes than it says here, and reads nothing of what is packed otherwise
-            if sum(member.file_size for member in packed.infolist()) > limits().report:
-                raise ClassifierError(f"{file}: unpacks to more than {size_text(limits().report)}; give another model")
+            if sum(member.file_size for member in packed.infolist()) > get_limits().report:
+                raise ClassifierError(
+                    f"{file}: unpacks to more than {format_size(get_limits().report)}; give another model"
+                )
         with np.load(io.BytesIO(data), allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in stored.files}
     except ClassifierError:
@@ -202,22 +204,22 @@ def load(file: Path | None = None) -> Model:
     return Model(arrays, str(file))
 
 
-def softmax(scores: np.ndarray) -> np.ndarray:
+def compute_softmax(scores: np.ndarray) -> np.ndarray:
     """Scores to probabilities, along the last axis."""
     shifted = np.exp(scores - scores.max(axis=-1, keepdims=True))
     return shifted / shifted.sum(axis=-1, keepdims=True)
 
 
-def packed(value: object) -> np.ndarray:
+def pack_json(value: object) -> np.ndarray:
     """A value as JSON in an array of bytes."""
     return np.frombuffer(json.dumps(value, sort_keys=True, ensure_ascii=False).encode(), np.uint8)
 
 
-def packed_lines(lines: list[str]) -> np.ndarray:
+def pack_lines(lines: list[str]) -> np.ndarray:
     """Lines in an array of bytes."""
     return np.frombuffer("\n".join(lines).encode(), np.uint8)
 
 
-def _lines(array: np.ndarray) -> list[str]:
+def _unpack_lines(array: np.ndarray) -> list[str]:
     text = array.tobytes().decode()
     return text.split("\n") if text else []

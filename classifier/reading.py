@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Callable
 from typing import NamedTuple
 
-from .signs import signs_of
-from .text import general_words, letters, n_grams, parts_of, plain_words
+from .signs import measure_signs
+from .text import list_general_words, list_letter_runs, list_plain_words, make_n_grams, split_parts
 
 TITLE, BEGINNING = 250, 1_500
 """Characters of title and body that are read letter by letter."""
@@ -30,13 +30,13 @@ class ReportView(NamedTuple):
 
 
 VIEWS = {
-    "title": ReportView(plain_words, "title", 2, 0.7, "title"),
-    "prose": ReportView(plain_words, "text", 2, 1.0, "text"),
-    "errors": ReportView(plain_words, "errors", 2, 0.6, "log"),
-    "title-general": ReportView(general_words, "title", 3, 0.7, "title"),
-    "prose-general": ReportView(general_words, "text", 3, 1.0, "text"),
-    "errors-general": ReportView(general_words, "errors", 2, 0.6, "log"),
-    "letters": ReportView(letters, "whole", 1, 1.0, "", rare=2, most=10_000),
+    "title": ReportView(list_plain_words, "title", 2, 0.7, "title"),
+    "prose": ReportView(list_plain_words, "text", 2, 1.0, "text"),
+    "errors": ReportView(list_plain_words, "errors", 2, 0.6, "log"),
+    "title-general": ReportView(list_general_words, "title", 3, 0.7, "title"),
+    "prose-general": ReportView(list_general_words, "text", 3, 1.0, "text"),
+    "errors-general": ReportView(list_general_words, "errors", 2, 0.6, "log"),
+    "letters": ReportView(list_letter_runs, "whole", 1, 1.0, "", rare=2, most=10_000),
 }
 """Names of the views, which the model file uses too."""
 
@@ -50,7 +50,7 @@ class ReportReading(NamedTuple):
 
 def read(title: str, body: str) -> ReportReading:
     """Reads a report; any text will do."""
-    parts = parts_of(title, body)
+    parts = split_parts(title, body)
     texts = {
         "title": parts.title,
         "text": f"{parts.title}\n{parts.prose}",
@@ -59,5 +59,5 @@ def read(title: str, body: str) -> ReportReading:
         "whole": f"{title[:TITLE]} . {title[:TITLE]} . {body[:BEGINNING]}",
     }
     words = {name: view.words(texts[view.part])[: view.most] for name, view in VIEWS.items()}
-    grams = {name: Counter(n_grams(words[name], view.longest)) for name, view in VIEWS.items()}
-    return ReportReading(grams, signs_of(parts, words["prose-general"]))
+    grams = {name: Counter(make_n_grams(words[name], view.longest)) for name, view in VIEWS.items()}
+    return ReportReading(grams, measure_signs(parts, words["prose-general"]))

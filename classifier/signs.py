@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from itertools import islice
 
 from ..corpus.distros import DISTROS, ROS1, ROS2
-from .text import PLATFORMS, Parts, general_words
+from .text import PLATFORMS, Parts, list_general_words
 
 _PROSE = 2_500
 _LOG = 2_000
@@ -558,7 +558,7 @@ _PATTERNS = tuple(
     for name, pattern, where in (*_UPDATE, *_BUILD, *_DEPENDENCY, *_INCONSISTENCY, *_LOGIC, *_OTHER)
 )
 _IN = {"t": "title", "p": "text", "c": "code", "a": "report"}
-_SENSES = {word: name for name, words in _VOCABULARIES.items() for word in general_words(words)}
+_SENSES = {word: name for name, words in _VOCABULARIES.items() for word in list_general_words(words)}
 _SHAPES = ("title length", "text length", "code length", "error length", "question marks", "brackets in the title")
 _DISTROS = re.compile(rf"\b{_DISTRO}\b")
 
@@ -578,7 +578,7 @@ DIGEST = hashlib.sha256(
 """Of what the signs are: a model is of use only with those that it was trained with."""
 
 
-def signs_of(parts: Parts, words: Sequence[str]) -> list[float]:
+def measure_signs(parts: Parts, words: Sequence[str]) -> list[float]:
     """How strongly each of SIGNS shows in a report: log(1 + occurrences), at most 8 of which count.
 
     words: general_words of title and prose.

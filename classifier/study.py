@@ -17,7 +17,7 @@ from ..corpus.report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError,
 from ..edges.console import run_command, say
 from ..edges.documents import load_json
 from ..edges.files import read_file, write_file
-from ..edges.limits import limits
+from ..edges.limits import get_limits
 
 if TYPE_CHECKING:
     from .evaluate import Judged
@@ -64,11 +64,11 @@ class Measured(NamedTuple):
     digests: dict[str, str]
 
 
-def command(reports: Path, output: Path, quiet: bool = False) -> int:
+def run_study(reports: Path, output: Path, quiet: bool = False) -> int:
     """Measures the classifier on the reports' texts and writes both files to a folder. Returns the exit status."""
 
     def work() -> int:
-        found = measured(reports, None if quiet else _progress())
+        found = measure(reports, None if quiet else _make_progress())
         write(found, output)
         say(f"{len(found.predictions):,} predictions and {len(found.beside)} means beside: {output}")
         return 0
@@ -76,25 +76,25 @@ def command(reports: Path, output: Path, quiet: bool = False) -> int:
     return run_command(work, "interrupted; nothing was written")
 
 
-def measured(reports: Path, progress: Callable[[str, int, int], None] | None = None) -> Measured:
+def measure(reports: Path, progress: Callable[[str, int, int], None] | None = None) -> Measured:
     """Judges every labelled report out of fold, by the classifier, by simpler means and with parts left out.
 
     reports: the file that holds the texts. It takes some minutes. Raises CorpusError.
     """
     from . import evaluate as e
     from .model import ClassifierError
-    from .training import digests, examples
+    from .training import compute_digests, read_examples
 
     try:
-        found = examples(LABELS_FILE, reports, progress)
-        judged = e.out_of_fold(found, calibrated=True, progress=progress)
-        others = e.beside(found, judged, progress=progress)
+        found = read_examples(LABELS_FILE, reports, progress)
+        judged = e.judge_out_of_fold(found, calibrated=True, progress=progress)
+        others = e.score_rivals(found, judged, progress=progress)
     except ClassifierError as error:
         raise CorpusError(str(error)) from None
-    return Measured(predictions_of(found.rows, judged), others, digests(found.rows))
+    return Measured(make_predictions(found.rows, judged), others, compute_digests(found.rows))
 
 
-def predictions_of(found: Sequence[Example], judged: Judged) -> list[Prediction]:
+def make_predictions(found: Sequence[Example], judged: Judged) -> list[Prediction]:
     """The facts of labelled reports and of what was said of them."""
     decided = {label.id: label.decided for label in read_labels()}
     return [
@@ -120,7 +120,7 @@ def read(folder: Path) -> Measured:
     path = folder / PREDICTIONS
     decoder = msgspec.json.Decoder(Prediction)
     predictions = []
-    for number, line in enumerate(_bytes(path).splitlines(), 1):
+    for number, line in enumerate(_read_bytes(path).splitlines(), 1):
         try:
             one = decoder.decode(line)
         except (msgspec.DecodeError, RecursionError) as error:
@@ -131,7 +131,7 @@ def read(folder: Path) -> Measured:
         predictions.append(one)
     path = folder / BESIDE
     try:
-        about = load_json(_bytes(path))
+        about = load_json(_read_bytes(path))
         digests = {name: about[name] for name in ("labels_digest", "texts_digest")}
         return Measured(predictions, about["beside"], digests)
     except (ValueError, KeyError, TypeError) as error:
@@ -141,14 +141,14 @@ def read(folder: Path) -> Measured:
 _AGAIN = "make it again with `rosimpact study predict`"
 
 
-def _bytes(path: Path) -> bytes:
+def _read_bytes(path: Path) -> bytes:
     try:
-        return read_file(path, limits().report)
+        return read_file(path, get_limits().report)
     except OSError as error:
         raise CorpusError(f"{path}: cannot be read: {error.strerror}; {_AGAIN}") from None
 
 
-def _progress() -> Callable[[str, int, int], None]:
+def _make_progress() -> Callable[[str, int, int], None]:
     last = ""
 
     def show(what: str, done: int, total: int) -> None:

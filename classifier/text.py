@@ -59,7 +59,7 @@ class Parts(NamedTuple):
     errors: str
 
 
-def parts_of(title: str, body: str) -> Parts:
+def split_parts(title: str, body: str) -> Parts:
     """Takes a report apart; any text will do."""
     body = _COMMENT.sub(" ", body[:LONGEST].replace("\r\n", "\n"))
     code: list[str] = []
@@ -76,7 +76,7 @@ def parts_of(title: str, body: str) -> Parts:
     return Parts(title[:1_000], "\n".join(prose), logs, "\n".join(errors))
 
 
-def plain_words(text: str) -> list[str]:
+def list_plain_words(text: str) -> list[str]:
     """Words as they stand, in lower case; addresses, paths, hashes, versions and numbers by what they are."""
     text = _URL.sub(" urlx ", text)
     text = _PATH.sub(r" pathx \1 ", text)
@@ -85,7 +85,7 @@ def plain_words(text: str) -> list[str]:
     return [word for word in _WORD.findall(text.lower()) if len(word) <= _LONGEST_WORD]
 
 
-def general_words(text: str) -> list[str]:
+def list_general_words(text: str) -> list[str]:
     """Words without endings; names of packages, distros, platforms, classes and identifiers by what they are."""
     text = _HASH.sub(" hashx ", _PATH.sub(r" \1 ", _URL.sub(" urlx ", text)))
     found: list[str] = []
@@ -110,7 +110,7 @@ def general_words(text: str) -> list[str]:
     return found
 
 
-def letters(text: str) -> list[str]:
+def list_letter_runs(text: str) -> list[str]:
     """Runs of three to five letters or signs inside each word, its ends marked by blanks: what is left of a word in
     names, paths and messages of compilers."""
     found: list[str] = []
@@ -124,7 +124,7 @@ def letters(text: str) -> list[str]:
     return found
 
 
-def n_grams(words: list[str], longest: int) -> list[str]:
+def make_n_grams(words: list[str], longest: int) -> list[str]:
     """All runs of one to `longest` words, joined by a space."""
     found = list(words)
     for length in range(2, longest + 1):

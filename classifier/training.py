@@ -24,7 +24,7 @@ from sklearn.model_selection import StratifiedGroupKFold
 from ..corpus.report import LABELS, CorpusError, Report, read_labels
 from ..corpus.store import open_reports
 from .features import Counts, Signs, Words, count
-from .model import FORMAT, ClassifierError, Model, packed, packed_lines, softmax
+from .model import FORMAT, ClassifierError, Model, compute_softmax, pack_json, pack_lines
 from .reading import VIEWS, ReportReading, read
 from .signs import DIGEST
 
@@ -56,9 +56,9 @@ class Examples(NamedTuple):
     rows: list[Example]
     counts: Counts
 
-    def part(self, rows: np.ndarray) -> Examples:
+    def select_rows(self, rows: np.ndarray) -> Examples:
         """Some of them."""
-        return Examples([self.rows[row] for row in rows], self.counts.part(rows))
+        return Examples([self.rows[row] for row in rows], self.counts.select_rows(rows))
 
     @property
     def labels(self) -> np.ndarray:
@@ -91,12 +91,12 @@ class Linear(NamedTuple):
     coefficients: np.ndarray
     intercept: np.ndarray
 
-    def scores(self, counts: Counts) -> np.ndarray:
+    def compute_scores(self, counts: Counts) -> np.ndarray:
         """One row a report, one column a label."""
-        return np.asarray(_matrix(self.words, self.signs, counts) @ self.coefficients.T) + self.intercept
+        return np.asarray(_build_matrix(self.words, self.signs, counts) @ self.coefficients.T) + self.intercept
 
 
-def examples(labels: Path, reports: Path, progress: Progress | None = None) -> Examples:
+def read_examples(labels: Path, reports: Path, progress: Progress | None = None) -> Examples:
     """Reads labelled reports and counts what stands in them. Raises ClassifierError when there are too few."""
     try:
         known = {label.id: label for label in read_labels(labels)}
@@ -124,16 +124,16 @@ def examples(labels: Path, reports: Path, progress: Progress | None = None) -> E
             f"{reports}: all reports are of one repository; without a second one nothing can be calibrated: add one"
         )
 
-    def readings() -> Iterator[ReportReading]:
+    def iterate_readings() -> Iterator[ReportReading]:
         for number, example in enumerate(found, 1):
             yield read(example.report.title, example.report.body)
             if progress:
                 progress("reading reports", number, len(found))
 
-    return Examples(found, count(readings(), [example.report.group for example in found]))
+    return Examples(found, count(iterate_readings(), [example.report.group for example in found]))
 
 
-def digests(found: Sequence[Example]) -> dict[str, str]:
+def compute_digests(found: Sequence[Example]) -> dict[str, str]:
     """SHA-256 of the labels and of the texts that were learnt from."""
     labels, texts = hashlib.sha256(), hashlib.sha256()
     for example in found:
@@ -143,7 +143,7 @@ def digests(found: Sequence[Example]) -> dict[str, str]:
     return {"labels_digest": labels.hexdigest(), "texts_digest": texts.hexdigest()}
 
 
-def splits(found: Examples, folds: int, seed: int) -> list[tuple[np.ndarray, np.ndarray]]:
+def make_splits(found: Examples, folds: int, seed: int) -> list[tuple[np.ndarray, np.ndarray]]:
     """Grouped by repository and stratified by label: pairs of rows to learn from and rows to judge."""
     folds = max(2, min(folds, len(set(found.groups))))
     splitter = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
@@ -156,7 +156,7 @@ def fit(found: Examples, settings: Settings = EVERYTHING) -> Linear:
     """Fits the linear model. Raises ClassifierError when only one label is left."""
     words = {view: Words(view).fit(found.counts) for view in settings.views}
     signs = Signs().fit(found.counts) if settings.signs else None
-    rows = _matrix(words, signs, found.counts)
+    rows = _build_matrix(words, signs, found.counts)
     labels = found.labels
     present = tuple(label for label in LABELS if label in set(labels))
     if len(present) < 2:
@@ -193,20 +193,20 @@ def calibrate(
     """
     present = tuple(label for label in LABELS if label in set(found.labels))
     scores = np.full((len(found.rows), len(present)), -30.0)
-    for learn, judge in splits(found, INNER_FOLDS, seed):
-        model = fit(found.part(learn), settings)
-        part = model.scores(found.counts.part(judge))
+    for learn, judge in make_splits(found, INNER_FOLDS, seed):
+        model = fit(found.select_rows(learn), settings)
+        part = model.compute_scores(found.counts.select_rows(judge))
         scores[np.ix_(judge, np.array([present.index(label) for label in model.labels]))] = part
         step()
     truth = np.array([present.index(label) for label in found.labels])
 
-    def loss(logarithm: float) -> float:
-        chances = softmax(scores / np.exp(logarithm))[np.arange(len(truth)), truth]
+    def compute_loss(logarithm: float) -> float:
+        chances = compute_softmax(scores / np.exp(logarithm))[np.arange(len(truth)), truth]
         return float(-np.log(np.maximum(chances, 1e-12)).mean())
 
-    best: Any = minimize_scalar(loss, bounds=(-2.0, 2.0), method="bounded")
+    best: Any = minimize_scalar(compute_loss, bounds=(-2.0, 2.0), method="bounded")
     temperature = float(np.exp(best.x))
-    chances = softmax(scores / temperature)
+    chances = compute_softmax(scores / temperature)
     sure = chances.max(axis=1)
     right = chances.argmax(axis=1) == truth
     order = np.argsort(-sure, kind="stable")
@@ -222,17 +222,17 @@ def train(found: Examples, seed: int = SEED, progress: Progress | None = None) -
     """A model of all the reports given. Raises ClassifierError."""
     done = [0]
 
-    def step() -> None:
+    def report_step() -> None:
         done[0] += 1
         if progress:
             progress("fitting", done[0], INNER_FOLDS + 1)
 
-    calibration = calibrate(found, seed=seed, step=step)
+    calibration = calibrate(found, seed=seed, step=report_step)
     linear = fit(found)
-    step()
-    words = np.concatenate([_idf(linear.words[view]) for view in VIEWS])
+    report_step()
+    words = np.concatenate([_get_idf(linear.words[view]) for view in VIEWS])
     assert linear.signs is not None
-    rows = _matrix(linear.words, None, found.counts)
+    rows = _build_matrix(linear.words, None, found.counts)
     columns = len(words)
     size = max(2, min(DIMENSIONS, columns - 1, len(found.rows) - 1))
     if columns > size:
@@ -257,10 +257,10 @@ def train(found: Examples, seed: int = SEED, progress: Progress | None = None) -
         "seed": seed,
         "reports": len(found.rows),
         "newest": max((date for example in found.rows if _DAY.match(date := example.report.date or "")), default=""),
-        **digests(found.rows),
+        **compute_digests(found.rows),
     }
     arrays = {
-        "about": packed(about),
+        "about": pack_json(about),
         "coefficients": linear.coefficients.astype(np.float32),
         "intercept": linear.intercept,
         "weights": words.astype(np.float32),
@@ -268,18 +268,18 @@ def train(found: Examples, seed: int = SEED, progress: Progress | None = None) -
         "sign scales": np.asarray(linear.signs.scaler_.scale_),
         "projection": basis.astype(np.float16),
         "vectors": vectors.astype(np.float16),
-        "known": packed([[example.report.id, example.report.url, example.label] for example in found.rows]),
+        "known": pack_json([[example.report.id, example.report.url, example.label] for example in found.rows]),
     }
     for view in VIEWS:
-        arrays[f"vocabulary {view}"] = packed_lines(linear.words[view].vocabulary_)
+        arrays[f"vocabulary {view}"] = pack_lines(linear.words[view].vocabulary_)
     return Model(arrays)
 
 
-def _idf(words: Words) -> np.ndarray:
+def _get_idf(words: Words) -> np.ndarray:
     return np.asarray(words.weights_.idf_) if words.vocabulary_ else np.zeros(0)
 
 
-def _matrix(words: dict[str, Words], signs: Signs | None, counts: Counts) -> csr_matrix:
+def _build_matrix(words: dict[str, Words], signs: Signs | None, counts: Counts) -> csr_matrix:
     parts = [VIEWS[view].weight * words[view].transform(counts) for view in words]
     if signs is not None:
         parts.append(csr_matrix(signs.transform(counts)))

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from urllib.parse import urlsplit
 
 from ..corpus.distros import DISTROS, ROS2
-from ..edges.console import escape_json, visible, write_json
+from ..edges.console import escape, escape_json, write_json
 from .model import ClassifierError, KnownReport, Model, ModelVerdict, Reason, load
 from .reading import read
 
@@ -66,35 +66,35 @@ class Triage(NamedTuple):
 def triage(model: Model, post: Post, commands: Collection[str]) -> Triage:
     """Judges a report. commands: those that the command line has."""
     reading = read(post.title, post.body)
-    verdict = model.verdict(reading)
+    verdict = model.judge(reading)
     return Triage(
         post.id,
         verdict,
-        model.reasons(reading, verdict.label),
-        model.nearest(reading),
-        checks(verdict.label, post, commands),
+        model.list_reasons(reading, verdict.label),
+        model.find_nearest(reading),
+        list_checks(verdict.label, post, commands),
     )
 
 
 def suggest(title: str, body: str) -> tuple[str, dict[str, float]]:
     """The likeliest label of a report and the probability of each, by the shipped model. Raises ClassifierError."""
-    verdict = _shipped().verdict(read(title, body))
+    verdict = _load_shipped().judge(read(title, body))
     return verdict.label, verdict.probabilities
 
 
 @cache
-def _shipped() -> Model:
+def _load_shipped() -> Model:
     return load()
 
 
-def checks(label: str, post: Post, commands: Collection[str]) -> list[str]:
+def list_checks(label: str, post: Post, commands: Collection[str]) -> list[str]:
     """The commands that look into a report of this label, with the distros it names as targets."""
     named = dict.fromkeys(name.lower() for name in _DISTRO.findall(f"{post.title}\n{post.body}"))
     targets = "".join(f" --target {name}" for name in named if name in _TARGETED)
     return [call.format(targets=targets) for command, call in CHECKS.get(label, ()) if command in commands]
 
 
-def as_json(found: Triage) -> str:
+def render_json(found: Triage) -> str:
     """One JSON object with all there is to say."""
     verdict = found.verdict
     return json.dumps(
@@ -111,7 +111,7 @@ def as_json(found: Triage) -> str:
     )
 
 
-def as_text(found: Triage) -> str:
+def render_triage(found: Triage) -> str:
     """The same for people."""
     verdict = found.verdict
     sure = f"{100 * verdict.probabilities[verdict.label]:.0f} %"
@@ -134,18 +134,18 @@ def as_text(found: Triage) -> str:
         lines.append("no check looks into reports of this label")
     else:
         lines.append(f"no command of this version looks into reports of the label {verdict.label} yet")
-    return "\n".join(map(visible, lines)) + "\n"
+    return "\n".join(map(escape, lines)) + "\n"
 
 
-def row(model: Model, post: Post) -> str:
+def format_row(model: Model, post: Post) -> str:
     """A line of the stream: id, label, probabilities, abstained."""
-    verdict = model.verdict(read(post.title, post.body))
+    verdict = model.judge(read(post.title, post.body))
     chances = {label: round(chance, 6) for label, chance in verdict.probabilities.items()}
     answer = {"id": post.id, "label": verdict.label, "probabilities": chances, "abstained": verdict.abstained}
     return json.dumps(answer, ensure_ascii=False)
 
 
-def posts(lines: Iterable[str], name: str) -> Iterator[Post]:
+def read_posts(lines: Iterable[str], name: str) -> Iterator[Post]:
     """The reports of JSON Lines with `id`, `title` and `body`. name: of the file. Raises ClassifierError, also when
     there is none."""
     found = False
@@ -153,7 +153,7 @@ def posts(lines: Iterable[str], name: str) -> Iterator[Post]:
         if not line.strip():
             continue
         found = True
-        post = post_of(line)
+        post = parse_post(line)
         if post is None:
             raise ClassifierError(f"{name}:{number}: is no JSON object with `title` or `body` as texts; mend the line")
         yield post
@@ -161,7 +161,7 @@ def posts(lines: Iterable[str], name: str) -> Iterator[Post]:
         raise ClassifierError(f"{name}: holds no report; give JSON Lines with `id`, `title` and `body`")
 
 
-def post_of(line: str) -> Post | None:
+def parse_post(line: str) -> Post | None:
     """A report from a line of JSON; None when it is none."""
     try:
         value = json.loads(line)
@@ -175,7 +175,7 @@ def post_of(line: str) -> Post | None:
     return Post(str(id), title or "", body or "")
 
 
-def from_text(text: str, id: str = "") -> Post:
+def make_post(text: str, id: str = "") -> Post:
     """A report from plain text: its first line is the title."""
     title, _, body = text.strip().partition("\n")
     return Post(id, title.lstrip("# ").strip(), body.strip())
@@ -193,7 +193,7 @@ def fetch(url: str) -> Post:
     from ..corpus.polite import Client
     from ..corpus.report import CorpusError
     from ..corpus.sources import github, stack_exchange
-    from ..corpus.tokens import github_token, stack_exchange_key
+    from ..corpus.tokens import find_github_token, find_stack_exchange_key
 
     host, path, shown = _place(url)
     issue = _ISSUE.match(path)
@@ -204,11 +204,11 @@ def fetch(url: str) -> Post:
             f"{shown}: answers.ros.org is gone; give the question's address on robotics.stackexchange.com, or its text"
         )
 
-    def client(service: str, secret: str) -> Client:
+    def make_client(service: str, secret: str) -> Client:
         return Client(service, patience=_PATIENCE, timeout=_TIMEOUT, tries=_TRIES, secrets=(secret,))
 
     try:
-        api = _github_api(host, github.API)
+        api = _find_github_api(host, github.API)
         if not api and not site:
             raise ClassifierError(
                 f"{shown}: is no issue, pull request or question of a host that is known; known are github.com and "
@@ -217,13 +217,13 @@ def fetch(url: str) -> Post:
             )
         if issue and api:
             owner, name, number = issue.groups()
-            token = github_token(api)
-            server = github.GitHub(client("GitHub", token), api, token)
+            token = find_github_token(api)
+            server = github.GitHub(make_client("GitHub", token), api, token)
             (asked,) = server.ask([(f"{owner}/{name}#{number}", "")])
         elif question and site:
             api = os.environ.get(STACK_API) or stack_exchange.API
-            key = stack_exchange_key(api)
-            exchange = stack_exchange.StackExchange(client("Stack Exchange", key), api, key, site[1])
+            key = find_stack_exchange_key(api)
+            exchange = stack_exchange.StackExchange(make_client("Stack Exchange", key), api, key, site[1])
             (asked,) = exchange.ask([(f"{site[1]}:{question[1]}", "")])
         else:
             raise ClassifierError(
@@ -259,7 +259,7 @@ def _place(url: str) -> tuple[str, str, str]:
     return host, parts.path.rstrip("/"), shown
 
 
-def _github_api(host: str, public: str) -> str:
+def _find_github_api(host: str, public: str) -> str:
     """The API that has the issues of a host; empty when it is no GitHub server that is known. A server of this machine
     may stand for github.com. Raises ClassifierError."""
     named = os.environ.get(GITHUB_API, "")
@@ -272,7 +272,7 @@ def _github_api(host: str, public: str) -> str:
     return named if own and own in (host, f"api.{host}") else ""
 
 
-def from_argument(argument: str) -> Post | Path | None:
+def interpret_argument(argument: str) -> Post | Path | None:
     """What an argument of the command line means: a report, a file to read, or None for standard input.
 
     An existing file is read. Otherwise one word that holds a slash or ends as names of files do is a path or an address
@@ -301,10 +301,10 @@ def from_argument(argument: str) -> Post | Path | None:
             f"{argument}: there is no such file; give an existing one, an address or a text; one word that is a text "
             "goes through standard input, with -"
         )
-    return from_text(argument)
+    return make_post(argument)
 
 
 def triage_all(model: Model, lines: Iterable[str], name: str) -> None:
     """JSON Lines to JSON Lines on standard output, each written as soon as it is known."""
-    for post in posts(lines, name):
-        write_json(escape_json(row(model, post)))
+    for post in read_posts(lines, name):
+        write_json(escape_json(format_row(model, post)))

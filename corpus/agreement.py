@@ -55,7 +55,7 @@ class Agreement(msgspec.Struct, frozen=True):
     confusion: dict[str, dict[str, int]]
 
 
-def agreement(pairs: Iterable[tuple[str, str]], names: Sequence[str]) -> Agreement:
+def compute_agreement(pairs: Iterable[tuple[str, str]], names: Sequence[str]) -> Agreement:
     """Agreement of pairs of labels: the first annotator's and the second's. names: all labels, in their order."""
     counted = Counter(pairs)
     total = sum(counted.values())
@@ -69,17 +69,17 @@ def agreement(pairs: Iterable[tuple[str, str]], names: Sequence[str]) -> Agreeme
         for (a, b), count in counted.items():
             against[str(a == name), str(b == name)] += count
         share = 2 * both / (first + second) if first + second else None
-        labels.append(LabelAgreement(name, first, second, both, share, _kappa(against)))
+        labels.append(LabelAgreement(name, first, second, both, share, _estimate_kappa(against)))
     confusion = {a: {b: counted[a, b] for b in names} for a in names}
-    return Agreement(total, same, wilson(same, total), _kappa(counted), tuple(labels), confusion)
+    return Agreement(total, same, compute_wilson(same, total), _estimate_kappa(counted), tuple(labels), confusion)
 
 
-def kappa(pairs: Iterable[tuple[str, str]]) -> Interval:
+def compute_kappa(pairs: Iterable[tuple[str, str]]) -> Interval:
     """Cohen's kappa of pairs of labels with its analytic 95 % interval. Not defined where chance explains it all."""
-    return _kappa(Counter(pairs))
+    return _estimate_kappa(Counter(pairs))
 
 
-def wilson(hits: int, total: int) -> Interval:
+def compute_wilson(hits: int, total: int) -> Interval:
     """A share with Wilson's 95 % interval; not defined when total is 0."""
     if not total:
         return Interval(None, None, None)
@@ -89,7 +89,7 @@ def wilson(hits: int, total: int) -> Interval:
     return Interval(share, max(0.0, middle - half), min(1.0, middle + half))
 
 
-def _kappa(counted: Counter[tuple[str, str]]) -> Interval:
+def _estimate_kappa(counted: Counter[tuple[str, str]]) -> Interval:
     total = sum(counted.values())
     if not total:
         return Interval(None, None, None)

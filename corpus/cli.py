@@ -21,11 +21,11 @@ app = typer.Typer(
 )
 
 
-def _no_suggestion(title: str, body: str) -> tuple[str, dict[str, float]]:
+def _refuse_suggestion(title: str, body: str) -> tuple[str, dict[str, float]]:
     raise UserError("no classifier is at hand")
 
 
-_suggest: Suggest = _no_suggestion
+_suggest: Suggest = _refuse_suggestion
 
 
 def set_suggester(suggest: Suggest) -> None:
@@ -50,7 +50,7 @@ _Verbose = Annotated[bool, typer.Option("--verbose", "-v", help="A line for each
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress.")]
 
 
-def _manner(
+def _make_manner(
     store: _Store = None, api: _Api = "", wait: _Wait = 60.0, verbose: _Verbose = False, quiet: _Quiet = False
 ) -> Manner:
     from math import isfinite
@@ -62,17 +62,17 @@ def _manner(
     return Manner(store, api, wait, verbose, quiet)
 
 
-def _with_manner(command: Callable[..., None]) -> Callable[..., None]:
-    """The command with the options of _manner() after its own, of which it gets `manner`."""
+def _add_manner_options(command: Callable[..., None]) -> Callable[..., None]:
+    """The command with the options of _make_manner() after its own, of which it gets `manner`."""
     own, shared = (
         # a type that is imported late is not known here, and no option's
         inspect.signature(function, eval_str=True, locals={"Manner": object}).parameters
-        for function in (command, _manner)
+        for function in (command, _make_manner)
     )
 
     @functools.wraps(command)
     def run(**given: Any) -> None:
-        manner = _manner(**{name: given.pop(name) for name in shared})
+        manner = _make_manner(**{name: given.pop(name) for name in shared})
         command(**given, manner=manner)
 
     options = [*(option for name, option in own.items() if name != "manner"), *shared.values()]
@@ -82,7 +82,7 @@ def _with_manner(command: Callable[..., None]) -> Callable[..., None]:
 
 
 @app.command("gather")
-@_with_manner
+@_add_manner_options
 def gather(
     what: Annotated[str, typer.Argument(help="github:OWNER/NAME, ros-answers or stack-exchange.")],
     since: Annotated[str, typer.Option(help="Only what was posted from this day on (2024-01-31).")] = "",
@@ -112,7 +112,7 @@ def gather(
 
 
 @app.command("hydrate")
-@_with_manner
+@_add_manner_options
 def hydrate(
     labels: Annotated[Path | None, typer.Option(help="The labels; those of the corpus when left out.")] = None,
     texts: Annotated[
@@ -129,7 +129,7 @@ def hydrate(
 
 
 @app.command("refresh")
-@_with_manner
+@_add_manner_options
 def refresh(
     source: Annotated[
         list[str] | None, typer.Option(help="Only github, ros-answers or robotics-se. May be repeated.")
@@ -161,7 +161,7 @@ def status(store: _Store = None) -> None:
     """Show what is in the store and how far each gathering is."""
     from . import gather_commands as commands
 
-    raise typer.Exit(commands.status(store=store))
+    raise typer.Exit(commands.print_status(store=store))
 
 
 # -- labels ------------------------------------------------------------------------------------------------------------
@@ -217,7 +217,7 @@ def stats(
     """Count labels by year, distro, project, kind and phase, and say how far two annotators agree."""
     from . import label_commands
 
-    raise typer.Exit(label_commands.stats(labels, reports, format, plots))
+    raise typer.Exit(label_commands.print_stats(labels, reports, format, plots))
 
 
 import_app = typer.Typer(

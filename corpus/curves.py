@@ -19,7 +19,7 @@ class Curve(NamedTuple):
     low: NDArray[np.float64]
     high: NDArray[np.float64]
 
-    def at(self, x: float) -> tuple[float, float, float]:
+    def evaluate(self, x: float) -> tuple[float, float, float]:
         """The value and its bounds in force at x: those of the last point not beyond it. Raises ValueError before the
         first point."""
         place = int(np.searchsorted(self.x, x, side="right")) - 1
@@ -27,17 +27,17 @@ class Curve(NamedTuple):
             raise ValueError(f"the curve begins at {self.x[0]:g}, after {x:g}")
         return float(self.y[place]), float(self.low[place]), float(self.high[place])
 
-    def turned(self) -> Curve:
+    def invert(self) -> Curve:
         """The curve of what has happened from that of what has not: 1 - y, with its bounds."""
         return Curve(self.x, 1 - self.y, 1 - self.high, 1 - self.low)
 
-    def first_below(self, share: float) -> float | None:
+    def find_first_below(self, share: float) -> float | None:
         """The first x at which y is at or below a share; None when it never is."""
         reached = np.flatnonzero(self.y <= share)
         return float(self.x[reached[0]]) if len(reached) else None
 
 
-def survival(durations: Sequence[float], ended: Sequence[bool]) -> Curve:
+def estimate_survival(durations: Sequence[float], ended: Sequence[bool]) -> Curve:
     """Kaplan and Meier's estimate of the share that lasts longer than x, starting with 1 at x = 0.
 
     durations: how long each was followed. ended: whether it ended then; otherwise it was still standing. The interval
@@ -70,7 +70,7 @@ def survival(durations: Sequence[float], ended: Sequence[bool]) -> Curve:
     return Curve(*(np.array(values) for values in (x, y, low, high)))
 
 
-def pooled_share(hits: ArrayLike, totals: ArrayLike, x: Sequence[float], draws: int, seed: int = 0) -> Curve:
+def estimate_pooled_share(hits: ArrayLike, totals: ArrayLike, x: Sequence[float], draws: int, seed: int = 0) -> Curve:
     """The share of all hits among all totals, with an interval over groups that hang together.
 
     hits: one row for each group, one column for each x. totals: one number for each group. The interval is the middle

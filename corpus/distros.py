@@ -33,7 +33,7 @@ _AFTER = re.compile(
 )
 
 
-def distros_in(text: str) -> tuple[str, ...]:
+def find_distros(text: str) -> tuple[str, ...]:
     """The distros that a text names, in the order of their release.
 
     Names that are ordinary words too, as `iron` or `rolling`, count only beside ROS, a path of ROS, a branch or

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..edges.files import write_file, writing
+from ..edges.files import open_for_replacing, write_file
 from .curves import Curve
 from .report import LABELS_FILE, CorpusError
 
@@ -109,7 +109,7 @@ class Page:
         _, picture = save(figure, self.output / "figures", name)
         return Image(data=picture.read_bytes(), width=int(figure.get_figwidth() * 100))
 
-    def table(self, name: str, columns: Sequence[str], rows: Iterable[Sequence[object]], most: int = 60) -> Any:
+    def write_table(self, name: str, columns: Sequence[str], rows: Iterable[Sequence[object]], most: int = 60) -> Any:
         """Writes a table as `tables/NAME.csv` and gives it to the notebook as Markdown, its first `most` rows.
 
         Numbers keep all their digits in the file. Raises ValueError when there is no row.
@@ -123,7 +123,7 @@ class Page:
         csv.writer(text, lineterminator="\n").writerows([columns, *kept])
         write_file(self.output / "tables" / f"{name}.csv", text.getvalue().encode())
         lines = ["| " + " | ".join(columns) + " |", "|" + "|".join("---" for _ in columns) + "|"]
-        lines += ["| " + " | ".join(_cell(value) for value in row) + " |" for row in kept[:most]]
+        lines += ["| " + " | ".join(_format_cell(value) for value in row) + " |" for row in kept[:most]]
         if len(kept) > most:
             lines += ["", f"{len(kept) - most} more rows in `tables/{name}.csv`."]
         return Markdown("\n".join(lines))
@@ -134,7 +134,7 @@ class Page:
 
         return Markdown(" ".join(sentences))
 
-    def versions(self, **more: str) -> Any:
+    def show_versions(self, **more: str) -> Any:
         """What this was computed with: the form, the labels in use and whatever else is given, as a table."""
         from importlib.metadata import version
 
@@ -149,7 +149,7 @@ class Page:
 
         return Markdown("\n".join(["| what | version |", "|---|---|", *(f"| {k} | {v} |" for k, v in rows.items())]))
 
-    def shipped(self, name: str) -> list[dict[str, str]]:
+    def read_shipped(self, name: str) -> list[dict[str, str]]:
         """The rows of a CSV file of the small shipped data. Raises CorpusError when it is not there."""
         path = self.data / name
         try:
@@ -159,17 +159,17 @@ class Page:
             raise CorpusError(f"{path}: cannot be read: {error.strerror}; take the file from the repository") from None
 
 
-def percent(share: float, digits: int = 0) -> str:
+def format_percent(share: float, digits: int = 0) -> str:
     """`0.123` as `12 %`."""
     return f"{100 * share:.{digits}f} %"
 
 
-def between(value: float, low: float, high: float, digits: int = 0) -> str:
+def format_interval(value: float, low: float, high: float, digits: int = 0) -> str:
     """A share with its interval: `12 % (10 to 15)`."""
     return f"{100 * value:.{digits}f} % ({100 * low:.{digits}f} to {100 * high:.{digits}f})"
 
 
-def canvas(wide: float = 9, high: float = 4.5, rows: int = 1, columns: int = 1, **more: Any) -> tuple[Figure, Any]:
+def make_canvas(wide: float = 9, high: float = 4.5, rows: int = 1, columns: int = 1, **more: Any) -> tuple[Figure, Any]:
     """A figure in inches, and its axes: one, or an array of rows x columns."""
     import matplotlib.pyplot as plt
 
@@ -184,23 +184,23 @@ def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
 
     drawn, picture = folder / f"{name}.svg", folder / f"{name}.png"
     try:
-        with writing(drawn) as file:
+        with open_for_replacing(drawn) as file:
             figure.savefig(file, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": "rosimpact"})
-        with writing(picture) as file:
+        with open_for_replacing(picture) as file:
             figure.savefig(file, format="png", bbox_inches="tight", metadata={"Software": "rosimpact"})
     finally:
         plt.close(figure)
     return drawn, picture
 
 
-def headline(axes: Axes, title: str, below: str = "") -> None:
+def write_headline(axes: Axes, title: str, below: str = "") -> None:
     """A title, and under it in grey what is shown."""
     axes.set_title(title + ("\n" if below else ""), pad=8)
     if below:
         axes.annotate(below, (0, 1), (0, 8), xycoords="axes fraction", textcoords="offset points", color=GREY, size=9)
 
 
-def shares(axes: Axes, which: str = "y", top: float | None = None) -> None:
+def mark_percent(axes: Axes, which: str = "y", top: float | None = None) -> None:
     """Marks an axis in percent, from 0 to `top` (a share) where that is given."""
     from matplotlib.ticker import PercentFormatter
 
@@ -211,7 +211,7 @@ def shares(axes: Axes, which: str = "y", top: float | None = None) -> None:
         limit(0, top)
 
 
-def line(axes: Axes, curve: Curve, name: str, colour: str, step: bool = True, band: bool = True) -> None:
+def draw_line(axes: Axes, curve: Curve, name: str, colour: str, step: bool = True, band: bool = True) -> None:
     """One curve with its interval as a band. `names` writes its name later."""
     where = "steps-post" if step else "default"
     axes.plot(curve.x, curve.y, color=colour, drawstyle=where, label=name)
@@ -221,7 +221,7 @@ def line(axes: Axes, curve: Curve, name: str, colour: str, step: bool = True, ba
         )
 
 
-def names(axes: Axes, room: float = 0.18, size: float = 9) -> None:
+def write_names(axes: Axes, room: float = 0.18, size: float = 9) -> None:
     """Writes each line's name at its end, in its colour; those of lines that end near each other are kept apart.
     room: added width for them, as a share of the axis."""
     from matplotlib.patheffects import withStroke
@@ -239,9 +239,9 @@ def names(axes: Axes, room: float = 0.18, size: float = 9) -> None:
     gap = (size + 3) * 100 / 72 / height * (top - bottom)
     width = right - left
     axes.set_xlim(left, right + room * width)
-    for near in _neighbours(ends, 0.05 * width):
+    for near in _group_neighbours(ends, 0.05 * width):
         near.sort(key=lambda end: end[0])
-        places = apart([end[0] for end in near], gap, bottom, top)
+        places = spread_places([end[0] for end in near], gap, bottom, top)
         for (y, x, name, colour), place in zip(near, places, strict=True):
             written = axes.annotate(
                 name, (x, y), (x + 0.01 * width, place), color=colour, size=size, va="center", annotation_clip=False
@@ -249,7 +249,7 @@ def names(axes: Axes, room: float = 0.18, size: float = 9) -> None:
             written.set_path_effects([withStroke(linewidth=2.5, foreground="white")])
 
 
-def _neighbours(ends: list[list[Any]], reach: float) -> list[list[list[Any]]]:
+def _group_neighbours(ends: list[list[Any]], reach: float) -> list[list[list[Any]]]:
     """Ends (y, x, …) in groups: each is within reach of the one before it in x."""
     groups: list[list[list[Any]]] = []
     for end in sorted(ends, key=lambda end: end[1]):
@@ -260,7 +260,7 @@ def _neighbours(ends: list[list[Any]], reach: float) -> list[list[list[Any]]]:
     return groups
 
 
-def apart(wanted: Sequence[float], gap: float, bottom: float, top: float) -> list[float]:
+def spread_places(wanted: Sequence[float], gap: float, bottom: float, top: float) -> list[float]:
     """Places near the wanted ones (rising), a gap from each other at least, within bottom and top where they fit."""
     places: list[float] = []
     for value in wanted:
@@ -274,7 +274,7 @@ def apart(wanted: Sequence[float], gap: float, bottom: float, top: float) -> lis
     return places
 
 
-def dots(
+def draw_dots(
     axes: Axes, rows: Sequence[str], series: Mapping[str, Sequence[tuple[float, float, float] | None]],
     colours: Sequence[str] = COLOURS,
 ) -> None:  # fmt: skip
@@ -296,7 +296,7 @@ def dots(
         axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, below), ncols=len(series), labelcolor=INK)
 
 
-def stacked(
+def draw_stacked_bars(
     axes: Axes, rows: Sequence[str], series: Mapping[str, Sequence[float]], colours: Mapping[str, str],
     words: str = "{:.0f}", least: float = 0.06,
 ) -> None:  # fmt: skip
@@ -309,7 +309,7 @@ def stacked(
         for place, start, value in zip(places, left, values, strict=True):
             if value >= least * longest:
                 axes.text(start + value / 2, place, words.format(value), ha="center", va="center", size=8,
-                          color=_ink_on(colours[name]))  # fmt: skip
+                          color=_choose_ink(colours[name]))  # fmt: skip
         left = left + np.asarray(values, dtype=float)
     axes.set_yticks(places, rows)
     axes.tick_params(axis="y", labelcolor=INK)
@@ -319,7 +319,7 @@ def stacked(
                     handlelength=1, columnspacing=1.2, labelcolor=INK)  # fmt: skip
 
 
-def heat(
+def draw_heatmap(
     axes: Axes, values: Any, rows: Sequence[str], columns: Sequence[str], words: str = "{:.0f}", scale: float = 100,
     top: float | None = None,
 ) -> None:  # fmt: skip
@@ -339,12 +339,12 @@ def heat(
         spine.set_visible(False)
 
 
-def _ink_on(colour: str) -> str:
+def _choose_ink(colour: str) -> str:
     red, green, blue = (int(colour[place : place + 2], 16) for place in (1, 3, 5))
     return INK if 0.299 * red + 0.587 * green + 0.114 * blue > 140 else "white"
 
 
-def _cell(value: object) -> str:
+def _format_cell(value: object) -> str:
     if value is None:
         return ""
     if isinstance(value, float):

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple, Protocol
 
-from .report import Report, repository_of
+from .report import Report, find_repository
 from .store import AskedReport, GatheredReport, Page, Store, Taken
 
 _NUMBER = re.compile("[0-9]{1,12}")
@@ -20,7 +20,7 @@ class ReportSource(Protocol):
     @property
     def name(self) -> str: ...
 
-    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
         """The pages that follow a state; from the first one for None."""
         ...
 
@@ -44,26 +44,26 @@ class Progress(NamedTuple):
 def gather(source: ReportSource, store: Store, tell: Callable[[Progress], None] = lambda progress: None) -> Taken:
     """Reads a source to its end, from where it was left. Whatever is raised on the way, the pages told are stored."""
     taken = Taken()
-    for page in source.pages(store.state(source.name)):
-        taken = taken.plus(store.take(source.name, page))
+    for page in source.read_pages(store.read_state(source.name)):
+        taken = taken.add(store.take(source.name, page))
         tell(Progress(page.done, page.of, taken))
     return taken
 
 
-def service_of(id: str) -> str:
+def find_service(id: str) -> str:
     """Which of report.SOURCES has a report of that id; empty when none has."""
-    if repository_of(id):
+    if find_repository(id):
         return "github"
     name, _, number = id.partition(":")
     return name if name in ("ros-answers", "robotics-se") and _NUMBER.fullmatch(number) else ""
 
 
-def missing(store: Store, ids: Iterable[str]) -> dict[str, list[str]]:
+def find_missing(store: Store, ids: Iterable[str]) -> dict[str, list[str]]:
     """Those ids, by service, that the store knows nothing of; what is known to be gone is not missing."""
     found: dict[str, list[str]] = {}
     for id in ids:
-        if store.kept(id) is None:
-            found.setdefault(service_of(id), []).append(id)
+        if store.find_kept(id) is None:
+            found.setdefault(find_service(id), []).append(id)
     return found
 
 
@@ -77,7 +77,7 @@ def hydrate(
     """Asks a service for ids and stores each answer as it comes. source: one of report.SOURCES."""
     taken = Taken()
     for done, asked in enumerate(service.ask((id, "") for id in ids), 1):
-        taken = taken.plus(_settle(asked, source, store))
+        taken = taken.add(_settle(asked, source, store))
         tell(Progress(done, len(ids), taken))
     return taken
 
@@ -88,16 +88,16 @@ def import_reports(reports: Iterable[Report], store: Store, ids: frozenset[str])
     taken, others = Taken(), 0
     part: list[GatheredReport] = []
     for report in reports:
-        kept = store.kept(report.id)
+        kept = store.find_kept(report.id)
         if report.id not in ids:
             others += 1
         elif kept is not None and not kept.gone:
-            taken = taken.plus(Taken(same=1))
+            taken = taken.add(Taken(same=1))
         else:
             part.append(GatheredReport(report, origin="import"))
             if len(part) == _AT_ONCE:
-                taken, part = taken.plus(store.put(part)), []
-    return taken.plus(store.put(part)), others
+                taken, part = taken.add(store.put(part)), []
+    return taken.add(store.put(part)), others
 
 
 def refresh(
@@ -112,7 +112,7 @@ def refresh(
     services: gives the service for a source and a number of reports. limit: of reports to ask for. An earlier refresh
     that was left before its end is gone on with.
     """
-    state = store.state(_REFRESH) or {}
+    state = store.read_state(_REFRESH) or {}
     started = float(state.get("started") or store.now())
     store.take(_REFRESH, Page([], {"started": started}))
     sources = list(sources)
@@ -125,13 +125,13 @@ def refresh(
         service = services(source, min(counts[source], total - done))
         # an archive is read through for each asking, so it is asked once
         size = counts[source] if source == "ros-answers" else _AT_ONCE
-        while part := store.to_check(source, started, min(size, total - done)):
+        while part := store.list_to_check(source, started, min(size, total - done)):
             kept = {known.id: known for known in part}
             for asked in service.ask((known.id, known.etag) for known in part):
                 if asked.what == "gone" and source == "ros-answers" and kept[asked.id].origin == "import":
                     # the archive never held all questions: that one is not in it says nothing of its deletion
                     asked = AskedReport(asked.id, "same")
-                taken = taken.plus(_settle(asked, source, store))
+                taken = taken.add(_settle(asked, source, store))
                 done += 1
                 tell(Progress(done, total, taken))
             if done >= total:
@@ -147,5 +147,5 @@ def _settle(asked: AskedReport, source: str, store: Store) -> Taken:
     if asked.what == "gone":
         store.forget([(asked.id, source)])
         return Taken(gone=1)
-    store.seen([asked.id])
+    store.mark_seen([asked.id])
     return Taken(same=1)

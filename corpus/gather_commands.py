@@ -13,9 +13,9 @@ from datetime import date, datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..edges.console import counted, run_command, say, visible, write
-from .polite import Client, Later, service_address
-from .progress import Reporter, outcome, span
+from ..edges.console import escape, format_count, run_command, say, write
+from .polite import Client, Later, normalize_address
+from .progress import Reporter, describe_outcome, format_span
 from .report import LABELS_FILE, SOURCES, CorpusError, read_labels, read_reports, write_rows
 from .store import Store, open_reports, store_path
 
@@ -50,13 +50,13 @@ def gather(
     """Gathers from one source. Returns the exit status."""
 
     def work() -> int:
-        day = _day(since)
+        day = _parse_day(since)
         with Store(store_path(manner.store)) as store:
-            for source, client in _sources(what, day, pulls, search, tags, archive, pages, manner, store):
-                _gathered(source, client, store, manner)
+            for source, client in _make_sources(what, day, pulls, search, tags, archive, pages, manner, store):
+                _gather_source(source, client, store, manner)
         return 0
 
-    return run_command(lambda: _until_later(work), _INTERRUPTED)
+    return run_command(lambda: _run_until_later(work), _INTERRUPTED)
 
 
 def hydrate(labels: Path | None, texts: Path | None, *, archive: Path | None, manner: Manner) -> int:
@@ -71,15 +71,15 @@ def hydrate(labels: Path | None, texts: Path | None, *, archive: Path | None, ma
             if texts:
                 taken, others = jobs.import_reports(read_reports(texts), store, frozenset(ids))
                 left_out = f"; {others:,} without a label left out" if others else ""
-                write(f"{visible(str(texts))}: {outcome(taken)}{left_out}")
+                write(f"{escape(str(texts))}: {describe_outcome(taken)}{left_out}")
             try:
                 if not texts:
-                    _ask_for_missing(jobs.missing(store, ids), store, archive, manner)
+                    _ask_for_missing(jobs.find_missing(store, ids), store, archive, manner)
             finally:
                 _tell_hydrated(store, ids)
         return 0
 
-    return run_command(lambda: _until_later(work), _INTERRUPTED)
+    return run_command(lambda: _run_until_later(work), _INTERRUPTED)
 
 
 def refresh(sources: Sequence[str], limit: int | None, *, archive: Path | None, manner: Manner) -> int:
@@ -91,23 +91,23 @@ def refresh(sources: Sequence[str], limit: int | None, *, archive: Path | None, 
         for source in sources:
             if source not in SOURCES:
                 raise CorpusError(f"--source {source}: unknown; choose one of {', '.join(SOURCES)}")
-        with Store(_existing(manner.store)) as store, Reporter(
+        with Store(_find_store(manner.store)) as store, Reporter(
             "refresh", verbose=manner.verbose, quiet=manner.quiet
         ) as reporter:  # fmt: skip
-            services = _services(store, archive, manner, reporter)
+            services = _make_service_finder(store, archive, manner, reporter)
             chosen = [source for source in ("ros-answers", "robotics-se", "github") if not sources or source in sources]
-            taken = jobs.refresh(services, store, chosen, limit, reporter.page)
-        write(f"refresh: {outcome(taken)}")
+            taken = jobs.refresh(services, store, chosen, limit, reporter.report_page)
+        write(f"refresh: {describe_outcome(taken)}")
         return 0
 
-    return run_command(lambda: _until_later(work), _INTERRUPTED)
+    return run_command(lambda: _run_until_later(work), _INTERRUPTED)
 
 
 def export(file: Path, *, store: Path | None) -> int:
     """Writes all reports to a JSON Lines or Parquet file. Returns the exit status."""
 
     def work() -> int:
-        path = _existing(store)
+        path = _find_store(store)
         suffix = file.suffix.lower()
         if suffix in (".jsonl", ".ndjson"):
             count = write_rows(file, open_reports(path))
@@ -117,24 +117,24 @@ def export(file: Path, *, store: Path | None) -> int:
             count = write_parquet(file, open_reports(path))
         else:
             raise CorpusError(f"{file}: of no known format; name it *.jsonl or *.parquet")
-        write(f"{visible(str(file))}: {counted(count, 'report')}")
+        write(f"{escape(str(file))}: {format_count(count, 'report')}")
         return 0
 
     return run_command(work)
 
 
-def status(*, store: Path | None) -> int:
+def print_status(*, store: Path | None) -> int:
     """Prints what is in the store. Returns the exit status."""
 
     def work() -> int:
-        with Store(_existing(store)) as opened:
+        with Store(_find_store(store)) as opened:
             write(f"{opened.path}: {opened.path.stat().st_size / 1e6:.1f} MB")
-            for source, here, labelled, gone in opened.counts():
-                write(f"  {source}: {counted(here, 'report')}, {labelled:,} of them labelled; {gone:,} gone")
-            copied = opened.copied()
+            for source, here, labelled, gone in opened.count_reports():
+                write(f"  {source}: {format_count(here, 'report')}, {labelled:,} of them labelled; {gone:,} gone")
+            copied = opened.count_copied()
             if copied:
                 write(f"  {copied:,} left out of the export, as copies of others")
-            gatherings = opened.gatherings()
+            gatherings = opened.list_gatherings()
             if gatherings:
                 write("gatherings:")
             for name, finished, updated in gatherings:
@@ -145,7 +145,7 @@ def status(*, store: Path | None) -> int:
     return run_command(work)
 
 
-def _until_later(work: Callable[[], int]) -> int:
+def _run_until_later(work: Callable[[], int]) -> int:
     try:
         return work()
     except Later as later:
@@ -153,7 +153,7 @@ def _until_later(work: Callable[[], int]) -> int:
         return LATER
 
 
-def _sources(
+def _make_sources(
     what: str, since: str, pulls: bool, search: str, tags: Sequence[str], archive: Path | None, pages: Path | None,
     manner: Manner, store: Store,
 ) -> list[tuple[ReportSource, Client | None]]:  # fmt: skip
@@ -165,11 +165,11 @@ def _sources(
     page = _GITHUB_PAGE.match(what)
     service = f"github:{page[1]}" if page else what
     name, _, repository = service.partition(":")
-    _no_stray_options(name, pulls=pulls, search=search, tags=tags, archive=archive, pages=pages)
+    _refuse_stray_options(name, pulls=pulls, search=search, tags=tags, archive=archive, pages=pages)
     if name == "github":
         from .sources.github import Listed, Searched
 
-        server = _github(manner)
+        server = _make_github(manner)
         kinds = ("issue", "pull") if pulls else ("issue",)
         if search:
             query = f"repo:{repository} {search}" if repository else search
@@ -180,20 +180,20 @@ def _sources(
     if service == "stack-exchange":
         from .sources.stack_exchange import Tagged
 
-        exchange = _stack_exchange(manner)
+        exchange = _make_stack_exchange(manner)
         return [(Tagged(exchange, tag, since=since), exchange.client) for tag in tags or ("ros", "ros2")]
     if service == "ros-answers":
         if pages:
             return [(ros_answers.SavedPages(pages, since=since), None)]
         if manner.api:
-            client = _client("Askbot", manner, spacing=0.5)
+            client = _make_client("Askbot", manner, spacing=0.5)
             return [(ros_answers.Askbot(client, manner.api, since=since), client)]
-        place = archive or _tarball(store, manner, say)
-        return [(ros_answers.Archive(place, since=since, known=store.digest), None)]
+        place = archive or _fetch_tarball(store, manner, say)
+        return [(ros_answers.Archive(place, since=since, known=store.read_digest), None)]
     raise CorpusError(f"{what}: is no source; write github:owner/name, ros-answers or stack-exchange")
 
 
-def _no_stray_options(name: str, **given: object) -> None:
+def _refuse_stray_options(name: str, **given: object) -> None:
     """An option that a source does not know is named, rather than passed over."""
     known = {"github": ("pulls", "search"), "stack-exchange": ("tags",), "ros-answers": ("archive", "pages")}
     for option, value in given.items():
@@ -202,16 +202,16 @@ def _no_stray_options(name: str, **given: object) -> None:
             raise CorpusError(f"--{flag}: says nothing to {name}; leave it out")
 
 
-def _gathered(source: ReportSource, client: Client | None, store: Store, manner: Manner) -> None:
+def _gather_source(source: ReportSource, client: Client | None, store: Store, manner: Manner) -> None:
     from . import gather as jobs
 
     with Reporter(source.name, verbose=manner.verbose, quiet=manner.quiet) as reporter:
         if client is not None:
-            client.tell = reporter.line
-        taken = jobs.gather(source, store, reporter.page)
+            client.tell = reporter.print_line
+        taken = jobs.gather(source, store, reporter.report_page)
     for line in getattr(source, "unread", ()):
         say(f"rosimpact: left out: {line}")
-    write(f"{source.name}: {outcome(taken)}")
+    write(f"{source.name}: {describe_outcome(taken)}")
 
 
 def _ask_for_missing(todo: dict[str, list[str]], store: Store, archive: Path | None, manner: Manner) -> None:
@@ -224,12 +224,12 @@ def _ask_for_missing(todo: dict[str, list[str]], store: Store, archive: Path | N
         if not ids:
             continue
         with Reporter(f"hydrate {source}", verbose=manner.verbose, quiet=manner.quiet) as reporter:
-            service = _services(store, archive, manner, reporter)(source, len(ids))
-            jobs.hydrate(service, source, ids, store, reporter.page)
+            service = _make_service_finder(store, archive, manner, reporter)(source, len(ids))
+            jobs.hydrate(service, source, ids, store, reporter.report_page)
 
 
 def _tell_hydrated(store: Store, ids: list[str]) -> None:
-    kept = {id: store.kept(id) for id in ids}
+    kept = {id: store.find_kept(id) for id in ids}
     gone = [id for id, known in kept.items() if known is not None and known.gone]
     here = sum(known is not None and not known.gone for known in kept.values())
     for id in gone:
@@ -238,65 +238,67 @@ def _tell_hydrated(store: Store, ids: list[str]) -> None:
     write(f"{len(ids):,} labelled: {here:,} at hand, {len(gone):,} gone, {rest:,} to be gathered")
 
 
-def _services(store: Store, archive: Path | None, manner: Manner, reporter: Reporter) -> Callable[[str, int], Service]:
+def _make_service_finder(
+    store: Store, archive: Path | None, manner: Manner, reporter: Reporter
+) -> Callable[[str, int], Service]:
     """Who is asked for reports of a source, by its name and how many they are."""
 
-    def service(source: str, count: int) -> Service:
+    def make_service(source: str, count: int) -> Service:
         if source == "github":
-            server = _github(manner)
-            server.client.tell = reporter.line
+            server = _make_github(manner)
+            server.client.tell = reporter.print_line
             _tell_quota(server, count, reporter)
             return server
         if source == "robotics-se":
-            exchange = _stack_exchange(manner._replace(api=""))
-            exchange.client.tell = reporter.line
+            exchange = _make_stack_exchange(manner._replace(api=""))
+            exchange.client.tell = reporter.print_line
             return exchange
         from .sources import ros_answers
 
         if archive is None and count <= _SINGLE_FILES:
-            client = _client("the archive of ROS Answers", manner, tell=reporter.line)
+            client = _make_client("the archive of ROS Answers", manner, tell=reporter.print_line)
             return ros_answers.ArchivedFiles(client, ros_answers.FILES)
-        return ros_answers.Archive(archive or _tarball(store, manner, reporter.line))
+        return ros_answers.Archive(archive or _fetch_tarball(store, manner, reporter.print_line))
 
-    return service
+    return make_service
 
 
 def _tell_quota(server: GitHub, count: int, reporter: Reporter) -> None:
     """Says beforehand when the quota will not do, and what helps."""
-    quota = server.quota()
+    quota = server.fetch_quota()
     if quota is None or quota.remaining >= count:
         return
     hours = (count - quota.remaining) / max(1, quota.limit)
     cure = "" if server.has_token else "; GITHUB_TOKEN raises it to 5,000"
-    reporter.line(
-        f"GitHub: {counted(count, 'report')} to ask for, {counted(quota.remaining, 'request')} left of "
-        f"{quota.limit:,} an hour: that is {span(hours * 3600)} or more{cure}"
+    reporter.print_line(
+        f"GitHub: {format_count(count, 'report')} to ask for, {format_count(quota.remaining, 'request')} left of "
+        f"{quota.limit:,} an hour: that is {format_span(hours * 3600)} or more{cure}"
     )
 
 
-def _client(service: str, manner: Manner, **more) -> Client:
+def _make_client(service: str, manner: Manner, **more) -> Client:
     return Client(service, patience=manner.wait * 60, **more)
 
 
-def _github(manner: Manner) -> GitHub:
+def _make_github(manner: Manner) -> GitHub:
     from .sources import github
-    from .tokens import github_token
+    from .tokens import find_github_token
 
-    api = service_address(manner.api or github.API, github.API)
-    token = github_token(api)
-    return github.GitHub(_client("GitHub", manner, secrets=[token]), api, token)
+    api = normalize_address(manner.api or github.API, github.API)
+    token = find_github_token(api)
+    return github.GitHub(_make_client("GitHub", manner, secrets=[token]), api, token)
 
 
-def _stack_exchange(manner: Manner) -> StackExchange:
+def _make_stack_exchange(manner: Manner) -> StackExchange:
     from .sources import stack_exchange
-    from .tokens import stack_exchange_key
+    from .tokens import find_stack_exchange_key
 
-    api = service_address(manner.api or stack_exchange.API, stack_exchange.API)
-    key = stack_exchange_key(api)
-    return stack_exchange.StackExchange(_client("Stack Exchange", manner, spacing=0.1, secrets=[key]), api, key)
+    api = normalize_address(manner.api or stack_exchange.API, stack_exchange.API)
+    key = find_stack_exchange_key(api)
+    return stack_exchange.StackExchange(_make_client("Stack Exchange", manner, spacing=0.1, secrets=[key]), api, key)
 
 
-def _tarball(store: Store, manner: Manner, tell: Callable[[str], None]) -> Path:
+def _fetch_tarball(store: Store, manner: Manner, tell: Callable[[str], None]) -> Path:
     """The archive as a file beside the store, fetched anew once a day. tell: called with a line for each wait, too."""
     from .sources import ros_answers
 
@@ -304,19 +306,19 @@ def _tarball(store: Store, manner: Manner, tell: Callable[[str], None]) -> Path:
     if not file.exists() or time.time() - file.stat().st_mtime > _TARBALL_SECONDS:
         if not manner.quiet:
             tell("fetching the archive of ROS Answers")
-        client = _client("the archive of ROS Answers", manner, tell=tell)
+        client = _make_client("the archive of ROS Answers", manner, tell=tell)
         ros_answers.fetch_archive(client, file, ros_answers.TARBALL)
     return file
 
 
-def _existing(chosen: Path | None) -> Path:
+def _find_store(chosen: Path | None) -> Path:
     path = store_path(chosen)
     if not path.exists():
         raise CorpusError(f"{path}: is not there; gather something first with `rosimpact corpus gather`")
     return path
 
 
-def _day(since: str) -> str:
+def _parse_day(since: str) -> str:
     if not since:
         return ""
     try:

@@ -53,7 +53,7 @@ class Keyboard:
         os.set_blocking(self._signals, False)
         self._old_wakeup = signal.set_wakeup_fd(self._signalled, warn_on_full_buffer=False)
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGWINCH):
-            self._handlers[number] = signal.signal(number, _ignored)
+            self._handlers[number] = signal.signal(number, _ignore_signal)
         tty.setcbreak(self._input)
         mode = termios.tcgetattr(self._input)
         mode[3] &= ~termios.ISIG
@@ -75,7 +75,7 @@ class Keyboard:
     def read(self) -> str:
         """The next key: a character, or a name such as `<up>`; pasted text is one key that starts with PASTE."""
         while True:
-            key = self._next()
+            key = self._take_key()
             if key:
                 return key
             if self._ended:
@@ -84,19 +84,19 @@ class Keyboard:
             if signalled:
                 return signalled
 
-    def _next(self) -> str:
+    def _take_key(self) -> str:
         """A key out of what has arrived; empty when more is needed."""
         if not self._waiting:
             return ""
         if self._waiting[0] != "\x1b":
             return self._take(1)
-        while len(self._waiting) < 2 and self._arrived():
+        while len(self._waiting) < 2 and self._has_arrived():
             pass
         if len(self._waiting) == 1 or self._waiting[1] not in "[O":
             return self._take(1)
         end = 2
         while True:
-            while end >= len(self._waiting) and self._arrived():
+            while end >= len(self._waiting) and self._has_arrived():
                 pass
             if end >= len(self._waiting):
                 break
@@ -104,10 +104,10 @@ class Keyboard:
             if "@" <= self._waiting[end - 1] <= "~":
                 break
         if self._waiting[:end] == _PASTE_START:
-            return self._pasted()
+            return self._take_paste()
         return self._take(end)
 
-    def _pasted(self) -> str:
+    def _take_paste(self) -> str:
         while _PASTE_END not in self._waiting and not self._ended:
             self._fill(None)
         text, _, self._waiting = self._waiting.partition(_PASTE_END)
@@ -118,7 +118,7 @@ class Keyboard:
         # An unknown sequence is a name that nobody listens to.
         return _NAMES.get(text, text if len(text) == 1 else "<unknown>")
 
-    def _arrived(self) -> bool:
+    def _has_arrived(self) -> bool:
         before = len(self._waiting)
         return not self._fill(_SEQUENCE_SECONDS) and len(self._waiting) > before
 
@@ -142,5 +142,5 @@ class Keyboard:
         return ""
 
 
-def _ignored(number: int, frame: object) -> None:
+def _ignore_signal(number: int, frame: object) -> None:
     """The wake-up pipe brings the signal; nothing is to be done here."""

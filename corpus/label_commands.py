@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..edges.console import counted, escape_json, json_text, run_command, say, visible, write, write_json
-from .report import LABELS_FILE, SOURCES, CorpusError, Report, repository_of
+from ..edges.console import escape, escape_json, format_count, format_json, run_command, say, write, write_json
+from .report import LABELS_FILE, SOURCES, CorpusError, Report, find_repository
 
 if TYPE_CHECKING:
     from .labelling import Suggest
@@ -34,30 +34,30 @@ def _label(
         if source not in SOURCES:
             raise CorpusError(f"--source {source}: unknown; choose one of {', '.join(SOURCES)}")
     file = labels or _own_labels()
-    name = annotator.strip() or _login()
-    from .labelling import Session, chosen, current_labels, journal_of, offered, read_journal
+    name = annotator.strip() or _find_login()
+    from .labelling import Session, find_journal, read_current_labels, read_journal, select_offered, select_reports
 
     if not listed:
         from .label_screen import need_terminal
 
         need_terminal()
-    there = _reports(reports)
+    there = _load_reports(reports)
     _need_repositories(repositories, there)
-    texts = chosen(there, sources, repositories)
+    texts = select_reports(there, sources, repositories)
     if listed:
-        found = current_labels(file)
-        shown = offered(texts, found, read_journal(journal_of(file)), mode, name)
+        found = read_current_labels(file)
+        shown = select_offered(texts, found, read_journal(find_journal(file)), mode, name)
         for report in shown:
             known = found.get(report.id)
             given = "\t" + " / ".join(known.annotators) if known and mode == "disagreements" else ""
-            write(f"{visible(report.id)}{given}\t{_line(report.title)}")
-        say(f"{len(shown):,} of {counted(len(texts), 'report')}")
+            write(f"{escape(report.id)}{given}\t{_format_line(report.title)}")
+        say(f"{len(shown):,} of {format_count(len(texts), 'report')}")
         return 0
     from .label_screen import run
 
     with Session(file, name, mode, texts) as session:
         if not session.queue:
-            say(_nothing(mode, texts))
+            say(_explain_empty(mode, texts))
             return 0
         run(session, suggest)
         done, left = session.done, len(session.queue)
@@ -65,16 +65,16 @@ def _label(
     return 0
 
 
-def _nothing(mode: str, texts: list[Report]) -> str:
+def _explain_empty(mode: str, texts: list[Report]) -> str:
     if not texts:
         return "no report is left by --source and --repository; leave one of them out"
     kind = {"first": "unlabelled", "second": "read by one annotator other than you", "disagreements": "disputed"}[mode]
-    return f"none of {counted(len(texts), 'report')} is {kind}"
+    return f"none of {format_count(len(texts), 'report')} is {kind}"
 
 
 def _need_repositories(names: Sequence[str], reports: list[Report]) -> None:
     """Raises CorpusError for a repository of which there is no report: its name is misspelt, or it is not gathered."""
-    there = {repository_of(report.id) for report in reports} if names else set()
+    there = {find_repository(report.id) for report in reports} if names else set()
     for name in names:
         if name.lower() not in there:
             raise CorpusError(
@@ -90,7 +90,7 @@ def _own_labels() -> Path:
     raise CorpusError("label: no file for the labels; give one with --labels, it is made when it is not there")
 
 
-def _reports(chosen: Path | None) -> list[Report]:
+def _load_reports(chosen: Path | None) -> list[Report]:
     from .store import open_reports, store_path
 
     path = store_path(chosen)
@@ -99,7 +99,7 @@ def _reports(chosen: Path | None) -> list[Report]:
     return list(open_reports(path))
 
 
-def _login() -> str:
+def _find_login() -> str:
     import getpass
 
     try:
@@ -108,42 +108,42 @@ def _login() -> str:
         raise CorpusError("label: nobody knows who you are; give a name with --annotator") from None
 
 
-def _line(text: str) -> str:
-    return visible(" ".join(text.split()))
+def _format_line(text: str) -> str:
+    return escape(" ".join(text.split()))
 
 
-def stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
+def print_stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
     """Prints the numbers of labels, and draws them into a folder. Returns the exit status."""
-    return run_command(lambda: _stats(labels, reports, format, plots))
+    return run_command(lambda: _print_stats(labels, reports, format, plots))
 
 
-def _stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
+def _print_stats(labels: Path | None, reports: Path | None, format: str, plots: Path | None) -> int:
     if format not in FORMATS:
         raise CorpusError(f"--format {format}: unknown; choose text or json")
     if plots is not None:
         from .plots import need_plots
 
         need_plots(plots)
-    from .labelling import current_labels
-    from .stats import as_json, print_text, stats_of
+    from .labelling import read_current_labels
+    from .stats import compute_stats, print_text, render_json
     from .store import open_reports, store_path
 
     file = labels or LABELS_FILE
     if not file.exists():
         raise CorpusError(f"{file}: is not there; give a labels file with --labels")
-    found = list(current_labels(file).values())
+    found = list(read_current_labels(file).values())
     path = store_path(reports)
     texts = open_reports(path) if reports is not None or path.exists() else None
-    numbers = stats_of(found, texts)
+    numbers = compute_stats(found, texts)
     if format == "json":
-        write_json(escape_json(as_json(numbers)))
+        write_json(escape_json(render_json(numbers)))
     else:
         print_text(numbers)
     if plots is not None:
         from .plots import draw
 
         written = draw(numbers, plots)
-        say(f"{counted(len(written), 'plot')} in {plots}")
+        say(f"{format_count(len(written), 'plot')} in {plots}")
     return 0
 
 
@@ -156,7 +156,7 @@ def _import_robust(folder: Path, output: Path | None, format: str) -> int:
     if format not in FORMATS:
         raise CorpusError(f"--format {format}: unknown; choose text or json")
     from .report import write_rows
-    from .robust import CONFIDENCES, read_robust, rows_of, summary
+    from .robust import CONFIDENCES, make_rows, read_robust, summarize
 
     records = read_robust(folder)
     say(records.licence)
@@ -165,13 +165,13 @@ def _import_robust(folder: Path, output: Path | None, format: str) -> int:
     if format == "json":
         import msgspec
 
-        write_json(json_text(msgspec.to_builtins(records.mapped)))
+        write_json(format_json(msgspec.to_builtins(records.mapped)))
     else:
         write(f"{'':16}{''.join(f'{name:>10}' for name in CONFIDENCES)}")
-        for name, counts in summary(records.mapped).items():
+        for name, counts in summarize(records.mapped).items():
             write(f"{name:16}{''.join(f'{counts[level]:>10,}' for level in CONFIDENCES)}")
-        write(counted(len(records.mapped), "record"))
+        write(format_count(len(records.mapped), "record"))
     if output is not None:
-        written = write_rows(output, rows_of(records.mapped))
-        say(f"{output}: {counted(written, 'label')}; texts come with `rosimpact corpus hydrate --labels {output}`")
+        written = write_rows(output, make_rows(records.mapped))
+        say(f"{output}: {format_count(written, 'label')}; texts come with `rosimpact corpus hydrate --labels {output}`")
     return 0

@@ -18,7 +18,7 @@ from rich.segment import Segment
 from rich.table import Table
 from rich.text import Text
 
-from ..edges.console import visible_lines
+from ..edges.console import escape_lines
 from .labelling import WHY_LIMIT, GivenLabel, Session, Suggest
 from .report import KINDS, LABELS, PHASES, CorpusError, Report
 
@@ -57,7 +57,7 @@ class Screen:
         self._guide_top = 0
         self._page = 10
         self._lines: dict[tuple[str, int, bool], list[list[Segment]]] = {}
-        self._fresh()
+        self._start_report()
 
     def press(self, key: str) -> None:
         """Does what a key asks for. Raises CorpusError when an answer cannot be written."""
@@ -72,20 +72,20 @@ class Screen:
         if self.step == "why":
             self._write(key[len(PASTE) :] if key.startswith(PASTE) else key)
         elif not key.startswith(PASTE):  # pasted text is no row of commands
-            self._command(key)
+            self._apply_key(key)
 
-    def _fresh(self) -> None:
+    def _start_report(self) -> None:
         """Starts on the current report."""
-        self._fresh_answer()
+        self._reset_answer()
         self._suggestion = ""
         self._top = 0
         self._raw = False
 
-    def _fresh_answer(self) -> None:
+    def _reset_answer(self) -> None:
         self.step = "label" if self.session.current else "done"
         self._label, self._kind, self._phase, self._why = "", None, "", ""
 
-    def _command(self, key: str) -> None:
+    def _apply_key(self, key: str) -> None:
         if key == "q":
             self.ended = True
         elif key == "u":
@@ -95,10 +95,10 @@ class Screen:
         elif self.step == "done":
             return
         elif key == "<escape>":
-            self._back()
+            self._go_back()
         elif key == "n":
             self.session.skip()
-            self._fresh()
+            self._start_report()
         elif key == "r":
             self._raw, self._top = not self._raw, 0
         elif key == "s":
@@ -115,13 +115,13 @@ class Screen:
                  "<pageup>": -self._page, "<home>": -(10**9), "g": -(10**9), "<end>": 10**9, "G": 10**9}  # fmt: skip
         self._top = max(0, self._top + moves.get(key, 0))
 
-    def _choices(self) -> tuple[str, ...]:
+    def _list_choices(self) -> tuple[str, ...]:
         if self.step == "kind":
             return KINDS[self._label]
         return PHASES if self.step == "phase" else LABELS
 
     def _choose(self, number: int) -> None:
-        choices = self._choices()
+        choices = self._list_choices()
         if not 1 <= number <= len(choices):
             self.message = f"{number} stands for nothing here; press 1 to {len(choices)}"
             return
@@ -134,7 +134,7 @@ class Screen:
         else:
             self._phase, self.step = choice, "why"
 
-    def _back(self) -> None:
+    def _go_back(self) -> None:
         if self.step == "why":
             self.step, self._phase = "phase", ""
         elif self.step == "phase" and self._label in KINDS:
@@ -158,9 +158,9 @@ class Screen:
     def _write(self, key: str) -> None:
         """Edits the reason."""
         if key == "<enter>":
-            self._answer()
+            self._submit_answer()
         elif key == "<escape>":
-            self._back()
+            self._go_back()
         elif key == "<backspace>":
             self._why = self._why[:-1]
         elif key == "<clear>":
@@ -169,25 +169,25 @@ class Screen:
             text = "".join(sign if sign.isprintable() else " " for sign in key)
             self._why = (self._why + text)[:WHY_LIMIT]
 
-    def _answer(self) -> None:
+    def _submit_answer(self) -> None:
         if not self._why.strip():
             self.message = "say why in a few words of your own, then press Enter"
             return
         given = GivenLabel(self._label, self._kind, self._phase, " ".join(self._why.split()))
         try:
-            self.session.answer(given)
+            self.session.record_answer(given)
         except ValueError as error:
             self.message = f"the answer {error}; choose again"
-            self._fresh_answer()
+            self._reset_answer()
             return
-        self._fresh()
+        self._start_report()
 
     def _undo(self) -> None:
         undone = self.session.undo()
         if undone is None:
             self.message = "nothing of yours to take back, or it has been changed since"
             return
-        self._fresh()
+        self._start_report()
         given = undone.given.label if undone.given else ""
         self.message = f"taken back: {undone.id} ({given})"
         if self.session.current is None or self.session.current.id != undone.id:
@@ -202,7 +202,7 @@ class Screen:
         except Exception as error:  # whatever is wrong with the classifier, labelling goes on
             self.message = f"no suggestion: {' '.join(str(error).split())[:150]}"
             return
-        self.session.suggestion_seen()
+        self.session.note_suggestion_seen()
         ranked = sorted(shares.items(), key=lambda item: -item[1])
         self._suggestion = f"{label}   " + "  ".join(f"{name} {share:.2f}" for name, share in ranked)
 
@@ -222,34 +222,34 @@ class Screen:
             side.size = max(12, height * 3 // 5)
             self._page = max(1, height - side.size - 2)
             report_width = side_width = width
-        question = self._question()
+        question = self._render_question()
         tall = len(console.render_lines(question, console.options.update(width=side_width - 4, height=None))) + 2
         side_height = height if width >= _NARROW else side.size
         guide = Layout(name="guide")
-        asked = Layout(Panel(question, title=self._progress(), border_style="cyan"), size=min(tall, side_height))
+        asked = Layout(Panel(question, title=self._format_progress(), border_style="cyan"), size=min(tall, side_height))
         if side_height - tall >= 5:
             side.split_column(asked, guide)
-            guide.update(self._guide_panel(console, side_width - 4, side_height - tall - 2))
+            guide.update(self._render_guide(console, side_width - 4, side_height - tall - 2))
         else:
             side.split_column(asked)
         report.update(self._report_panel(console, report_width - 4))
         return layout
 
-    def _progress(self) -> str:
+    def _format_progress(self) -> str:
         return f"{_TITLES[self.session.mode]}: {self.session.done:,} done, {len(self.session.queue):,} to go"
 
     def _report_panel(self, console: Console, width: int) -> Panel:
         report = self.session.current
         if report is None:
             return Panel(Text("Nothing is left to read here. u takes the last answer back, q ends."), title="done")
-        lines = self._laid_out(report, console, width)
+        lines = self._lay_out(report, console, width)
         self._top = max(0, min(self._top, len(lines) - self._page))
         shown = lines[self._top : self._top + self._page]
         below = len(lines) - self._top - len(shown)
         more = f"{below:,} more lines" if below else "end"
         return Panel(_Lines(shown), title=Text(clean(report.id)), subtitle=more, border_style="green")
 
-    def _laid_out(self, report: Report, console: Console, width: int) -> list[list[Segment]]:
+    def _lay_out(self, report: Report, console: Console, width: int) -> list[list[Segment]]:
         key = (report.id, width, self._raw)
         if key not in self._lines:
             self._lines.clear()
@@ -262,7 +262,7 @@ class Screen:
             )
             options = console.options.update(width=max(10, width), height=None)
             plain = self._raw or len(report.body) > _MARKDOWN_LIMIT
-            body = Text(clean(report.body)) if plain else as_markdown(report.body)
+            body = Text(clean(report.body)) if plain else make_markdown(report.body)
             try:
                 laid = console.render_lines(body, options, pad=False)
             except Exception:  # no text may stop the work: as posted, it can always be shown
@@ -270,12 +270,12 @@ class Screen:
             self._lines[key] = [*console.render_lines(head, options, pad=False), *laid]
         return self._lines[key]
 
-    def _guide_panel(self, console: Console, width: int, height: int) -> Panel:
-        lines = console.render_lines(as_markdown(self._guide), console.options.update(width=width, height=None))
+    def _render_guide(self, console: Console, width: int, height: int) -> Panel:
+        lines = console.render_lines(make_markdown(self._guide), console.options.update(width=width, height=None))
         self._guide_top = max(0, min(self._guide_top, len(lines) - height))
         return Panel(_Lines(lines[self._guide_top : self._guide_top + height]), title="guide", border_style="dim")
 
-    def _question(self) -> RenderableType:
+    def _render_question(self) -> RenderableType:
         parts: list[RenderableType] = []
         if self.session.mode == "disagreements" and self.session.current:
             for key, given in zip("ab", self.session.opinions, strict=False):
@@ -291,7 +291,7 @@ class Screen:
             parts.append(Text("Enter saves, esc goes back", style="dim"))
         elif self.step != "done":
             parts.append(Text(f"{chosen} \u203a {self.step}?" if chosen else f"{self.step}?", style="bold"))
-            parts += [Text(f" {i}  {choice}") for i, choice in enumerate(self._choices(), 1)]
+            parts += [Text(f" {i}  {choice}") for i, choice in enumerate(self._list_choices(), 1)]
         if self._suggestion:
             parts.append(Text(clean(f"suggestion: {self._suggestion}"), style="yellow"))
         if self.message:
@@ -325,11 +325,11 @@ def clean(text: str) -> str:
         else " "
         if category(sign) == "Zs"
         else sign.encode("unicode_escape").decode()
-        for sign in visible_lines(text.replace("\r\n", "\n").replace("\r", "\n").expandtabs(4))
+        for sign in escape_lines(text.replace("\r\n", "\n").replace("\r", "\n").expandtabs(4))
     )
 
 
-def as_markdown(text: str) -> Markdown:
+def make_markdown(text: str) -> Markdown:
     """A text as Markdown in which HTML is shown as it stands; rich would leave it out, and the evidence with it."""
     from markdown_it import MarkdownIt
 

@@ -19,8 +19,8 @@ from types import TracebackType
 import msgspec
 
 from ..edges.files import check_writable_path, read_file
-from ..edges.limits import limits
-from .report import CorpusError, Label, Report, faults_of, read_labels, repository_of, write_rows
+from ..edges.limits import get_limits
+from .report import CorpusError, Label, Report, find_faults, find_repository, read_labels, write_rows
 
 Suggest = Callable[[str, str], tuple[str, dict[str, float]]]
 """Title and body to the likeliest label and the probability of each. Raises UserError."""
@@ -60,7 +60,7 @@ class JournalEvent(msgspec.Struct, frozen=True, omit_defaults=True):
     after: Label | None = None
 
 
-def journal_of(labels_file: Path) -> Path:
+def find_journal(labels_file: Path) -> Path:
     """The journal beside a labels file: `labels.jsonl` has `labels.journal.jsonl`."""
     return labels_file.with_name(f"{labels_file.stem}.journal.jsonl")
 
@@ -69,26 +69,26 @@ def read_journal(path: Path) -> list[JournalEvent]:
     """The lines of a journal; empty when there is none. A last line that a crash cut short is left out.
 
     Raises CorpusError."""
-    return _parsed(path, _bytes_of(path))[0]
+    return _parse_journal(path, _read_bytes(path))[0]
 
 
-def current_labels(labels_file: Path) -> dict[str, Label]:
+def read_current_labels(labels_file: Path) -> dict[str, Label]:
     """The labels by id, with what the journal holds and the file does not yet. A missing file has no labels.
 
     Raises CorpusError."""
     labels = {label.id: label for label in read_labels(labels_file)} if labels_file.exists() else {}
-    for event in unmerged(read_journal(journal_of(labels_file))):
+    for event in select_unmerged(read_journal(find_journal(labels_file))):
         _apply(labels, event)
     return labels
 
 
-def unmerged(events: Sequence[JournalEvent]) -> list[JournalEvent]:
+def select_unmerged(events: Sequence[JournalEvent]) -> list[JournalEvent]:
     """The answers and undos since the last `merged` line."""
     last = max((i for i, event in enumerate(events) if event.event == "merged"), default=-1)
     return list(events[last + 1 :])
 
 
-def standing(events: Iterable[JournalEvent]) -> list[JournalEvent]:
+def list_valid(events: Iterable[JournalEvent]) -> list[JournalEvent]:
     """The answers that were not taken back, oldest first."""
     found: list[JournalEvent] = []
     for event in events:
@@ -102,26 +102,26 @@ def standing(events: Iterable[JournalEvent]) -> list[JournalEvent]:
     return found
 
 
-def chosen(reports: Iterable[Report], sources: Sequence[str], repositories: Sequence[str]) -> list[Report]:
+def select_reports(reports: Iterable[Report], sources: Sequence[str], repositories: Sequence[str]) -> list[Report]:
     """The reports of these sources and repositories (empty: of all), each once, without migrated copies of another."""
     wanted = {name.lower() for name in repositories}
     found: dict[str, Report] = {}
     for report in reports:
         if report.same_as or (sources and report.source not in sources):
             continue
-        if not wanted or repository_of(report.id) in wanted:
+        if not wanted or find_repository(report.id) in wanted:
             found.setdefault(report.id, report)
     return list(found.values())
 
 
-def offered(
+def select_offered(
     reports: Iterable[Report], labels: dict[str, Label], events: Sequence[JournalEvent], mode: str, annotator: str
 ) -> list[Report]:
     """The reports that a session in this mode would show to this annotator, in the order of the reports.
 
     Nobody reads second what they read first, as far as the journal knows.
     """
-    own = {event.id for event in standing(events) if event.annotator == annotator and event.mode != "disagreements"}
+    own = {event.id for event in list_valid(events) if event.annotator == annotator and event.mode != "disagreements"}
 
     def open_for(id: str) -> bool:
         label = labels.get(id)
@@ -136,7 +136,7 @@ def offered(
     return [report for report in reports if open_for(report.id)]
 
 
-def answered(before: Label | None, id: str, given: GivenLabel, mode: str) -> Label:
+def apply_answer(before: Label | None, id: str, given: GivenLabel, mode: str) -> Label:
     """The label that an answer makes. before: the row so far, None for a first reading.
 
     Two readings agree when label, kind and phase are the same; else the first one stands for now, as `disputed`.
@@ -157,10 +157,10 @@ def answered(before: Label | None, id: str, given: GivenLabel, mode: str) -> Lab
     return label
 
 
-def opinions(label: Label, events: Sequence[JournalEvent]) -> list[GivenLabel]:
+def list_opinions(label: Label, events: Sequence[JournalEvent]) -> list[GivenLabel]:
     """What each annotator said of a disputed report, first and second, without names. Kind, phase and reason are empty
     where only the label is at hand."""
-    answers = [event for event in standing(events) if event.id == label.id and event.given]
+    answers = [event for event in list_valid(events) if event.id == label.id and event.given]
     first = next((event.given for event in reversed(answers) if event.mode == "first"), None)
     second = next((event.given for event in reversed(answers) if event.mode == "second"), None)
     found = [first or GivenLabel(label.label, label.kind, label.phase, label.why)]
@@ -181,12 +181,12 @@ class Session:
         self.labels_file = labels_file.resolve()
         self.annotator = annotator
         self.mode = mode
-        self._journal = _Journal(journal_of(self.labels_file))
+        self._journal = _Journal(find_journal(self.labels_file))
         try:
-            self.labels = current_labels(self.labels_file)
+            self.labels = read_current_labels(self.labels_file)
             self._merge()
             self._reports = {report.id: report for report in reports}
-            self.queue = offered(reports, self.labels, self._journal.events, mode, annotator)
+            self.queue = select_offered(reports, self.labels, self._journal.events, mode, annotator)
         except BaseException:
             self._journal.close()
             raise
@@ -213,20 +213,20 @@ class Session:
         """What the annotators said of the current report; only when disagreements are decided, else empty."""
         if self.mode != "disagreements" or not self.queue:
             return []
-        return opinions(self.labels[self.queue[0].id], self._journal.events)
+        return list_opinions(self.labels[self.queue[0].id], self._journal.events)
 
-    def suggestion_seen(self) -> None:
+    def note_suggestion_seen(self) -> None:
         """Remembers that the classifier's suggestion on the current report was looked at."""
         if self.queue:
             self._suggested.add(self.queue[0].id)
 
-    def answer(self, given: GivenLabel) -> None:
+    def record_answer(self, given: GivenLabel) -> None:
         """Takes the answer on the current report; it is on disk when this returns. Raises ValueError, CorpusError."""
         id = self.queue[0].id
         before = self.labels.get(id)
-        after = answered(before, id, given, self.mode)
+        after = apply_answer(before, id, given, self.mode)
         event = JournalEvent(
-            "answer", _now(), self.annotator, self.mode, id, given, id in self._suggested, before, after
+            "answer", _format_now(), self.annotator, self.mode, id, given, id in self._suggested, before, after
         )
         self._journal.append(event)
         _apply(self.labels, event)
@@ -245,14 +245,14 @@ class Session:
         last = next(
             (
                 event
-                for event in reversed(standing(self._journal.events))
+                for event in reversed(list_valid(self._journal.events))
                 if event.annotator == self.annotator and event.mode == self.mode
             ),
             None,
         )
         if last is None or self.labels.get(last.id) != last.after:
             return None
-        event = msgspec.structs.replace(last, event="undo", at=_now())
+        event = msgspec.structs.replace(last, event="undo", at=_format_now())
         self._journal.append(event)
         _apply(self.labels, event)
         self.done = max(0, self.done - 1)
@@ -263,10 +263,10 @@ class Session:
 
     def _merge(self) -> None:
         """Writes the labels when the journal holds more than they do."""
-        if not unmerged(self._journal.events):
+        if not select_unmerged(self._journal.events):
             return
-        write_rows(self.labels_file, _rows(self.labels_file, self.labels))
-        self._journal.append(JournalEvent("merged", _now()))
+        write_rows(self.labels_file, _make_rows(self.labels_file, self.labels))
+        self._journal.append(JournalEvent("merged", _format_now()))
 
 
 class _Journal:
@@ -285,8 +285,8 @@ class _Journal:
             if not stat.S_ISREG(os.fstat(self._file).st_mode):
                 raise CorpusError(f"{path}: is no regular file; give another file with --labels")
             _lock(self._file, path)
-            data = _bytes_of(path)
-            self.events, whole = _parsed(path, data)
+            data = _read_bytes(path)
+            self.events, whole = _parse_journal(path, data)
             if whole < len(data):
                 os.ftruncate(self._file, whole)
             elif data and not data.endswith(b"\n"):
@@ -320,16 +320,16 @@ def _lock(file: int, path: Path) -> None:
         raise CorpusError(f"{path}: another session is labelling here; end it, or give another --labels") from None
 
 
-def _bytes_of(path: Path) -> bytes:
+def _read_bytes(path: Path) -> bytes:
     try:
-        return read_file(path, limits().report)
+        return read_file(path, get_limits().report)
     except FileNotFoundError:
         return b""
     except OSError as error:
         raise CorpusError(f"{path}: cannot be read: {error.strerror}; make it readable") from None
 
 
-def _parsed(path: Path, data: bytes) -> tuple[list[JournalEvent], int]:
+def _parse_journal(path: Path, data: bytes) -> tuple[list[JournalEvent], int]:
     """The events in a journal's bytes, and the length of what is whole."""
     decoder = msgspec.json.Decoder(JournalEvent)
     events: list[JournalEvent] = []
@@ -354,27 +354,27 @@ def _apply(labels: dict[str, Label], event: JournalEvent) -> None:
         labels[event.id] = row
 
 
-def _rows(file: Path, labels: dict[str, Label]) -> list[msgspec.Raw]:
+def _make_rows(file: Path, labels: dict[str, Label]) -> list[msgspec.Raw]:
     """The lines of a labels file. A label that did not change keeps its line to the byte, so that a diff is small."""
     lines: dict[str, tuple[Label, bytes]] = {}
     if file.exists():
-        kept = [line for line in _bytes_of(file).splitlines() if line.strip()]
+        kept = [line for line in _read_bytes(file).splitlines() if line.strip()]
         lines = {label.id: (label, line) for label, line in zip(read_labels(file), kept, strict=True)}
     order = [*(id for id in lines if id in labels), *(id for id in labels if id not in lines)]
     return [
-        msgspec.Raw(lines[id][1] if id in lines and lines[id][0] == labels[id] else _line(labels[id])) for id in order
+        msgspec.Raw(lines[id][1] if id in lines and lines[id][0] == labels[id] else _encode(labels[id])) for id in order
     ]
 
 
-def _line(label: Label) -> bytes:
+def _encode(label: Label) -> bytes:
     return json.dumps(msgspec.to_builtins(label), ensure_ascii=False).encode()
 
 
 def _check(label: Label) -> None:
-    fault = faults_of(label)
+    fault = find_faults(label)
     if fault:
         raise ValueError(fault)
 
 
-def _now() -> str:
+def _format_now() -> str:
     return datetime.now(timezone.utc).isoformat(timespec="seconds")

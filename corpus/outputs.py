@@ -12,7 +12,7 @@ from .report import CorpusError
 
 def need_file(file: Path) -> None:
     """Raises CorpusError when a file cannot be written, as far as that can be told without trying."""
-    fault = unwritable(file) if not os.path.isdir(file) else os.strerror(errno.EISDIR)
+    fault = explain_unwritable(file) if not os.path.isdir(file) else os.strerror(errno.EISDIR)
     try:
         check_writable_path(file)
     except OSError as error:
@@ -23,12 +23,12 @@ def need_file(file: Path) -> None:
 
 def need_folder(folder: Path) -> None:
     """Raises CorpusError when a folder cannot be made, or no file in it, as far as that can be told without trying."""
-    fault = unwritable(folder) if not os.path.isfile(folder) else os.strerror(errno.ENOTDIR)
+    fault = explain_unwritable(folder) if not os.path.isfile(folder) else os.strerror(errno.ENOTDIR)
     if fault:
         raise CorpusError(f"{folder}: cannot be written: {fault}; give another folder")
 
 
-def unwritable(path: Path) -> str:
+def explain_unwritable(path: Path) -> str:
     """Why a file or folder cannot be written, or made where it is not there, in the system's words; else empty."""
     nearest = next((place for place in (path, *path.parents) if os.path.exists(place)), None)
     if nearest == path and os.path.isfile(path):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 
-from ..edges.files import writing
+from ..edges.files import open_for_replacing
 from .report import CorpusError, Report
 
 _AT_ONCE = 5_000
@@ -27,7 +27,7 @@ def write_parquet(path: Path, reports: Iterable[Report]) -> int:
     count = 0
     try:
         rest = iter(reports)
-        with writing(path) as file, parquet.ParquetWriter(file, schema, compression="zstd") as writer:
+        with open_for_replacing(path) as file, parquet.ParquetWriter(file, schema, compression="zstd") as writer:
             while part := [msgspec.structs.asdict(report) for report in islice(rest, _AT_ONCE)]:
                 writer.write_table(pyarrow.Table.from_pylist(part, schema=schema))
                 count += len(part)

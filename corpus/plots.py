@@ -32,13 +32,13 @@ def draw(stats: Stats, folder: Path) -> list[Path]:
 
     try:
         with matplotlib.rc_context(STYLE):
-            return list(_drawn(stats, folder))
+            return list(_draw_plots(stats, folder))
     except OSError as error:
         raise CorpusError(f"{folder}: cannot be written: {error.strerror}; give another folder") from None
 
 
-def _drawn(stats: Stats, folder: Path) -> Iterator[Path]:
-    from .figures import LABEL_COLOURS, canvas, heat, save, stacked
+def _draw_plots(stats: Stats, folder: Path) -> Iterator[Path]:
+    from .figures import LABEL_COLOURS, draw_heatmap, draw_stacked_bars, make_canvas, save
 
     labels = {name: {name: count} for name, count in stats.labels.items()}
     kinds = {f"{label}: {kind}": {label: count} for label, row in stats.kinds.items() for kind, count in row.items()}
@@ -47,15 +47,15 @@ def _drawn(stats: Stats, folder: Path) -> Iterator[Path]:
         "kinds": ("Reports by kind", kinds),
         "phases": ("Reports by phase", stats.phases),
         "projects": ("Reports by project", dict(list(stats.projects.items())[:PROJECTS])),
-        "years": ("Reports by year", _without(stats.years, UNDATED)),
-        "distros": ("Reports by distro named in them", _without(stats.distros, NONE_NAMED)),
+        "years": ("Reports by year", _remove_row(stats.years, UNDATED)),
+        "distros": ("Reports by distro named in them", _remove_row(stats.distros, NONE_NAMED)),
     }
     for name, (title, table) in tables.items():
         if not any(sum(row.values()) for row in table.values()):
             continue
-        figure, axes = canvas(8, max(2.2, 1.2 + 0.3 * len(table)))
+        figure, axes = make_canvas(8, max(2.2, 1.2 + 0.3 * len(table)))
         series = {label: [row.get(label, 0) for row in table.values()] for label in LABELS}
-        stacked(axes, list(table), series, LABEL_COLOURS)
+        draw_stacked_bars(axes, list(table), series, LABEL_COLOURS)
         legend = axes.get_legend()
         if legend is not None and name in ("labels", "kinds"):  # the rows say it themselves
             legend.remove()
@@ -63,13 +63,15 @@ def _drawn(stats: Stats, folder: Path) -> Iterator[Path]:
         figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
         yield from save(figure, folder, name)
     if stats.agreement.reports:
-        figure, axes = canvas(8, 4.5)
-        heat(axes, [[row[b] for b in LABELS] for row in stats.agreement.confusion.values()], LABELS, LABELS, scale=1)
+        figure, axes = make_canvas(8, 4.5)
+        draw_heatmap(
+            axes, [[row[b] for b in LABELS] for row in stats.agreement.confusion.values()], LABELS, LABELS, scale=1
+        )
         axes.set_xlabel("second annotator")
         axes.set_ylabel("first annotator")
         figure.suptitle("Labels of two annotators", x=0.01, ha="left", fontweight="bold")
         yield from save(figure, folder, "agreement")
 
 
-def _without(table: Mapping[str, Mapping[str, int]] | None, row: str) -> dict[str, Mapping[str, int]]:
+def _remove_row(table: Mapping[str, Mapping[str, int]] | None, row: str) -> dict[str, Mapping[str, int]]:
     return {name: counts for name, counts in (table or {}).items() if name != row}

@@ -25,7 +25,7 @@ import requests
 from urllib3.exceptions import HTTPError, ReadTimeoutError
 
 from ..edges.documents import load_json
-from ..edges.limits import size_text
+from ..edges.limits import format_size
 from .report import CorpusError
 
 AGENT = "rosimpact-corpus (https://pypi.org/project/rosimpact)"
@@ -48,7 +48,7 @@ _SECONDARY_WORDS = re.compile(r"secondary rate limit|abuse detection|rate limit 
 class Clock:
     """The time and the waiting, so that tests need not wait."""
 
-    def now(self) -> float:
+    def get_time(self) -> float:
         """Seconds since 1970."""
         return time.time()
 
@@ -80,10 +80,10 @@ class ServiceAnswer(NamedTuple):
     headers: Mapping[str, str]
     body: bytes
 
-    def json(self) -> Any:
+    def parse_json(self) -> Any:
         """The body, parsed; halves of characters, which no file can hold, are replaced. Raises ValueError."""
         found = load_json(self.body)
-        return _whole(found) if _ESCAPED_SURROGATE.search(self.body) else found
+        return _replace_surrogates(found) if _ESCAPED_SURROGATE.search(self.body) else found
 
     @property
     def links(self) -> dict[str, str]:
@@ -138,7 +138,7 @@ class Client:
 
     def hold(self, lane: str, seconds: float, why: str) -> None:
         """Lets no request of a lane (a part of the service with limits of its own) go out for so long."""
-        until = self.clock.now() + min(seconds, _LONGEST_WAIT)
+        until = self.clock.get_time() + min(seconds, _LONGEST_WAIT)
         if until > self._not_before.get(lane, (0.0, ""))[0]:
             self._not_before[lane] = (until, why)
 
@@ -171,16 +171,16 @@ class Client:
         """The same, with the body parsed (None where the status is not 200). A body that is no JSON counts as a fault
         of the moment: gateways answer with a page of their own."""
 
-        def whole(answer: ServiceAnswer) -> str:
+        def find_fault(answer: ServiceAnswer) -> str:
             try:
-                answer.json()
+                answer.parse_json()
             except ValueError:
                 kind = answer.headers.get("content-type", "").partition(";")[0] or "something unnamed"
                 return f"answered with {kind} that is no JSON"
             return ""
 
-        answer = self._get(url, params, headers, lane, frozenset(accept), whole)
-        return answer, answer.json() if answer.status == 200 else None
+        answer = self._get(url, params, headers, lane, frozenset(accept), find_fault)
+        return answer, answer.parse_json() if answer.status == 200 else None
 
     def download(self, url: str, file: Path, headers: Mapping[str, str] | None = None) -> None:
         """Fetches a large file, whole or not at all. What a killed download of it left behind is removed."""
@@ -206,27 +206,27 @@ class Client:
         seconds = min(max(0.0, seconds), _LONGEST_WAIT)
         if seconds == 0:
             return
-        until = self.clock.now() + seconds
+        until = self.clock.get_time() + seconds
         if self.waited + seconds > self.patience:
             raise Later(
-                f"{self.service}: {why}, and says to come back {_when(until, seconds)}; "
+                f"{self.service}: {why}, and says to come back {_format_moment(until, seconds)}; "
                 "what was gathered is kept, so run the same command again then",
                 until,
             )
         if seconds >= 1:
-            self.tell(f"{self.service}: {why}; waiting {_span(seconds)}")
+            self.tell(f"{self.service}: {why}; waiting {_format_span(seconds)}")
         self.waited += seconds
         self.clock.sleep(seconds)
 
     def _get(self, url, params, headers, lane, accept, whole, target=None) -> ServiceAnswer:
-        sent = _with_query(url, params)
+        sent = _add_query(url, params)
         at = _place(url)
         limited = attempt = 0
         fault = ""
         for attempt in range(self._tries):
             self._pace(lane)
             try:
-                answer = self._once(sent, dict(headers or {}), target)
+                answer = self._send_request(sent, dict(headers or {}), target)
             except _Fault as error:
                 fault = str(error)
             else:
@@ -236,7 +236,7 @@ class Client:
                     if not fault:
                         return answer
                 elif answer.status >= 500:
-                    asked = _retry_after(answer, self.clock.now())
+                    asked = _retry_after(answer, self.clock.get_time())
                     fault = f"answered with status {answer.status}"
                     if asked is not None:
                         self.wait(asked, f"{at} {fault}")
@@ -244,12 +244,12 @@ class Client:
                 else:
                     seconds = self._limit(answer, limited)
                     if seconds is None:
-                        raise _refusal(self.service, at, answer)
+                        raise _make_refusal(self.service, at, answer)
                     limited += 1
                     fault = "is over its rate limit"
                     self.wait(seconds, "the rate limit is reached")
                     continue
-            pause = _backoff(attempt)
+            pause = _compute_backoff(attempt)
             if attempt + 1 == self._tries or self.waited + pause > self.patience:
                 break
             self.wait(pause, f"{at} {fault}")
@@ -259,7 +259,7 @@ class Client:
             "what was gathered is kept, so check the address and the network and run the same command again"
         )
 
-    def _once(self, url: str, headers: dict[str, str], target) -> ServiceAnswer:
+    def _send_request(self, url: str, headers: dict[str, str], target) -> ServiceAnswer:
         for _ in range(6):
             self.requests += 1
             try:
@@ -279,8 +279,8 @@ class Client:
             with response:
                 place = response.headers.get("location", "")
                 if response.status_code in _REDIRECTS and place:
-                    onward = _onward(self.service, url, place)
-                    if _origin(onward) != _origin(url):
+                    onward = _resolve_redirect(self.service, url, place)
+                    if _get_origin(onward) != _get_origin(url):
                         headers.pop("Authorization", None)
                     url = onward
                     continue
@@ -288,11 +288,11 @@ class Client:
                     response.status_code,
                     urlunsplit(urlsplit(url)._replace(query="")),
                     {name.lower(): value for name, value in response.headers.items()},
-                    self._body(response, target if response.status_code == 200 else None),
+                    self._read_body(response, target if response.status_code == 200 else None),
                 )
         raise _Fault("redirects in circles")
 
-    def _body(self, response: requests.Response, target) -> bytes:
+    def _read_body(self, response: requests.Response, target) -> bytes:
         """The whole body; a fault when it stalls, ends early or cannot be unpacked. Raises CorpusError for one that is
         too large, packed or unpacked."""
         largest, seconds = (_LARGEST, 10 * self._timeout) if target is None else (_LARGEST_FILE, _FILE_SECONDS)
@@ -303,11 +303,11 @@ class Client:
             target.seek(0)
             target.truncate()
         try:
-            for chunk in _unpacked(response):
+            for chunk in _unpack_body(response):
                 size += len(chunk)
                 if size > largest:
                     raise CorpusError(
-                        f"{self.service}: {_place(response.url or '')} sends more than {size_text(largest)}; "
+                        f"{self.service}: {_place(response.url or '')} sends more than {format_size(largest)}; "
                         "check the address"
                     )
                 if time.monotonic() > until:
@@ -328,21 +328,21 @@ class Client:
         return b"".join(parts)
 
     def _pace(self, lane: str) -> None:
-        now = self.clock.now()
+        now = self.clock.get_time()
         until, why = self._not_before.get(lane, (0.0, ""))
         if until > now:
             self.wait(until - now, why)
-            now = self.clock.now()
+            now = self.clock.get_time()
         rest = self._last + self._spacing - now
         if self._spacing and rest > 0:
             self.clock.sleep(min(rest, self._spacing))
-        self._last = self.clock.now()
+        self._last = self.clock.get_time()
 
     def _heed(self, answer: ServiceAnswer, lane: str) -> None:
         """Keeps in mind that nothing remains of a quota, rather than running into its end."""
         reset = answer.headers.get("x-ratelimit-reset", "")
         if answer.headers.get("x-ratelimit-remaining") == "0" and _is_number(reset):
-            self.hold(lane, int(reset) + 1 - self.clock.now(), "the rate limit is reached")
+            self.hold(lane, int(reset) + 1 - self.clock.get_time(), "the rate limit is reached")
 
     def _limit(self, answer: ServiceAnswer, before: int) -> float | None:
         """Seconds to wait after a 4xx, in the order that GitHub's documentation gives; None when it is no limit.
@@ -351,12 +351,12 @@ class Client:
         """
         if answer.status not in (403, 429):
             return None
-        asked = _retry_after(answer, self.clock.now())
+        asked = _retry_after(answer, self.clock.get_time())
         if asked is not None:
             return asked
         reset = answer.headers.get("x-ratelimit-reset", "")
         if answer.headers.get("x-ratelimit-remaining") == "0" and _is_number(reset):
-            return max(1.0, int(reset) + 1 - self.clock.now())
+            return max(1.0, int(reset) + 1 - self.clock.get_time())
         if answer.status == 429 or _SECONDARY_WORDS.search(answer.body[:4000].decode("utf-8", "replace")):
             return _SECONDARY * 2**before * random.uniform(1.0, 1.25)
         return None
@@ -381,7 +381,7 @@ def _remove_if_left(part: Path) -> None:
             part.unlink()
 
 
-def service_address(api: str, like: str) -> str:
+def normalize_address(api: str, like: str) -> str:
     """The address of a service without a slash at its end. like: one, for the message. Raises CorpusError when it is
     none."""
     try:
@@ -396,7 +396,7 @@ def service_address(api: str, like: str) -> str:
     return api.rstrip("/")
 
 
-def _chunks(response: requests.Response) -> Iterator[bytes]:
+def _read_chunks(response: requests.Response) -> Iterator[bytes]:
     """A body as it arrives, still packed. requests itself waits for whole chunks, so a body that drips would never be
     given up."""
     read = getattr(response.raw, "read1", None)
@@ -408,16 +408,16 @@ def _chunks(response: requests.Response) -> Iterator[bytes]:
         yield chunk
 
 
-def _unpacked(response: requests.Response) -> Iterator[bytes]:
+def _unpack_body(response: requests.Response) -> Iterator[bytes]:
     """A body in small pieces, however many bytes one that arrives stands for. Raises zlib.error."""
     coding = response.headers.get("content-encoding", "").strip().lower()
     if coding in ("", "identity"):
-        yield from _chunks(response)
+        yield from _read_chunks(response)
         return
     if coding not in ("gzip", "x-gzip"):
         raise _Fault("packed its answer in a way that was not asked for")
     unpacker = zlib.decompressobj(31)
-    for chunk in _chunks(response):
+    for chunk in _read_chunks(response):
         while chunk:
             yield unpacker.decompress(chunk, _CHUNK)
             chunk = unpacker.unconsumed_tail
@@ -426,7 +426,7 @@ def _unpacked(response: requests.Response) -> Iterator[bytes]:
         raise zlib.error("ended early")
 
 
-def _onward(service: str, url: str, place: str) -> str:
+def _resolve_redirect(service: str, url: str, place: str) -> str:
     """Where a redirect leads, which is the same host: nobody asked for another one, and who answers may not choose
     which addresses this machine asks. Raises CorpusError, and _Fault for what is no address."""
     try:
@@ -438,7 +438,7 @@ def _onward(service: str, url: str, place: str) -> str:
     if there.scheme not in ("http", "https") or not there.hostname:
         raise _Fault("redirects to an address that is none")
     encrypted = (here.scheme, there.scheme) == ("http", "https") and ports == (None, None)
-    if here.hostname != there.hostname or there.username or not (_origin(url) == _origin(onward) or encrypted):
+    if here.hostname != there.hostname or there.username or not (_get_origin(url) == _get_origin(onward) or encrypted):
         raise CorpusError(
             f"{service}: {_place(url)} redirects to {there.scheme}://{there.hostname}, which is not asked; "
             "check the address"
@@ -446,14 +446,14 @@ def _onward(service: str, url: str, place: str) -> str:
     return onward
 
 
-def _whole(value: Any) -> Any:
+def _replace_surrogates(value: Any) -> Any:
     """What was read from JSON, with U+FFFD for halves of characters."""
     if isinstance(value, str):
         return _LONE_SURROGATE.sub("\ufffd", value)
     if isinstance(value, list):
-        return [_whole(each) for each in value]
+        return [_replace_surrogates(each) for each in value]
     if isinstance(value, dict):
-        return {_whole(name): _whole(each) for name, each in value.items()}
+        return {_replace_surrogates(name): _replace_surrogates(each) for name, each in value.items()}
     return value
 
 
@@ -465,10 +465,10 @@ class _Fault(Exception):
     """What went wrong with one request, as a clause whose subject is the address."""
 
 
-def _refusal(service: str, at: str, answer: ServiceAnswer) -> Refused:
+def _make_refusal(service: str, at: str, answer: ServiceAnswer) -> Refused:
     said = ""
     with contextlib.suppress(ValueError, AttributeError):
-        said = _clean(str(answer.json().get("message") or answer.json().get("error_message") or ""))[:200]
+        said = _clean(str(answer.parse_json().get("message") or answer.parse_json().get("error_message") or ""))[:200]
     help = {
         401: "the token is not accepted: give a valid one, or none",
         403: "give a token that may read it",
@@ -493,12 +493,12 @@ def _retry_after(answer: ServiceAnswer, now: float) -> float | None:
         return None
 
 
-def _backoff(attempt: int) -> float:
+def _compute_backoff(attempt: int) -> float:
     """Seconds before another try: doubled each time, with jitter, so that many clients do not come back together."""
     return min(_LONGEST_BACKOFF, 2.0**attempt) * random.uniform(0.5, 1.0)
 
 
-def _with_query(url: str, params: Mapping[str, object] | None) -> str:
+def _add_query(url: str, params: Mapping[str, object] | None) -> str:
     if not params:
         return url
     return f"{url}{'&' if '?' in url else '?'}{urlencode({name: str(value) for name, value in params.items()})}"
@@ -512,20 +512,20 @@ def _place(url: str) -> str:
     return f"{parts.hostname or ''}{parts.path}"
 
 
-def _origin(url: str) -> tuple[str, str | None, int | None]:
+def _get_origin(url: str) -> tuple[str, str | None, int | None]:
     parts = urlsplit(url)
     return parts.scheme, parts.hostname, parts.port
 
 
-def _when(until: float, seconds: float) -> str:
+def _format_moment(until: float, seconds: float) -> str:
     if seconds < 60:
-        return f"in {_span(seconds)}"
+        return f"in {_format_span(seconds)}"
     # rounded up, so that nobody comes back a minute early
     moment = datetime.fromtimestamp(until, timezone.utc) + timedelta(seconds=59)
-    return f"at {moment:%Y-%m-%d %H:%M} UTC (in {_span(seconds)})"
+    return f"at {moment:%Y-%m-%d %H:%M} UTC (in {_format_span(seconds)})"
 
 
-def _span(seconds: float) -> str:
+def _format_span(seconds: float) -> str:
     if seconds < 90:
         return f"{seconds:.0f} s"
     return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

@@ -9,7 +9,7 @@ from contextlib import suppress
 from types import TracebackType
 from typing import TYPE_CHECKING, TextIO
 
-from ..edges.console import UserError, visible, write
+from ..edges.console import UserError, escape, write
 from .gather import Progress
 from .store import Taken
 
@@ -31,7 +31,7 @@ class Estimate:
         self._first: tuple[float, int] | None = None
         self._seen = 0
 
-    def left(self, done: int, of: int | None) -> float | None:
+    def estimate_left(self, done: int, of: int | None) -> float | None:
         """Seconds, or None while that cannot be told. done, of: reports read and to be read in all."""
         now = self._clock()
         self._seen += 1
@@ -80,38 +80,38 @@ class Reporter:
         if self._bars is not None:
             self._bars.stop()
 
-    def page(self, progress: Progress) -> None:
+    def report_page(self, progress: Progress) -> None:
         """Tells how far the job is."""
-        left = self._estimate.left(progress.done, progress.of)
-        said = described(progress, left)
+        left = self._estimate.estimate_left(progress.done, progress.of)
+        said = describe_progress(progress, left)
         if self._bars is not None and self._task is not None:
             self._bars.update(self._task, completed=progress.done, total=progress.of, said=said)
         if self._verbose:
-            self.line(f"{self._name}: {said}")
+            self.print_line(f"{self._name}: {said}")
 
-    def line(self, text: str) -> None:
+    def print_line(self, text: str) -> None:
         """A line that stays: why the job waits, for one."""
         if self._bars is not None:
-            self._bars.console.print(visible(text), markup=False, highlight=False)
+            self._bars.console.print(escape(text), markup=False, highlight=False)
         elif self._stream is not None:
             with suppress(UserError, BrokenPipeError):
                 write(text, self._stream)
 
 
-def described(progress: Progress, left: float | None) -> str:
+def describe_progress(progress: Progress, left: float | None) -> str:
     """How far a job is, in words. left: seconds, None where nobody knows."""
     of = f" of about {progress.of:,}" if progress.of is not None and progress.of > progress.done else ""
-    time_left = f", {span(left)} left" if left is not None else ""
-    return f"{progress.done:,}{of} read; {outcome(progress.taken)}{time_left}"
+    time_left = f", {format_span(left)} left" if left is not None else ""
+    return f"{progress.done:,}{of} read; {describe_outcome(progress.taken)}{time_left}"
 
 
-def outcome(taken: Taken) -> str:
+def describe_outcome(taken: Taken) -> str:
     """What became of reports, in words."""
     named = [(taken.new, "new"), (taken.changed, "changed"), (taken.same, "unchanged"), (taken.gone, "gone")]
     return ", ".join(f"{count:,} {word}" for count, word in named if count) or "nothing new"
 
 
-def span(seconds: float) -> str:
+def format_span(seconds: float) -> str:
     """A span of time as people say it, in the unit that suits it."""
     if seconds < 90:
         return f"about {max(1, round(seconds))} s"

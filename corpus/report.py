@@ -14,8 +14,8 @@ from typing import TypeVar
 import msgspec
 
 from ..edges.console import UserError
-from ..edges.files import open_regular, writing
-from ..edges.limits import limits, size_text
+from ..edges.files import open_for_replacing, open_regular
+from ..edges.limits import format_size, get_limits
 
 LABELS = ("library-update", "dependency", "inconsistency", "message-logic", "other")
 KINDS = {
@@ -89,7 +89,7 @@ class Label(msgspec.Struct, frozen=True):
         return len(self.annotators) > 1
 
 
-def repository_of(id: str) -> str:
+def find_repository(id: str) -> str:
     """`owner/name` of a report on GitHub, in lower case as GitHub compares them; empty for others."""
     from re import match
 
@@ -99,7 +99,7 @@ def repository_of(id: str) -> str:
 
 def group_of(id: str) -> str:
     """What must not stand on both sides of a split: the repository, or the report itself where there is none."""
-    return repository_of(id) or id
+    return find_repository(id) or id
 
 
 def read_reports(path: Path) -> Iterator[Report]:
@@ -111,7 +111,7 @@ def read_labels(path: Path = LABELS_FILE) -> list[Label]:
     """The labels of a file, by default those of the corpus. Raises CorpusError when one breaks the guide's rules."""
     found: dict[str, Label] = {}
     for number, label in enumerate(_read(path, Label), 1):
-        fault = faults_of(label)
+        fault = find_faults(label)
         if label.id in found:
             fault = "is there twice"
         if fault:
@@ -120,7 +120,7 @@ def read_labels(path: Path = LABELS_FILE) -> list[Label]:
     return list(found.values())
 
 
-def faults_of(label: Label) -> str:
+def find_faults(label: Label) -> str:
     """What breaks the guide's rules in a label, as a clause; empty when nothing does."""
     if label.label not in LABELS:
         return f"has the label `{label.label}`, which is none of {', '.join(LABELS)}"
@@ -139,7 +139,7 @@ def write_rows(path: Path, rows: Iterable[msgspec.Struct | msgspec.Raw]) -> int:
     encode = msgspec.json.Encoder().encode
     count = 0
     try:
-        with writing(path) as file:
+        with open_for_replacing(path) as file:
             for row in rows:
                 file.write(encode(row) + b"\n")
                 count += 1
@@ -150,14 +150,14 @@ def write_rows(path: Path, rows: Iterable[msgspec.Struct | msgspec.Raw]) -> int:
 
 def _read(path: Path, kind: type[_Row]) -> Iterator[_Row]:
     decoder = msgspec.json.Decoder(kind)
-    longest = limits().text
+    longest = get_limits().text
     try:
         with open(open_regular(path), "rb") as file:
             number = 0
             while line := file.readline(longest + 1):
                 number += 1
                 if len(line) > longest:
-                    raise CorpusError(f"{path}:{number}: is longer than {size_text(longest)}; mend the line")
+                    raise CorpusError(f"{path}:{number}: is longer than {format_size(longest)}; mend the line")
                 if number == 1:
                     line = line.removeprefix(codecs.BOM_UTF8)
                 if not line.strip():

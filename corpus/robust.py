@@ -19,7 +19,7 @@ import msgspec
 
 from ..edges.documents import DocumentError, load_yaml_as_text
 from ..edges.files import read_file
-from ..edges.limits import limits
+from ..edges.limits import get_limits
 from .report import KINDS, CorpusError, Label
 
 LIKELY, SURE, UNMAPPED = "likely", "sure", "unmapped"
@@ -91,36 +91,36 @@ def read_robust(folder: Path) -> Records:
     unreadable: list[tuple[Path, str]] = []
     for path in sorted(folder.rglob("*.bug")):
         try:
-            mapped.append(map_record(_parsed(path), path.stem))
+            mapped.append(map_record(_parse_record(path), path.stem))
         except ValueError as error:
             unreadable.append((path, str(error)))
     if not mapped:
         told = f"; {unreadable[0][0]}: {unreadable[0][1]}" if unreadable else ""
         raise CorpusError(f"{folder}: holds no record of ROBUST that can be read{told}; give a clone of its repository")
-    return Records(mapped, unreadable, licence_of(folder))
+    return Records(mapped, unreadable, describe_licence(folder))
 
 
 def map_record(record: Mapping[str, Any], stem: str) -> Mapped:
     """One record, as YAML gives it with every scalar as text. stem: its file's name, which is its id; the `id` inside
     is now and then another record's."""
     bug = record["bug"] if isinstance(record.get("bug"), Mapping) else {}
-    codes = _texts(record.get("fault-codes"))
-    failures = _texts(record.get("failure-codes"))
-    classification = " ".join(_text(record.get("classification")).split())
-    words = " ".join([*_texts(record.get("keywords")), classification, _text(record.get("title"))])
-    severity = _text(record.get("severity"))
-    found = verdict(codes, failures, classification, words, severity)
-    phase = _PHASES.get(_text(bug.get("phase")))
+    codes = _clean_texts(record.get("fault-codes"))
+    failures = _clean_texts(record.get("failure-codes"))
+    classification = " ".join(_clean_text(record.get("classification")).split())
+    words = " ".join([*_clean_texts(record.get("keywords")), classification, _clean_text(record.get("title"))])
+    severity = _clean_text(record.get("severity"))
+    found = judge_record(codes, failures, classification, words, severity)
+    phase = _PHASES.get(_clean_text(bug.get("phase")))
     if phase and found.label and "SOFTWARE:NONE" in failures and severity != "error":
         phase = "none"  # nothing is shown failing
     # The issue, else the pull request that mended it.
-    id = report_of(_text(bug.get("issue"))) or _pull_of(record) or f"robust:{stem}"
+    id = report_of(_clean_text(bug.get("issue"))) or _pull_of(record) or f"robust:{stem}"
     return Mapped(
         id, stem, found.label, found.kind, phase if found.label else None, found.confidence, tuple(codes), found.why
     )
 
 
-def verdict(
+def judge_record(
     codes: Sequence[str], failures: Sequence[str], classification: str, words: str, severity: str = "error"
 ) -> CodesVerdict:
     """What a record's codes say. codes, failures: its fault and failure codes, `FAMILY:NAME`. words: keywords,
@@ -136,7 +136,7 @@ def verdict(
     told = ", ".join(codes)
     evolved = [name for name in families.get("EVOLUTION", ()) if name != "DOCS"]
     if evolved:
-        kind, certain = _evolution_kind(evolved, words)
+        kind, certain = _find_evolution_kind(evolved, words)
         alone = set(families) == {"EVOLUTION"}
         return CodesVerdict("library-update", kind, SURE if alone and certain else LIKELY, f"ROBUST: {told}")
     linked = any(name in _LINK for name in families.get("CONFIG", ()))
@@ -147,12 +147,12 @@ def verdict(
             return CodesVerdict(
                 None, None, UNMAPPED, f"ROBUST: {told}; which of the two causes counts is in the report"
             )
-        kind, certain = _dependency_kind(classification, words)
+        kind, certain = _find_dependency_kind(classification, words)
         alone = set(codes) <= {"BDO:DEPENDENCY", "BDO:BUILD"}
         return CodesVerdict("dependency", kind, SURE if alone and certain else LIKELY, f"ROBUST: {told}")
     if "BUILD" in families.get("BDO", ()) and re.search(r"dependenc", classification, re.IGNORECASE):
-        kind, _ = _dependency_kind(classification, words)
-        return CodesVerdict("dependency", kind, LIKELY, f"ROBUST: {told}, {_plain(classification)}")
+        kind, _ = _find_dependency_kind(classification, words)
+        return CodesVerdict("dependency", kind, LIKELY, f"ROBUST: {told}, {_strip_marks(classification)}")
     if linked:
         return CodesVerdict("inconsistency", "connection", LIKELY, f"ROBUST: {told}")
     if "TRANSFORMATIONS" in families.get("MODELS", ()):
@@ -172,7 +172,7 @@ def verdict(
     return CodesVerdict("other", None, LIKELY, f"ROBUST: {told}")
 
 
-def rows_of(mapped: Sequence[Mapped]) -> Iterator[MappedRow]:
+def make_rows(mapped: Sequence[Mapped]) -> Iterator[MappedRow]:
     """The lines of a labels file: every report that has a label and a phase, each once. Where several records name one
     report and differ, it is left out."""
     by_id: dict[str, list[Mapped]] = {}
@@ -188,7 +188,7 @@ def rows_of(mapped: Sequence[Mapped]) -> Iterator[MappedRow]:
             )  # fmt: skip
 
 
-def summary(mapped: Sequence[Mapped]) -> dict[str, dict[str, int]]:
+def summarize(mapped: Sequence[Mapped]) -> dict[str, dict[str, int]]:
     """Label, or `unmapped`, to confidence to number of records."""
     counts = Counter((found.label or UNMAPPED, found.confidence) for found in mapped)
     names = sorted({name for name, _ in counts}, key=lambda name: (name == UNMAPPED, name))
@@ -202,11 +202,11 @@ def report_of(text: str) -> str:
     return min(places)[1] if places else ""
 
 
-def licence_of(folder: Path) -> str:
+def describe_licence(folder: Path) -> str:
     """What a clone says of its licence, as a sentence: the name of its licence file, or that it has none."""
     for pattern in _LICENCES:
         for path in sorted(folder.glob(pattern)):
-            first = next((line.strip() for line in _head(path).splitlines() if line.strip()), "")
+            first = next((line.strip() for line in _read_head(path).splitlines() if line.strip()), "")
             return f"licence: {path.name} ({first[:80]})" if first else f"licence: {path.name}"
     return (
         "licence: the clone has no licence file, so its records may be read and not passed on; only ids, codes and the "
@@ -214,7 +214,7 @@ def licence_of(folder: Path) -> str:
     )
 
 
-def _evolution_kind(names: Sequence[str], words: str) -> tuple[str, bool]:
+def _find_evolution_kind(names: Sequence[str], words: str) -> tuple[str, bool]:
     kinds = {_EVOLUTION_KINDS[name] for name in names if name in _EVOLUTION_KINDS}
     if len(kinds) == 1:
         return kinds.pop(), True
@@ -224,7 +224,7 @@ def _evolution_kind(names: Sequence[str], words: str) -> tuple[str, bool]:
     return "ros", False
 
 
-def _dependency_kind(classification: str, words: str) -> tuple[str, bool]:
+def _find_dependency_kind(classification: str, words: str) -> tuple[str, bool]:
     """The kind, and whether the record says it plainly."""
     wrong = re.search(r"circular|non-existent|wrong dependenc|broken", classification, re.IGNORECASE)
     if wrong or re.search(r"meta-?package", words, re.IGNORECASE):
@@ -236,22 +236,22 @@ def _dependency_kind(classification: str, words: str) -> tuple[str, bool]:
     return "undeclared", bool(plain) and "include" not in classification.lower()
 
 
-def _plain(classification: str) -> str:
+def _strip_marks(classification: str) -> str:
     """A classification without ROBUST's marks."""
     return re.sub(r"\s*(?:\(no CWE\)|#\w+|internal classification.*).*", "", classification).strip()
 
 
 def _pull_of(record: Mapping[str, Any]) -> str:
     fix = record.get("fix")
-    return report_of(_text(fix.get("pull-request"))) if isinstance(fix, Mapping) else ""
+    return report_of(_clean_text(fix.get("pull-request"))) if isinstance(fix, Mapping) else ""
 
 
-def _parsed(path: Path) -> Mapping[str, Any]:
+def _parse_record(path: Path) -> Mapping[str, Any]:
     """A record with every scalar as text: `1e09040` is a commit and no number. Raises ValueError."""
     try:
-        record = load_yaml_as_text(read_file(path, limits().settings, follow=False))
+        record = load_yaml_as_text(read_file(path, get_limits().settings, follow=False))
     except OSError as error:
-        raise ValueError(f"cannot be read: {_reason(error)}") from None
+        raise ValueError(f"cannot be read: {_describe_error(error)}") from None
     except DocumentError as error:
         raise ValueError(f"is no YAML{f' in line {error.line}' if error.line else ''}: {error}") from None
     if not isinstance(record, Mapping) or "bug" not in record:
@@ -259,23 +259,23 @@ def _parsed(path: Path) -> Mapping[str, Any]:
     return record
 
 
-def _text(value: object) -> str:
+def _clean_text(value: object) -> str:
     text = value.strip() if isinstance(value, str) else ""
     return "" if text.lower() in _EMPTY else text
 
 
-def _texts(value: object) -> list[str]:
+def _clean_texts(value: object) -> list[str]:
     if isinstance(value, str):
         value = value.split(",")
-    return [text for item in value if (text := _text(item))] if isinstance(value, list) else []
+    return [text for item in value if (text := _clean_text(item))] if isinstance(value, list) else []
 
 
-def _reason(error: OSError) -> str:
+def _describe_error(error: OSError) -> str:
     return "is a link" if error.errno == errno.ELOOP else error.strerror or type(error).__name__
 
 
-def _head(path: Path) -> str:
+def _read_head(path: Path) -> str:
     try:
-        return read_file(path, limits().text, follow=False)[:2000].decode("utf-8", "replace")
+        return read_file(path, get_limits().text, follow=False)[:2000].decode("utf-8", "replace")
     except OSError:
         return ""

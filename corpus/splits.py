@@ -25,7 +25,7 @@ class Split(NamedTuple):
     test: list[int]
 
 
-def grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED) -> list[int]:
+def make_grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED) -> list[int]:
     """The fold of each row, 0 to folds - 1: no group in two folds, and in each about the same number of every label.
 
     ids, labels: of the rows, equally long. Large groups are placed first, each where the labels come out most even;
@@ -46,27 +46,27 @@ def grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS,
     fold_of: dict[str, int] = {}
     for group in groups:
 
-        def unevenness(fold: int, added: Counter[str] = content[group]) -> tuple[float, int]:
+        def compute_unevenness(fold: int, added: Counter[str] = content[group]) -> tuple[float, int]:
             # What the fold gains in squared shares of each label: rare labels weigh as much as common ones.
             gain = sum(((filled[fold][x] + n) ** 2 - filled[fold][x] ** 2) / total[x] ** 2 for x, n in added.items())
             return gain, sum(filled[fold].values())
 
-        fold = min(range(folds), key=unevenness)
+        fold = min(range(folds), key=compute_unevenness)
         filled[fold].update(content[group])
         fold_of[group] = fold
     return [fold_of[group_of(id)] for id in ids]
 
 
-def grouped_splits(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED) -> list[Split]:
+def make_grouped_splits(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED) -> list[Split]:
     """The splits of grouped_folds: each fold once as the test side."""
-    fold_of = grouped_folds(ids, labels, folds, seed)
+    fold_of = make_grouped_folds(ids, labels, folds, seed)
     return [
         Split([i for i, f in enumerate(fold_of) if f != fold], [i for i, f in enumerate(fold_of) if f == fold])
         for fold in range(folds)
     ]
 
 
-def time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_day: str) -> Split:
+def make_time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_day: str) -> Split:
     """Rows before a day to train on, rows from that day on to test on.
 
     dates: as day_of reads them; rows without one are on neither side. first_test_day: an ISO day. The test side keeps
@@ -75,11 +75,11 @@ def time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_day: 
     """
     if len(ids) != len(dates):
         raise ValueError(f"{len(ids)} ids and {len(dates)} dates; give one date, or None, for each id")
-    dated = [(i, day) for i, date in enumerate(dates) if (day := day_of(date))]
+    dated = [(i, day) for i, date in enumerate(dates) if (day := parse_day(date))]
     return Split([i for i, day in dated if day < first_test_day], [i for i, day in dated if day >= first_test_day])
 
 
-def day_of(date: str | None) -> str:
+def parse_day(date: str | None) -> str:
     """The ISO day of a date, written as `2019-03-10`, with or without a time, or as `Mar 10, 2019`; else empty."""
     from datetime import datetime
 
@@ -91,7 +91,7 @@ def day_of(date: str | None) -> str:
     return ""
 
 
-def unseen(ids: Sequence[str], split: Split) -> list[int]:
+def select_unseen(ids: Sequence[str], split: Split) -> list[int]:
     """The rows of a split's test side whose group is not on its train side."""
     seen = {group_of(ids[i]) for i in split.train}
     return [i for i in split.test if group_of(ids[i]) not in seen]

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from ..edges.console import counted, visible, write
-from .agreement import Agreement, Interval, agreement
-from .distros import DISTROS, distros_in
-from .report import KINDS, LABELS, PHASES, Label, Report, repository_of
+from ..edges.console import escape, format_count, write
+from .agreement import Agreement, Interval, compute_agreement
+from .distros import DISTROS, find_distros
+from .report import KINDS, LABELS, PHASES, Label, Report, find_repository
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -49,7 +49,7 @@ class Stats(msgspec.Struct, frozen=True):
     notes: tuple[str, ...]
 
 
-def stats_of(labels: Sequence[Label], reports: Iterable[Report] | None = None) -> Stats:
+def compute_stats(labels: Sequence[Label], reports: Iterable[Report] | None = None) -> Stats:
     """Counts labels. reports: the texts, for years and distros; those without a label are passed over."""
     by_id = {label.id: label for label in labels}
     years: dict[str, Counter[str]] = defaultdict(Counter)
@@ -60,47 +60,49 @@ def stats_of(labels: Sequence[Label], reports: Iterable[Report] | None = None) -
         if label is None or report.id in read:
             continue
         read.add(report.id)
-        years[year_of(report.date) or UNDATED][label.label] += 1
-        for name in distros_in(f"{report.title}\n{report.body}") or (NONE_NAMED,):
+        years[find_year(report.date) or UNDATED][label.label] += 1
+        for name in find_distros(f"{report.title}\n{report.body}") or (NONE_NAMED,):
             distros[name][label.label] += 1
     notes = []
     if reports is None:
         notes.append("years and distros are not counted: they are in the texts; give those with --reports")
     elif len(read) < len(by_id):
-        notes.append(f"years and distros: {counted(len(by_id) - len(read), 'text')} of {len(by_id):,} not at hand")
-    projects = _table(labels, lambda label: project_of(label.id))
+        notes.append(f"years and distros: {format_count(len(by_id) - len(read), 'text')} of {len(by_id):,} not at hand")
+    projects = _count_labels(labels, lambda label: find_project(label.id))
     return Stats(
         schema=1,
         reports=len(by_id),
-        labels=_row(Counter(label.label for label in labels)),
+        labels=_make_row(Counter(label.label for label in labels)),
         kinds={
             name: {kind: sum(label.label == name and label.kind == kind for label in labels) for kind in kinds}
             for name, kinds in KINDS.items()
         },
-        phases=_ordered(_table(labels, lambda label: label.phase), PHASES),
+        phases=_order_table(_count_labels(labels, lambda label: label.phase), PHASES),
         projects=dict(sorted(projects.items(), key=lambda item: (-sum(item[1].values()), item[0]))),
-        decided=_ordered(_table(labels, lambda label: label.decided), ()),
-        years=None if reports is None else _ordered(years, (*sorted(set(years) - {UNDATED}), UNDATED)),
-        distros=None if reports is None else _ordered(distros, (*DISTROS, NONE_NAMED)),
+        decided=_order_table(_count_labels(labels, lambda label: label.decided), ()),
+        years=None if reports is None else _order_table(years, (*sorted(set(years) - {UNDATED}), UNDATED)),
+        distros=None if reports is None else _order_table(distros, (*DISTROS, NONE_NAMED)),
         read=len(read),
-        agreement=agreement(((label.annotators[0], label.annotators[1]) for label in labels if label.twice), LABELS),
+        agreement=compute_agreement(
+            ((label.annotators[0], label.annotators[1]) for label in labels if label.twice), LABELS
+        ),
         notes=tuple(notes),
     )
 
 
-def project_of(id: str) -> str:
+def find_project(id: str) -> str:
     """The repository of a report, or the site where there is none."""
     site = id.partition(":")[0]
-    return repository_of(id) or _ELSEWHERE.get(site, site)
+    return find_repository(id) or _ELSEWHERE.get(site, site)
 
 
-def year_of(date: str | None) -> str:
+def find_year(date: str | None) -> str:
     """The year in a date, however it is written; empty when there is none."""
     found = _YEAR.search(date or "")
     return found.group() if found else ""
 
 
-def as_json(stats: Stats) -> str:
+def render_json(stats: Stats) -> str:
     """The numbers as JSON: the fields of Stats, and `kappa_interval`, how the interval was made."""
     import json
 
@@ -122,29 +124,29 @@ def print_text(stats: Stats, most: int = 15) -> None:
 
 
 def _print_text(stats: Stats, most: int, console: Console) -> None:
-    console.print(counted(stats.reports, "label"))
-    console.print(_labels_table(stats))
+    console.print(format_count(stats.reports, "label"))
+    console.print(_make_labels_table(stats))
     tables: list[tuple[str, Table | None]] = [
         ("phase", stats.phases), ("decided", stats.decided), ("year", stats.years), ("distro", stats.distros),
     ]  # fmt: skip
     for title, table in tables:
         if table:
-            console.print(_rich(title, table))
+            console.print(_make_rich_table(title, table))
     shown = dict(list(stats.projects.items())[:most])
-    console.print(_rich("project", shown))
+    console.print(_make_rich_table("project", shown))
     if len(stats.projects) > most:
         console.print(f"and {len(stats.projects) - most:,} more projects (all of them: --format json)\n")
-    for line in _agreement_lines(stats.agreement):
+    for line in _format_agreement(stats.agreement):
         console.print(line)
     if stats.agreement.reports:
-        console.print(_agreement_table(stats.agreement))
-        console.print(_rich("first \\ second", stats.agreement.confusion, total=False))
+        console.print(_make_agreement_table(stats.agreement))
+        console.print(_make_rich_table("first \\ second", stats.agreement.confusion, total=False))
     for note in stats.notes:
-        console.print(visible(f"note: {note}"))
+        console.print(escape(f"note: {note}"))
 
 
-def _labels_table(stats: Stats):
-    table = _new_table("label", "reports", "share", "kind", "reports")
+def _make_labels_table(stats: Stats):
+    table = _make_empty_table("label", "reports", "share", "kind", "reports")
     for name, count in stats.labels.items():
         share = f"{100 * count / stats.reports:.1f} %" if stats.reports else ""
         kinds = stats.kinds.get(name, {})
@@ -152,35 +154,35 @@ def _labels_table(stats: Stats):
     return table
 
 
-def _rich(title: str, rows: Mapping[str, Mapping[str, int]], total: bool = True):
+def _make_rich_table(title: str, rows: Mapping[str, Mapping[str, int]], total: bool = True):
     from rich.text import Text
 
-    table = _new_table(title, *LABELS, *(["all"] if total else []))
+    table = _make_empty_table(title, *LABELS, *(["all"] if total else []))
     for name, counts in rows.items():
         cells = [f"{counts[label]:,}" if counts[label] else "\u00b7" for label in LABELS]
-        table.add_row(Text(visible(name)), *cells, *([f"{sum(counts.values()):,}"] if total else []))
+        table.add_row(Text(escape(name)), *cells, *([f"{sum(counts.values()):,}"] if total else []))
     return table
 
 
-def _agreement_lines(found: Agreement) -> list[str]:
+def _format_agreement(found: Agreement) -> list[str]:
     if not found.reports:
         return ["agreement: no report was read by two annotators"]
     return [
-        f"agreement over {counted(found.reports, 'report')} with two annotators: {found.same:,} the same, "
-        f"{_percent(found.share)}; Cohen's kappa {_told(found.kappa)}",
+        f"agreement over {format_count(found.reports, 'report')} with two annotators: {found.same:,} the same, "
+        f"{_format_percent(found.share)}; Cohen's kappa {_format(found.kappa)}",
         "intervals of 95 %: Wilson for the share, analytic (Fleiss, Cohen and Everitt 1969) for kappa",
     ]
 
 
-def _agreement_table(found: Agreement):
-    table = _new_table("agreement by label", "first", "second", "both", "specific", "kappa")
+def _make_agreement_table(found: Agreement):
+    table = _make_empty_table("agreement by label", "first", "second", "both", "specific", "kappa")
     for row in found.labels:
         specific = f"{100 * row.specific:.1f} %" if row.specific is not None else ""
-        table.add_row(row.label, f"{row.first:,}", f"{row.second:,}", f"{row.both:,}", specific, _told(row.kappa))
+        table.add_row(row.label, f"{row.first:,}", f"{row.second:,}", f"{row.both:,}", specific, _format(row.kappa))
     return table
 
 
-def _new_table(first: str, *others: str):
+def _make_empty_table(first: str, *others: str):
     import sys
 
     from rich.box import ASCII2, SIMPLE_HEAD
@@ -194,29 +196,29 @@ def _new_table(first: str, *others: str):
     return table
 
 
-def _told(interval: Interval) -> str:
+def _format(interval: Interval) -> str:
     if interval.value is None:
         return "not defined"
     return f"{interval.value:.2f} ({interval.low:.2f} to {interval.high:.2f})"
 
 
-def _percent(interval: Interval) -> str:
+def _format_percent(interval: Interval) -> str:
     if interval.value is None or interval.low is None or interval.high is None:
         return "not defined"
     return f"{100 * interval.value:.1f} % ({100 * interval.low:.1f} to {100 * interval.high:.1f})"
 
 
-def _table(labels: Iterable[Label], row_of) -> dict[str, Counter[str]]:
+def _count_labels(labels: Iterable[Label], row_of) -> dict[str, Counter[str]]:
     found: dict[str, Counter[str]] = defaultdict(Counter)
     for label in labels:
         found[row_of(label)][label.label] += 1
     return found
 
 
-def _ordered(table: Mapping[str, Counter[str]] | Mapping[str, Mapping[str, int]], order: Sequence[str]) -> Table:
+def _order_table(table: Mapping[str, Counter[str]] | Mapping[str, Mapping[str, int]], order: Sequence[str]) -> Table:
     names = [*order, *sorted(set(table) - set(order))]
-    return {name: _row(table[name]) for name in names if name in table}
+    return {name: _make_row(table[name]) for name in names if name in table}
 
 
-def _row(counts: Mapping[str, int]) -> dict[str, int]:
+def _make_row(counts: Mapping[str, int]) -> dict[str, int]:
     return {name: counts.get(name, 0) for name in LABELS}

@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 import msgspec
 
 from ..edges.files import open_regular, read_start
-from .outputs import unwritable
-from .report import CorpusError, Report, read_reports, repository_of
+from .outputs import explain_unwritable
+from .report import CorpusError, Report, find_repository, read_reports
 
 STORE_VARIABLE = "ROSIMPACT_CORPUS"
 _SCHEMA_VERSION = 1
@@ -107,7 +107,7 @@ class Taken(NamedTuple):
     same: int = 0
     gone: int = 0
 
-    def plus(self, other: Taken) -> Taken:
+    def add(self, other: Taken) -> Taken:
         return Taken(*(mine + theirs for mine, theirs in zip(self, other, strict=True)))
 
 
@@ -134,7 +134,7 @@ def store_path(chosen: Path | None = None, environment: Mapping[str, str] = os.e
     return Path(platformdirs.user_data_dir("rosimpact", appauthor=False), "corpus.sqlite")
 
 
-def digest_of(data: bytes) -> bytes:
+def hash_bytes(data: bytes) -> bytes:
     """Sixteen bytes that stand for a content."""
     return hashlib.blake2b(data, digest_size=16).digest()
 
@@ -156,7 +156,7 @@ def open_reports(path: Path) -> Iterator[Report]:
         yield from read_reports(path)
         return
     with Store(path) as store:
-        yield from store.reports()
+        yield from store.iterate_reports()
 
 
 class Store:
@@ -171,7 +171,7 @@ class Store:
         self.now = clock
         self._forgot = False
         self._made = os.path.lexists(path)
-        fault = "" if self._made else unwritable(path)
+        fault = "" if self._made else explain_unwritable(path)
         if fault:
             raise CorpusError(f"{path}: cannot be opened ({fault}); give another file with --store")
         self._db = sqlite3.connect(":memory:", isolation_level=None)
@@ -202,14 +202,14 @@ class Store:
         now = self.now()
         if page.reports or page.gone or page.copies:
             self._make()
-        with self._transaction():
+        with self._begin_transaction():
             taken = Taken()
             if page.moved is not None:
                 self._move_all(*page.moved)
             for gathered in page.reports:
-                taken = taken.plus(self._put(gathered, now))
+                taken = taken.add(self._put(gathered, now))
             for id, source in page.gone:
-                taken = taken.plus(Taken(gone=self._forget(id, source, now)))
+                taken = taken.add(Taken(gone=self._forget(id, source, now)))
             self._db.executemany("INSERT OR REPLACE INTO copy VALUES (?, ?)", _lower(page.copies))
             self._db.execute(
                 "INSERT OR REPLACE INTO gathering VALUES (?, ?, ?, ?)",
@@ -224,9 +224,9 @@ class Store:
         given = list(reports)
         if given:
             self._make()
-        with self._transaction():
+        with self._begin_transaction():
             for gathered in given:
-                taken = taken.plus(self._put(gathered, now))
+                taken = taken.add(self._put(gathered, now))
         return taken
 
     def forget(self, ids: Iterable[tuple[str, str]]) -> int:
@@ -236,96 +236,96 @@ class Store:
         given = list(ids)
         if given:
             self._make()
-        with self._transaction():
+        with self._begin_transaction():
             return sum([self._forget(id, source, now) for id, source in given])
 
-    def seen(self, ids: Iterable[str]) -> None:
+    def mark_seen(self, ids: Iterable[str]) -> None:
         """Notes that reports were asked for and have not changed."""
         now = self.now()
-        with self._transaction():
+        with self._begin_transaction():
             for id in ids:
-                self._db.execute("UPDATE report SET checked = ? WHERE key = ?", (now, self._key(id)))
+                self._db.execute("UPDATE report SET checked = ? WHERE key = ?", (now, self._find_key(id)))
 
     def want(self, ids: Iterable[str]) -> None:
         """Notes ids that have a label. Their reports go by these ids, however their source spells them today."""
-        with self._transaction():
+        with self._begin_transaction():
             for id in ids:
-                self._db.execute("INSERT OR REPLACE INTO wanted VALUES (?, ?)", (id, self._key(id)))
+                self._db.execute("INSERT OR REPLACE INTO wanted VALUES (?, ?)", (id, self._find_key(id)))
 
-    def state(self, name: str) -> dict[str, Any] | None:
+    def read_state(self, name: str) -> dict[str, Any] | None:
         """The state of a gathering, None when it was never begun."""
-        rows = self._all("SELECT state FROM gathering WHERE name = ?", (name,))
+        rows = self._fetch_all("SELECT state FROM gathering WHERE name = ?", (name,))
         try:
             return msgspec.json.decode(rows[0][0], type=dict) if rows else None
         except (msgspec.MsgspecError, TypeError, RecursionError) as error:
-            raise self._damaged(error) from None
+            raise self._make_damage_error(error) from None
 
-    def gatherings(self) -> list[tuple[str, bool, float]]:
+    def list_gatherings(self) -> list[tuple[str, bool, float]]:
         """(name, whether it came to its end, seconds since 1970 of its last page) of each gathering."""
-        rows = self._all("SELECT name, finished, updated FROM gathering ORDER BY name")
+        rows = self._fetch_all("SELECT name, finished, updated FROM gathering ORDER BY name")
         return [(name, bool(finished), updated) for name, finished, updated in rows]
 
-    def digest(self, id: str) -> bytes:
+    def read_digest(self, id: str) -> bytes:
         """Of what the source gave for a report; empty when it is not here."""
-        rows = self._all("SELECT digest FROM report WHERE key = ?", (self._key(id),))
+        rows = self._fetch_all("SELECT digest FROM report WHERE key = ?", (self._find_key(id),))
         return (rows[0][0] or b"") if rows else b""
 
-    def raw(self, id: str) -> bytes:
+    def read_raw(self, id: str) -> bytes:
         """What is kept of the answer that a report was read from; empty when there is none."""
-        rows = self._all("SELECT raw FROM report WHERE key = ?", (self._key(id),))
-        return self._unpacked(rows[0][0]) if rows and rows[0][0] else b""
+        rows = self._fetch_all("SELECT raw FROM report WHERE key = ?", (self._find_key(id),))
+        return self._unpack_report(rows[0][0]) if rows and rows[0][0] else b""
 
     def report(self, id: str) -> Report | None:
         """One report by its id or by one it had before; None when it is not here or has no text any more."""
-        rows = self._all(f"{_REPORTS} AND r.key = ?", (self._key(id),))
-        return self._decoded(*rows[0][1:]) if rows else None
+        rows = self._fetch_all(f"{_REPORTS} AND r.key = ?", (self._find_key(id),))
+        return self._decode_report(*rows[0][1:]) if rows else None
 
-    def reports(self) -> Iterator[Report]:
+    def iterate_reports(self) -> Iterator[Report]:
         """All reports with a text in the order of their keys, each thing reported once (see open_reports)."""
-        left_out = self._left_out()
+        left_out = self._find_left_out()
         try:
             for key, *row in self._db.execute(f"{_REPORTS} ORDER BY r.key"):
                 if key not in left_out:
-                    yield self._decoded(*row)
+                    yield self._decode_report(*row)
         except sqlite3.Error as error:
-            raise self._fault(error) from None
+            raise self._make_error(error) from None
 
-    def kept(self, id: str) -> Kept | None:
+    def find_kept(self, id: str) -> Kept | None:
         """What is known of an id; None when nothing is."""
-        rows = self._all(f"SELECT {_KEPT} FROM report WHERE key = ?", (self._key(id),))
+        rows = self._fetch_all(f"SELECT {_KEPT} FROM report WHERE key = ?", (self._find_key(id),))
         return Kept(*rows[0]) if rows else None
 
-    def to_check(self, source: str, before: float, limit: int) -> list[Kept]:
+    def list_to_check(self, source: str, before: float, limit: int) -> list[Kept]:
         """Reports of a source that were last asked for before a time (seconds since 1970), longest ago first; without
         those that came from where nobody can be asked."""
-        rows = self._all(
+        rows = self._fetch_all(
             f"SELECT {_KEPT} FROM report WHERE {_CHECKABLE} ORDER BY checked, key LIMIT ?", (source, before, limit)
         )
         return [Kept(*row) for row in rows]
 
     def count_to_check(self, source: str, before: float) -> int:
-        """How many reports to_check() would give without a limit."""
-        return self._all(f"SELECT count(*) FROM report WHERE {_CHECKABLE}", (source, before))[0][0]
+        """How many reports list_to_check() would give without a limit."""
+        return self._fetch_all(f"SELECT count(*) FROM report WHERE {_CHECKABLE}", (source, before))[0][0]
 
-    def ids(self, origin: str) -> list[str]:
+    def list_ids(self, origin: str) -> list[str]:
         """Ids of all reports with a text that came a certain way."""
-        return [row[0] for row in self._all("SELECT id FROM report WHERE origin = ? AND gone = 0", (origin,))]
+        return [row[0] for row in self._fetch_all("SELECT id FROM report WHERE origin = ? AND gone = 0", (origin,))]
 
-    def counts(self) -> list[tuple[str, int, int, int]]:
+    def count_reports(self) -> list[tuple[str, int, int, int]]:
         """(source, reports with a text, of them with a label, gone) for each source."""
-        return self._all(
+        return self._fetch_all(
             "SELECT source, sum(gone = 0), sum(gone = 0 AND key IN (SELECT key FROM wanted)), sum(gone) FROM report "
             "GROUP BY source ORDER BY source"
         )
 
-    def copied(self) -> int:
+    def count_copied(self) -> int:
         """How many reports with a text reports() leaves out, since another post of the same is there."""
-        return len(self._left_out())
+        return len(self._find_left_out())
 
-    def _left_out(self) -> set[str]:
+    def _find_left_out(self) -> set[str]:
         """Keys of posts that another one speaks for: the one with a label, else the original, else the first."""
         posts: dict[str, list[tuple[bool, bool, str]]] = {}
-        for key, original, wanted in self._all(
+        for key, original, wanted in self._fetch_all(
             "SELECT r.key, coalesce(c.original, r.key), EXISTS (SELECT 1 FROM wanted w WHERE w.key = r.key) "
             "FROM report r LEFT JOIN copy c ON c.copy = r.key WHERE r.report IS NOT NULL "
             "AND (c.copy IS NOT NULL OR r.key IN (SELECT original FROM copy))"
@@ -341,8 +341,8 @@ class Store:
             self._move(gathered.asked.lower(), key)
         if report.same_as:
             self._db.execute("INSERT OR REPLACE INTO copy VALUES (?, ?)", (key, report.same_as.lower()))
-        digest = gathered.digest or digest_of(gathered.raw or msgspec.json.encode(report))
-        rows = self._all("SELECT digest, gone FROM report WHERE key = ?", (key,))
+        digest = gathered.digest or hash_bytes(gathered.raw or msgspec.json.encode(report))
+        rows = self._fetch_all("SELECT digest, gone FROM report WHERE key = ?", (key,))
         if rows and rows[0] == (digest, 0):
             self._db.execute("UPDATE report SET checked = ?, etag = ? WHERE key = ?", (now, gathered.etag, key))
             return Taken(same=1)
@@ -356,7 +356,7 @@ class Store:
             (
                 key,
                 report.id,
-                "github" if repository_of(report.id) else report.source,  # who can be asked for it
+                "github" if find_repository(report.id) else report.source,  # who can be asked for it
                 gathered.origin or "import",
                 zlib.compress(text, _LEVEL),
                 zlib.compress(gathered.raw, _LEVEL) if gathered.raw else None,
@@ -369,13 +369,13 @@ class Store:
 
     def _own(self, key: str) -> None:
         """A source says that a report has this id: it is no former name of another one, though it may have been."""
-        if self._all("SELECT 1 FROM alias WHERE old = ?", (key,)):
+        if self._fetch_all("SELECT 1 FROM alias WHERE old = ?", (key,)):
             self._db.execute("DELETE FROM alias WHERE old = ?", (key,))
             self._db.execute("UPDATE wanted SET key = ? WHERE lower(id) = ?", (key, key))
 
     def _move(self, old: str, key: str) -> None:
         """A report that was known, or asked for, under an old id is the one of another key."""
-        if self._all("SELECT 1 FROM report WHERE key = ?", (key,)):
+        if self._fetch_all("SELECT 1 FROM report WHERE key = ?", (key,)):
             self._db.execute("DELETE FROM report WHERE key = ?", (old,))
         else:
             self._db.execute("UPDATE report SET key = ? WHERE key = ?", (key, old))
@@ -386,15 +386,15 @@ class Store:
     def _move_all(self, old: str, new: str) -> None:
         """The reports of a repository go by its new name, those too that were not asked for again."""
         # `$` follows `#` in the order of characters
-        for key, id, packed in self._all(
+        for key, id, packed in self._fetch_all(
             "SELECT key, id, report FROM report WHERE key >= ? AND key < ?", (f"{old.lower()}#", f"{old.lower()}$")
         ):
             if not isinstance(id, str):
-                raise self._damaged(TypeError(f"the id of `{key}` is no text"))
+                raise self._make_damage_error(TypeError(f"the id of `{key}` is no text"))
             number = id.rpartition("#")[2]
             now_id = f"{new}#{number}"
             if packed is not None:
-                report = self._decoded(packed, None, None)
+                report = self._decode_report(packed, None, None)
                 url = report.url.replace(f"/{old}/", f"/{new}/")
                 packed = zlib.compress(msgspec.json.encode(msgspec.structs.replace(report, id=now_id, url=url)), _LEVEL)
             self._db.execute("UPDATE report SET id = ?, report = ? WHERE key = ?", (now_id, packed, key))
@@ -402,8 +402,8 @@ class Store:
             self._move(key, now_id.lower())
 
     def _forget(self, id: str, source: str, now: float) -> int:
-        key = self._key(id)
-        rows = self._all("SELECT gone FROM report WHERE key = ?", (key,))
+        key = self._find_key(id)
+        rows = self._fetch_all("SELECT gone FROM report WHERE key = ?", (key,))
         self._db.execute(
             "INSERT INTO report (key, id, source, origin, gone, first, checked, changed) "
             "VALUES (?1, ?2, ?3, '', 1, ?4, ?4, ?4) ON CONFLICT (key) DO UPDATE SET gone = 1, report = NULL, "
@@ -413,20 +413,20 @@ class Store:
         self._forgot = True
         return int(rows == [(0,)])
 
-    def _key(self, id: str) -> str:
-        rows = self._all("SELECT key FROM alias WHERE old = ?", (id.lower(),))
+    def _find_key(self, id: str) -> str:
+        rows = self._fetch_all("SELECT key FROM alias WHERE old = ?", (id.lower(),))
         return rows[0][0] if rows else id.lower()
 
     def _make(self) -> None:
         """Makes the file, unless it is there, of the wishes and states that were noted until now."""
         if self._made:
             return
-        wanted = [id for (id,) in self._all("SELECT id FROM wanted")]
-        states = self._all("SELECT * FROM gathering")
+        wanted = [id for (id,) in self._fetch_all("SELECT id FROM wanted")]
+        states = self._fetch_all("SELECT * FROM gathering")
         self._open()
         self._made = True
         self.want(wanted)
-        with self._transaction():
+        with self._begin_transaction():
             # another process may have made it, and be further
             self._db.executemany("INSERT OR IGNORE INTO gathering VALUES (?, ?, ?, ?)", states)
 
@@ -440,7 +440,7 @@ class Store:
             self._db = sqlite3.connect(self.path, timeout=_BUSY_SECONDS, isolation_level=None)
         except (OSError, sqlite3.Error) as error:
             raise CorpusError(
-                f"{self.path}: cannot be opened ({_clause(error)}); give another file with --store"
+                f"{self.path}: cannot be opened ({_describe(error)}); give another file with --store"
             ) from None
         try:
             self._prepare()
@@ -459,14 +459,14 @@ class Store:
                     "file with --store"
                 )
             self._db.execute("PRAGMA trusted_schema = OFF")
-            if version and self._all("SELECT 1 FROM sqlite_master WHERE type IN ('view', 'trigger')"):
+            if version and self._fetch_all("SELECT 1 FROM sqlite_master WHERE type IN ('view', 'trigger')"):
                 raise CorpusError(f"{self.path}: is a database of something else; give another file with --store")
             with contextlib.suppress(sqlite3.OperationalError):  # network folders have no shared memory
                 self._db.execute("PRAGMA journal_mode = WAL")
             self._db.execute("PRAGMA synchronous = NORMAL")
             self._db.execute("PRAGMA secure_delete = ON")  # a text that was taken back is not to stay in free pages
             if version == 0:
-                with self._transaction():
+                with self._begin_transaction():
                     # another process may have made them since
                     if self._db.execute("PRAGMA user_version").fetchone()[0] == 0:
                         if self._db.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
@@ -477,10 +477,10 @@ class Store:
                             self._db.execute(statement)
                         self._db.execute(f"PRAGMA user_version = {_SCHEMA_VERSION}")
         except sqlite3.Error as error:
-            raise self._fault(error) from None
+            raise self._make_error(error) from None
 
     @contextlib.contextmanager
-    def _transaction(self) -> Iterator[None]:
+    def _begin_transaction(self) -> Iterator[None]:
         try:
             self._db.execute("BEGIN IMMEDIATE")
             try:
@@ -490,40 +490,40 @@ class Store:
                 raise
             self._db.execute("COMMIT")
         except sqlite3.Error as error:
-            raise self._fault(error) from None
+            raise self._make_error(error) from None
 
-    def _all(self, statement: str, values: tuple = ()) -> list[tuple]:
+    def _fetch_all(self, statement: str, values: tuple = ()) -> list[tuple]:
         try:
             return self._db.execute(statement, values).fetchall()
         except sqlite3.Error as error:
-            raise self._fault(error) from None
+            raise self._make_error(error) from None
 
-    def _decoded(self, packed: bytes, wanted: str | None, original: str | None) -> Report:
+    def _decode_report(self, packed: bytes, wanted: str | None, original: str | None) -> Report:
         try:
-            report = _decode(self._unpacked(packed))
+            report = _decode(self._unpack_report(packed))
         except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-            raise self._damaged(error) from None
+            raise self._make_damage_error(error) from None
         if not wanted and not original:
             return report
         return msgspec.structs.replace(report, id=wanted or report.id, same_as=original or "")
 
-    def _unpacked(self, packed: bytes) -> bytes:
+    def _unpack_report(self, packed: bytes) -> bytes:
         unpacker = zlib.decompressobj()
         try:
             data = unpacker.decompress(packed, _LARGEST)
         except (zlib.error, TypeError) as error:
-            raise self._damaged(error) from None
+            raise self._make_damage_error(error) from None
         if not unpacker.eof:
-            raise self._damaged(ValueError("a report that is cut off or too large"))
+            raise self._make_damage_error(ValueError("a report that is cut off or too large"))
         return data
 
-    def _damaged(self, error: Exception) -> CorpusError:
+    def _make_damage_error(self, error: Exception) -> CorpusError:
         """The store is left as it is: what can still be read of it belongs to its user."""
         return CorpusError(
-            f"{self.path}: is damaged ({_clause(error)[:200]}); bring back a copy, or give another file with --store"
+            f"{self.path}: is damaged ({_describe(error)[:200]}); bring back a copy, or give another file with --store"
         )
 
-    def _fault(self, error: sqlite3.Error) -> CorpusError:
+    def _make_error(self, error: sqlite3.Error) -> CorpusError:
         if "locked" in str(error):
             return CorpusError(f"{self.path}: another process writes to it; wait until that has ended")
         if isinstance(error, sqlite3.OperationalError):
@@ -547,5 +547,5 @@ def _lower(pairs: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
     return ((copy.lower(), original.lower()) for copy, original in pairs)
 
 
-def _clause(error: Exception) -> str:
+def _describe(error: Exception) -> str:
     return (error.strerror if isinstance(error, OSError) else str(error)) or type(error).__name__

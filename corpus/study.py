@@ -14,10 +14,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..edges.console import counted, run_command, say
+from ..edges.console import format_count, run_command, say
 from ..edges.documents import load_json
 from ..edges.files import read_file, write_file
-from ..edges.limits import limits
+from ..edges.limits import get_limits
 from .figures import SETTINGS
 from .report import CorpusError
 from .store import open_reports
@@ -36,13 +36,13 @@ class Outcome(NamedTuple):
     failure: str
 
 
-def notebooks_here() -> Path:
+def find_notebooks() -> Path:
     """The notebooks of the checkout one stands in, else those beside the package."""
     here = Path("notebooks")
     return here.resolve() if any(here.glob("*.ipynb")) else _BESIDE
 
 
-def command(
+def run_study(
     names: Sequence[str] = (), full: bool = False, reports: Path | None = None, output: Path = Path("study"),
     notebooks: Path | None = None, quiet: bool = False,
 ) -> int:  # fmt: skip
@@ -52,8 +52,8 @@ def command(
         outcomes = run(names, full, reports, output, notebooks, (lambda _: None) if quiet else say)
         failed = [one for one in outcomes if one.failure]
         made = sum(len(one.figures) for one in outcomes)
-        done = f"{len(outcomes) - len(failed)} of {counted(len(outcomes), 'notebook')}"
-        say(f"{done}, {counted(made, 'figure')}: {output}")
+        done = f"{len(outcomes) - len(failed)} of {format_count(len(outcomes), 'notebook')}"
+        say(f"{done}, {format_count(made, 'figure')}: {output}")
         return 1 if failed else 0
 
     return run_command(work, "interrupted; notebooks that were finished are kept")
@@ -70,9 +70,9 @@ def run(
     Raises CorpusError when the study cannot be started; what fails inside a notebook is in its Outcome.
     """
     _needs()
-    folder = _folder(notebooks)
-    chosen = _chosen(names, folder)
-    reading = [path.stem for path in chosen if _metadata(path).get("texts")]
+    folder = _find_folder(notebooks)
+    chosen = _select_notebooks(names, folder)
+    reading = [path.stem for path in chosen if _read_metadata(path).get("texts")]
     if full and reports is None and reading:
         raise CorpusError(
             f"{reading[0]} reads the reports' texts: `rosimpact corpus hydrate` gets them; give the file with --reports"
@@ -110,8 +110,8 @@ def _needs() -> None:
         raise CorpusError(f"the study needs {', '.join(missing)}: pip install 'rosimpact[study]'")
 
 
-def _folder(notebooks: Path | None) -> Path:
-    folder = notebooks or notebooks_here()
+def _find_folder(notebooks: Path | None) -> Path:
+    folder = notebooks or find_notebooks()
     if not any(folder.glob("*.ipynb")):
         where = (
             "give another folder" if notebooks else "run from a checkout of rosimpact, or give it with --notebooks DIR"
@@ -120,7 +120,7 @@ def _folder(notebooks: Path | None) -> Path:
     return folder
 
 
-def _chosen(names: Sequence[str], folder: Path) -> list[Path]:
+def _select_notebooks(names: Sequence[str], folder: Path) -> list[Path]:
     there = sorted(folder.glob("*.ipynb"))
     if not names:
         return there
@@ -134,11 +134,11 @@ def _chosen(names: Sequence[str], folder: Path) -> list[Path]:
     return chosen
 
 
-def _metadata(path: Path) -> dict[str, Any]:
+def _read_metadata(path: Path) -> dict[str, Any]:
     """What a notebook says of itself: `figures`, the names of those it makes; `texts`, whether its full form reads
     reports. Nothing when it cannot be read: it then fails when it is executed."""
     try:
-        return load_json(read_file(path, limits().report))["metadata"].get("rosimpact", {})
+        return load_json(read_file(path, get_limits().report))["metadata"].get("rosimpact", {})
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return {}
 
@@ -151,16 +151,16 @@ def _execute(path: Path, settings: dict[str, Any], output: Path, progress: Calla
     from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
     try:
-        notebook = nbformat.reads(read_file(path, limits().report).decode(), as_version=4)
+        notebook = nbformat.reads(read_file(path, get_limits().report).decode(), as_version=4)
     except Exception as error:
         return Outcome(path.stem, (), f"is no notebook ({error}); take the file from the repository")
-    expected = tuple(_metadata(path).get("figures", ()))
+    expected = tuple(_read_metadata(path).get("figures", ()))
     for name in expected:
         for kind in ("svg", "png"):
             (output / "figures" / f"{name}.{kind}").unlink(missing_ok=True)
     total = len(notebook.cells)
 
-    def started(cell: Any, cell_index: int) -> None:
+    def report_cell(cell: Any, cell_index: int) -> None:
         if cell.cell_type == "code" and sys.stderr.isatty():
             progress(f"    cell {cell_index + 1} of {total}")
 
@@ -178,38 +178,38 @@ def _execute(path: Path, settings: dict[str, Any], output: Path, progress: Calla
         specs = KernelSpecManager(kernel_dirs=[])
         manager = AsyncKernelManager(kernel_name="python3", kernel_spec_manager=specs, **as_files)
         client = NotebookClient(
-            notebook, km=manager, timeout=None, record_timing=False, on_cell_execute=started, allow_errors=False,
+            notebook, km=manager, timeout=None, record_timing=False, on_cell_execute=report_cell, allow_errors=False,
             resources={"metadata": {"path": str(output.resolve())}},
         )  # fmt: skip
         client.owns_km = True  # so that it ends the kernel
         try:
             client.execute(env=environment)
         except CellExecutionError as error:
-            failure = f"cell {_failed_cell(notebook)}: {error.ename}: {' '.join(str(error.evalue).split())[:300]}"
+            failure = f"cell {_find_failed_cell(notebook)}: {error.ename}: {' '.join(str(error.evalue).split())[:300]}"
         except (CellTimeoutError, DeadKernelError, RuntimeError) as error:
             failure = f"the kernel ended: {' '.join(str(error).split())[:300]}"
-    made = tuple(name for name in expected if _drawn(output / "figures", name))
+    made = tuple(name for name in expected if _is_drawn(output / "figures", name))
     if not failure and len(made) < len(expected):
         failure = f"made no figure {', '.join(f'`{name}`' for name in expected if name not in made)}"
     try:
-        write_file(output / path.name, (nbformat.writes(_plain(notebook)) + "\n").encode())
+        write_file(output / path.name, (nbformat.writes(_strip_run_details(notebook)) + "\n").encode())
     except OSError as error:
         failure = failure or f"cannot be written: {error.strerror}"
     return Outcome(path.stem, made, failure)
 
 
-def _failed_cell(notebook: Any) -> int:
+def _find_failed_cell(notebook: Any) -> int:
     for number, cell in enumerate(notebook.cells, 1):
         if any(one.get("output_type") == "error" for one in cell.get("outputs", ())):
             return number
     return len(notebook.cells)
 
 
-def _drawn(folder: Path, name: str) -> bool:
+def _is_drawn(folder: Path, name: str) -> bool:
     return all((folder / f"{name}.{kind}").is_file() for kind in ("svg", "png"))
 
 
-def _plain(notebook: Any) -> Any:
+def _strip_run_details(notebook: Any) -> Any:
     """The notebook without what differs between two runs or two machines: times, paths, versions of Python."""
     for cell in notebook.cells:
         cell.metadata = {key: value for key, value in cell.metadata.items() if key == "tags"}

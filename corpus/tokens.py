@@ -10,7 +10,7 @@ KEYRING_SERVICE = "rosimpact"
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
 
-def github_token(api: str, environment: Mapping[str, str] = os.environ) -> str:
+def find_github_token(api: str, environment: Mapping[str, str] = os.environ) -> str:
     """The token for a GitHub API address, or an empty string.
 
     GITHUB_TOKEN or GH_TOKEN for api.github.com and for the host of $GITHUB_API_URL (GitHub's own runners set it);
@@ -21,32 +21,32 @@ def github_token(api: str, environment: Mapping[str, str] = os.environ) -> str:
     host = (parts.hostname or "").lower()
     if parts.scheme != "https" and host not in _LOOPBACK:
         return ""
-    own = ("api.github.com", _host(environment.get("GITHUB_API_URL", "")))
+    own = ("api.github.com", _parse_host(environment.get("GITHUB_API_URL", "")))
     names = ("GITHUB_TOKEN", "GH_TOKEN") if host in own else ("GH_ENTERPRISE_TOKEN", "GITHUB_ENTERPRISE_TOKEN")
-    return _first(names, environment) or _kept(f"github@{host}")
+    return _find_first(names, environment) or _read_keyring(f"github@{host}")
 
 
-def stack_exchange_key(api: str, environment: Mapping[str, str] = os.environ) -> str:
+def find_stack_exchange_key(api: str, environment: Mapping[str, str] = os.environ) -> str:
     """The key for a Stack Exchange API address, from STACK_EXCHANGE_KEY or the keyring, or an empty string."""
     parts = urlsplit(api)
     host = (parts.hostname or "").lower()
     if host not in _LOOPBACK and (parts.scheme, host) != ("https", "api.stackexchange.com"):
         return ""
-    return _first(("STACK_EXCHANGE_KEY",), environment) or _kept(f"stack-exchange@{host}")
+    return _find_first(("STACK_EXCHANGE_KEY",), environment) or _read_keyring(f"stack-exchange@{host}")
 
 
-def _host(address: str) -> str:
+def _parse_host(address: str) -> str:
     try:
         return (urlsplit(address).hostname or "").lower()
     except ValueError:  # half of an IPv6 address
         return ""
 
 
-def _first(names: tuple[str, ...], environment: Mapping[str, str]) -> str:
+def _find_first(names: tuple[str, ...], environment: Mapping[str, str]) -> str:
     return next((value for name in names if (value := environment.get(name, "").strip())), "")
 
 
-def _kept(user: str) -> str:
+def _read_keyring(user: str) -> str:
     """The keyring's password; an empty string where there is no keyring, or it cannot be opened."""
     try:
         import keyring

@@ -26,8 +26,8 @@ import msgspec
 from ..edges.files import write_file
 from ..impact.targets.providers.apt import INFERRED, AptGraph
 from ..impact.targets.providers.providers import Providers
-from ..impact.targets.snapshot import DATA, default
-from .providers import dependencies_of, read_keys
+from ..impact.targets.snapshot import DATA, load_snapshot
+from .providers import read_dependencies, read_keys
 
 BASE = "build-essential"
 """What every machine that builds Debian packages has (Debian policy 4.2)."""
@@ -35,7 +35,7 @@ _ENOUGH = 3
 """Names that a package must have to itself for their company to tell what brings it."""
 
 
-def condensed(depends: Mapping[str, Iterable[str]], wanted: frozenset[str]) -> dict[str, set[str]]:
+def reduce_dependencies(depends: Mapping[str, Iterable[str]], wanted: frozenset[str]) -> dict[str, set[str]]:
     """Each wanted package to the wanted ones that it leads to without another one between them."""
     found = {}
     for start in wanted & depends.keys():
@@ -49,7 +49,7 @@ def condensed(depends: Mapping[str, Iterable[str]], wanted: frozenset[str]) -> d
     return found
 
 
-def reachable(depends: Mapping[str, Iterable[str]], start: str) -> set[str]:
+def collect_reachable(depends: Mapping[str, Iterable[str]], start: str) -> set[str]:
     """A package and everything that it depends on."""
     found, waiting = {start}, [start]
     while waiting:
@@ -60,7 +60,7 @@ def reachable(depends: Mapping[str, Iterable[str]], start: str) -> set[str]:
     return found
 
 
-def inferred(providers: Iterable[tuple[str, ...]]) -> dict[str, set[str]]:
+def infer_packages(providers: Iterable[tuple[str, ...]]) -> dict[str, set[str]]:
     """Each package to those whose names all come along with it. providers: for each name the packages that rosdep keys
     install and that bring it, the one that has it first."""
     companions: dict[str, set[str]] = {}
@@ -78,15 +78,15 @@ def inferred(providers: Iterable[tuple[str, ...]]) -> dict[str, set[str]]:
     return found
 
 
-def graph(
+def build_graph(
     suites: Mapping[str, Mapping[str, Iterable[str]]], keys: frozenset[str], seen: Mapping[str, set[str]]
 ) -> AptGraph:
-    """suites: platform to package to what it depends on. keys: packages of rosdep keys. seen: as inferred() gives."""
-    base = sorted(set().union(*(reachable(depends, BASE) for depends in suites.values())))
+    """suites: platform to package to what it depends on. keys: packages of rosdep keys. seen: see infer_packages()."""
+    base = sorted(set().union(*(collect_reachable(depends, BASE) for depends in suites.values())))
     wanted = keys - frozenset(base)
     edges: dict[str, dict[str, int]] = defaultdict(dict)
     for place, depends in enumerate(suites.values()):
-        for name, reached in condensed(depends, wanted).items():
+        for name, reached in reduce_dependencies(depends, wanted).items():
             for other in reached:
                 edges[name][other] = edges[name].get(other, 0) | 1 << place
     for name, reached in seen.items():
@@ -114,10 +114,10 @@ def main(arguments: list[str] | None = None) -> None:
     suites = {}
     for item in given.suite:
         platform, _, lists = item.partition("=")
-        suites[platform] = dependencies_of(Path(lists))
+        suites[platform] = read_dependencies(Path(lists))
         print(platform, len(suites[platform]), "packages", flush=True)
-    keys = frozenset(name for names in read_keys(default()).debian.values() for name in names)
-    made = graph(suites, keys, inferred(Providers(given.output).companies()))
+    keys = frozenset(name for names in read_keys(load_snapshot()).debian.values() for name in names)
+    made = build_graph(suites, keys, infer_packages(Providers(given.output).list_provider_groups()))
     packed = zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(made))
     write_file(given.output / "apt.json.zst", packed)
     print(len(made.packages), "packages,", sum(map(len, made.brings.values())), "relations,", len(packed), "bytes")

@@ -22,7 +22,7 @@ from .. import edges, impact
 from ..edges.console import UserError
 from ..impact.tree import TreeError
 from .surface.clones import Clone
-from .surface.releases import git_directory
+from .surface.releases import find_git_directory
 
 if TYPE_CHECKING:
     from .jobs import Job, Result
@@ -33,7 +33,7 @@ _LOST = 30
 
 
 @cache
-def code_digest() -> str:
+def compute_code_digest() -> str:
     """The same on every machine that has the same checker and builder: names and contents of their files."""
     digest = hashlib.sha1()
     for root in (Path(impact.__path__[0]), Path(__file__).parent, Path(edges.__path__[0])):
@@ -57,16 +57,16 @@ class CodeState(NamedTuple):
     digest: str
 
     @classmethod
-    def here(cls) -> CodeState:
+    def detect(cls) -> CodeState:
         from ..edges.version import __version__
 
-        return cls(__version__, "{}.{}".format(*sys.version_info), code_digest())
+        return cls(__version__, "{}.{}".format(*sys.version_info), compute_code_digest())
 
     def __str__(self) -> str:
         return f"rosimpact {self.version} ({self.digest[:8]}) on Python {self.python}"
 
 
-def done_by(address: str, jobs: Sequence[Job]) -> Generator[tuple[Job, Result], None, None]:
+def run_on_cluster(address: str, jobs: Sequence[Job]) -> Generator[tuple[Job, Result], None, None]:
     """The jobs with their results as they end, each once. address: of a Dask scheduler, such as tcp://host:8786. The
     cluster lets go of what is not done yet when the iterator is closed.
 
@@ -92,9 +92,9 @@ def done_by(address: str, jobs: Sequence[Job]) -> Generator[tuple[Job, Result], 
     except (OSError, ValueError, ImportError) as error:
         raise ClusterError(f"--dask {address}: {error}; give the address of a running `dask scheduler`") from None
     try:
-        code = CodeState.here()
+        code = CodeState.detect()
         _check(client, address, code, sorted({state.place for job in jobs for state in job.states}))
-        yield from _done(client, address, code, jobs)
+        yield from _iterate_results(client, address, code, jobs)
     finally:
         client.close()
 
@@ -105,15 +105,15 @@ def _check(client: Any, address: str, code: CodeState, places: list[str]) -> Non
         client.wait_for_workers(1, timeout=_REACH)
     except TimeoutError:
         raise ClusterError(f"--dask {address}: has no workers; start some: `dask worker {address}`") from None
-    found = client.run(_unfit, code, places, on_error="return")
-    unfit = {worker: _reason(each) for worker, each in found.items() if each}
+    found = client.run(_explain_unfit, code, places, on_error="return")
+    unfit = {worker: _explain_refusal(each) for worker, each in found.items() if each}
     if unfit:
         worker = min(unfit)
         more = f" (and {len(unfit) - 1} more of {len(found)} workers)" if len(unfit) > 1 else ""
         raise ClusterError(f"--dask {address}: worker {worker}{more} {unfit[worker]}")
 
 
-def _reason(answer: str | Exception) -> str:
+def _explain_refusal(answer: str | Exception) -> str:
     if isinstance(answer, str):
         return answer
     if "No module named" in str(answer) or "Can't get attribute" in str(answer):
@@ -121,29 +121,29 @@ def _reason(answer: str | Exception) -> str:
     return f"cannot work: {' '.join(str(answer).split())[:200]}"
 
 
-def _unfit(code: CodeState, places: Sequence[str]) -> str:
+def _explain_unfit(code: CodeState, places: Sequence[str]) -> str:
     """Why this process cannot do jobs on these clones, as the rest of a sentence; empty when it can."""
-    if CodeState.here() != code:
-        return f"has {CodeState.here()}, and here is {code}; install there what is installed here, and start it again"
-    lacking = [place for place in places if git_directory(Path(place)) is None]
+    if CodeState.detect() != code:
+        return f"has {CodeState.detect()}, and here is {code}; install there what is installed here, and start it again"
+    lacking = [place for place in places if find_git_directory(Path(place)) is None]
     if lacking:
         more = f" and {len(lacking) - 1} more of {len(places)} clones" if len(lacking) > 1 else ""
         return f"does not see {lacking[0]}{more}; give it the clones at the same path"
     return ""
 
 
-def _work(code: CodeState, job: Job) -> Result | str:
+def _run_job(code: CodeState, job: Job) -> Result | str:
     """Does a job on a worker; says why it cannot be done there. Workers come later too, and clones are fetched."""
     from .jobs import run
 
     places = sorted({state.place for state in job.states})
-    why = _unfit(code, places)
+    why = _explain_unfit(code, places)
     if why:
         return why
     clones = {place: Clone(Path(place)) for place in places}
     for state, tree in zip(job.states, job.trees, strict=True):
         try:
-            same = clones[state.place].folder_id(state.revision) == tree
+            same = clones[state.place].find_folder_id(state.revision) == tree
         except TreeError:
             same = False
         if not same:
@@ -151,19 +151,19 @@ def _work(code: CodeState, job: Job) -> Result | str:
     return run(job)
 
 
-def _done(client: Any, address: str, code: CodeState, jobs: Sequence[Job]) -> Iterator[tuple[Job, Result]]:
+def _iterate_results(client: Any, address: str, code: CodeState, jobs: Sequence[Job]) -> Iterator[tuple[Job, Result]]:
     from distributed import as_completed
 
-    running = {client.submit(_work, code, job, pure=False): job for job in jobs}
+    running = {client.submit(_run_job, code, job, pure=False): job for job in jobs}
     ended = as_completed(running, loop=client.loop)
     while running:
         _wait(client, ended, address)
         for future in ended.next_batch(block=False):
             job = running.pop(future)
-            yield job, _result(future, address, job)
+            yield job, _read_result(future, address, job)
 
 
-def _result(future: Any, address: str, job: Job) -> Result:
+def _read_result(future: Any, address: str, job: Job) -> Result:
     """What a future gave. Raises ClusterError, and what the job raised."""
     from concurrent.futures import CancelledError
 

@@ -21,7 +21,7 @@ from ..impact.facts.cmake import extract
 from ..impact.facts.manifest import extract as read_manifest
 from ..impact.model.cmake.names import COMMANDS
 from ..impact.targets.snapshot import DATA
-from ..impact.targets.surface.store import shipped
+from ..impact.targets.surface.store import load_shipped
 
 _NAME = re.compile(r"[a-z][a-z0-9]*_\w+\Z")
 _SCRIPT = re.compile(r"\.cmake(\.in|\.em)?\Z")
@@ -49,10 +49,10 @@ def find_commands(folder: Path) -> Iterator[tuple[int, str, str]]:
 
 def find_stored() -> Iterator[tuple[int, str, str]]:
     """The same of the shipped surfaces."""
-    surfaces = shipped()
+    surfaces = load_shipped()
     for package in sorted(surfaces.packages):
-        for generation in surfaces.generations(package):
-            history = surfaces.history(package, generation)
+        for generation in surfaces.list_ros(package):
+            history = surfaces.find_history(package, generation)
             for version in history.versions if history is not None else ():
                 build = history.build(version) if history is not None else None
                 for name in build.commands if build is not None else ():

@@ -24,11 +24,11 @@ from typing import Any
 import yaml
 
 from ..edges.files import write_file
-from ..impact.targets.platform import library_name
+from ..impact.targets.platform import normalize_library_name
 from ..impact.targets.snapshot import DATA
-from ..impact.targets.version import at_least
-from .git import BuildError, file_versions, first_parents, open_repository
-from .surface.releases import git_directory
+from ..impact.targets.version import is_at_least
+from .git import BuildError, open_repository, read_file_versions, read_first_parents
+from .surface.releases import find_git_directory
 
 PINNING = "conda-forge+conda-forge-pinning-feedstock"
 CHANNEL = "conda-forge"
@@ -69,28 +69,28 @@ def _holds(selector: str | None) -> bool:
     if selector is None:
         return True
     try:
-        return _value(ast.parse(selector.strip(), mode="eval").body)
+        return _evaluate(ast.parse(selector.strip(), mode="eval").body)
     except (SyntaxError, ValueError):
         return False
 
 
-def _value(node: ast.expr) -> bool:
+def _evaluate(node: ast.expr) -> bool:
     if isinstance(node, ast.Name):
         return node.id in _LINUX
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        return not _value(node.operand)
+        return not _evaluate(node.operand)
     if isinstance(node, ast.BoolOp):
-        return (all if isinstance(node.op, ast.And) else any)(_value(one) for one in node.values)
+        return (all if isinstance(node.op, ast.And) else any)(_evaluate(one) for one in node.values)
     if isinstance(node, (ast.Compare, ast.Call)):
         return False  # of the environment or a compiler
     raise ValueError(ast.dump(node))
 
 
-def library_of(pin: str, libraries: Collection[str]) -> str:
+def find_library(pin: str, libraries: Collection[str]) -> str:
     """The library, of those named, that a pin is of; empty where its name tells none."""
     if pin in _VARIABLES:
         return _VARIABLES[pin]
-    wanted = _fold(library_name(pin.replace("_", "-")))
+    wanted = _fold(normalize_library_name(pin.replace("_", "-")))
     return next((one for one in libraries if _fold(one) == wanted), "")
 
 
@@ -102,12 +102,12 @@ def _fold(name: str) -> str:
 
 def read_history(clone: Path, path: str) -> Iterator[tuple[str, str]]:
     """The days on which a file of a clone changed, oldest first, with its text at their end. Raises BuildError."""
-    directory = git_directory(clone)
+    directory = find_git_directory(clone)
     if directory is None:
         raise BuildError(f"{clone} is no clone; fetch it first")
     repository = open_repository(directory)
-    line = first_parents(repository, repository[repository.head.target])
-    versions = file_versions(repository, line, {"": [path]})[""]
+    line = read_first_parents(repository, repository[repository.head.target])
+    versions = read_file_versions(repository, line, {"": [path]})[""]
     days = {datetime.fromtimestamp(one.ts, timezone.utc).date().isoformat(): one.blob for one in versions}
     for day, blob in days.items():
         if blob and blob in repository:
@@ -129,7 +129,7 @@ def read_releases(clone: Path) -> dict[str, str]:
     return rows
 
 
-def exact_version(pin: str, day: str, releases: Mapping[str, str]) -> str:
+def resolve_version(pin: str, day: str, releases: Mapping[str, str]) -> str:
     """The version that a pin means on a day: the newest of the recipe that begins so, else the pin itself where it has
     more than one number, or stands for a year; empty where that cannot be told. releases: versions by day."""
     plain = _VERSION.match(pin)
@@ -139,7 +139,7 @@ def exact_version(pin: str, day: str, releases: Mapping[str, str]) -> str:
     fitting = [one for since, one in releases.items() if since <= day and f"{one}.".startswith(f"{version}.")]
     newest = ""
     for one in fitting:
-        newest = one if not newest or at_least(one, newest) else newest
+        newest = one if not newest or is_at_least(one, newest) else newest
     return newest or (version if "." in version or len(version) > 3 else "")
 
 
@@ -148,7 +148,7 @@ def build(clones: Path) -> dict[str, dict[str, dict[str, str]]]:
     each; an empty version: not pinned from then on. Raises BuildError where conda-forge's pins are not at hand."""
     platforms: dict[str, dict[str, Any]] = yaml.safe_load((DATA / "platform_versions.yaml").read_bytes())["platforms"]
     libraries = {name for row in platforms.values() for name in row}
-    of_pin = cache(lambda pin: library_of(pin, libraries))
+    of_pin = cache(lambda pin: find_library(pin, libraries))
     sources = {CHANNEL: (clones / PINNING, "recipe/conda_build_config.yaml")}
     releases: dict[str, dict[str, str]] = {}
     for clone in sorted(clones.iterdir()):
@@ -164,7 +164,7 @@ def build(clones: Path) -> dict[str, dict[str, dict[str, str]]]:
             now: dict[str, str] = {}
             for pin, value in read_pins(text).items():
                 library = of_pin(pin)
-                version = exact_version(value, day, releases.get(library, {})) if library else ""
+                version = resolve_version(value, day, releases.get(library, {})) if library else ""
                 version = value if pin in _VARIABLES else version
                 if version:
                     now.setdefault(library, version)

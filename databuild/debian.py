@@ -24,15 +24,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..edges.files import write_file
-from ..impact.facts.surface import CLASSES, Entity, HeaderSurface, offered
-from ..impact.targets.changes import all_rows, all_uses
+from ..impact.facts.surface import CLASSES, Entity, HeaderSurface, list_offered
+from ..impact.targets.changes import load_rows, load_uses
 from ..impact.targets.platform import CODENAMES
 from ..impact.targets.snapshot import DATA
-from ..impact.targets.surface.store import shipped
-from ..impact.targets.version import at_least, parts
+from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.version import is_at_least, parse
 from . import library_file, library_tags
-from .includes import platform_versions
-from .libraries import INNER, INNER_NAME, LibraryFacts, Run, Texts, count_uses, upstream
+from .includes import list_platform_versions
+from .libraries import INNER, INNER_NAME, LibraryFacts, Run, Texts, count_uses, extract_upstream_version
 
 
 class Library(NamedTuple):
@@ -46,7 +46,7 @@ class Library(NamedTuple):
     names: re.Pattern[str]
 
 
-def _library(name: str, packages: str, headers: str, names: str) -> Library:
+def _make_library(name: str, packages: str, headers: str, names: str) -> Library:
     return Library(
         name,
         re.compile(rf"(?:{packages})\Z"),
@@ -57,55 +57,55 @@ def _library(name: str, packages: str, headers: str, names: str) -> Library:
 
 _ENDING = r"\.(?:h|hpp|hh|hxx|inl|ipp)"
 LIBRARIES = (
-    _library("opencv", r"libopencv-[\w-]+", rf"opencv4/(?P<path>opencv2/.+{_ENDING})", r"cv::.+|CV_\w+"),
-    _library("pcl", "libpcl-dev", rf"pcl-[\d.]+/(?P<path>pcl/.+{_ENDING})", r"pcl::.+|PCL_\w+"),
-    _library("boost", r"libboost1\.\d+-dev", rf"(?P<path>boost/.+{_ENDING})", r"boost::.+"),
-    _library("eigen3", "libeigen3-dev", r"eigen3/(?P<path>(?:Eigen|unsupported)/.+)", r"Eigen::.+|EIGEN_\w+"),
-    _library("yaml-cpp", "libyaml-cpp-dev", rf"(?P<path>yaml-cpp/.+{_ENDING})", r"YAML::.+"),
-    _library("fmt", "libfmt-dev", rf"(?P<path>fmt/.+{_ENDING})", r"fmt::.+"),
-    _library("tinyxml", "libtinyxml-dev", rf"(?P<path>tinyxml{_ENDING}|tinystr{_ENDING})", r"TiXml\w+"),
-    _library("tinyxml2", "libtinyxml2-dev", rf"(?P<path>tinyxml2{_ENDING})", r"tinyxml2::.+"),
-    _library("bullet", "libbullet-dev", rf"bullet/(?P<path>.+{_ENDING})", r"bt[A-Z]\w+(?:::.+)?|BT_[A-Z]\w+"),
-    _library("orocos-kdl", "liborocos-kdl-dev", rf"(?P<path>kdl/.+{_ENDING})", r"KDL::.+"),
-    _library("assimp", "libassimp-dev", rf"(?P<path>assimp/.+{_ENDING})", r"Assimp::.+|ai[A-Z]\w+(?:::.+)?"),
-    _library("ceres", "libceres-dev", rf"(?P<path>ceres/.+{_ENDING})", r"ceres::.+"),
-    _library("fcl", "libfcl-dev", rf"(?P<path>fcl/.+{_ENDING})", r"fcl::.+"),
-    _library("ompl", "libompl-dev", rf"(?:ompl-[\d.]+/)?(?P<path>ompl/.+{_ENDING})", r"ompl::.+"),
-    _library("octomap", "liboctomap-dev", rf"(?P<path>octomap/.+{_ENDING})", r"octomap::.+|octomath::.+"),
-    _library("spdlog", "libspdlog-dev", rf"(?P<path>spdlog/.+{_ENDING})", r"spdlog::.+|SPDLOG_\w+"),
-    _library("protobuf", "libprotobuf-dev", rf"(?P<path>google/protobuf/.+{_ENDING})", r"google::protobuf::.+"),
-    _library(
+    _make_library("opencv", r"libopencv-[\w-]+", rf"opencv4/(?P<path>opencv2/.+{_ENDING})", r"cv::.+|CV_\w+"),
+    _make_library("pcl", "libpcl-dev", rf"pcl-[\d.]+/(?P<path>pcl/.+{_ENDING})", r"pcl::.+|PCL_\w+"),
+    _make_library("boost", r"libboost1\.\d+-dev", rf"(?P<path>boost/.+{_ENDING})", r"boost::.+"),
+    _make_library("eigen3", "libeigen3-dev", r"eigen3/(?P<path>(?:Eigen|unsupported)/.+)", r"Eigen::.+|EIGEN_\w+"),
+    _make_library("yaml-cpp", "libyaml-cpp-dev", rf"(?P<path>yaml-cpp/.+{_ENDING})", r"YAML::.+"),
+    _make_library("fmt", "libfmt-dev", rf"(?P<path>fmt/.+{_ENDING})", r"fmt::.+"),
+    _make_library("tinyxml", "libtinyxml-dev", rf"(?P<path>tinyxml{_ENDING}|tinystr{_ENDING})", r"TiXml\w+"),
+    _make_library("tinyxml2", "libtinyxml2-dev", rf"(?P<path>tinyxml2{_ENDING})", r"tinyxml2::.+"),
+    _make_library("bullet", "libbullet-dev", rf"bullet/(?P<path>.+{_ENDING})", r"bt[A-Z]\w+(?:::.+)?|BT_[A-Z]\w+"),
+    _make_library("orocos-kdl", "liborocos-kdl-dev", rf"(?P<path>kdl/.+{_ENDING})", r"KDL::.+"),
+    _make_library("assimp", "libassimp-dev", rf"(?P<path>assimp/.+{_ENDING})", r"Assimp::.+|ai[A-Z]\w+(?:::.+)?"),
+    _make_library("ceres", "libceres-dev", rf"(?P<path>ceres/.+{_ENDING})", r"ceres::.+"),
+    _make_library("fcl", "libfcl-dev", rf"(?P<path>fcl/.+{_ENDING})", r"fcl::.+"),
+    _make_library("ompl", "libompl-dev", rf"(?:ompl-[\d.]+/)?(?P<path>ompl/.+{_ENDING})", r"ompl::.+"),
+    _make_library("octomap", "liboctomap-dev", rf"(?P<path>octomap/.+{_ENDING})", r"octomap::.+|octomath::.+"),
+    _make_library("spdlog", "libspdlog-dev", rf"(?P<path>spdlog/.+{_ENDING})", r"spdlog::.+|SPDLOG_\w+"),
+    _make_library("protobuf", "libprotobuf-dev", rf"(?P<path>google/protobuf/.+{_ENDING})", r"google::protobuf::.+"),
+    _make_library(
         "ffmpeg-libavcodec",
         r"libav(?:codec|util|format|device)-dev|libswscale-dev",
         rf"(?P<path>lib(?:av|sw)\w+/.+{_ENDING})",
         r"av(?:codec|format|device|io|filter)?_\w+|AV_[A-Z]\w+|AVCodec\w+|AVFormat\w+|AVPicture\w*|AVFrame\w+|sws_\w+",
     ),
-    _library(
+    _make_library(
         "console-bridge", "libconsole-bridge-dev", rf"(?P<path>console_bridge/.+{_ENDING})", r"console_bridge::.+"
     ),
-    _library(
+    _make_library(
         "urdfdom-headers",
         "liburdfdom-headers-dev",
         rf"(?:urdfdom_headers/)?(?P<path>urdf_\w+/.+{_ENDING})",
         r"urdf::.+",
     ),
-    _library("urdfdom", "liburdfdom-dev", rf"(?:urdfdom/)?(?P<path>urdf_parser/.+{_ENDING})", r"urdf::.+"),
-    _library(
+    _make_library("urdfdom", "liburdfdom-dev", rf"(?:urdfdom/)?(?P<path>urdf_parser/.+{_ENDING})", r"urdf::.+"),
+    _make_library(
         "geographiclib", r"libgeographic(?:lib)?-dev", rf"(?P<path>GeographicLib/.+{_ENDING})", r"GeographicLib::.+"
     ),
-    _library("glog", "libgoogle-glog-dev", rf"(?P<path>glog/.+{_ENDING})", r"google::.+"),
-    _library("tbb", "libtbb-dev", rf"(?P<path>(?:tbb|oneapi)/.+{_ENDING})", r"tbb::.+"),
-    _library("jsoncpp", "libjsoncpp-dev", rf"(?:jsoncpp/)?(?P<path>json/.+{_ENDING})", r"Json::.+"),
-    _library("nlohmann-json", "nlohmann-json3-dev", rf"(?P<path>nlohmann/.+{_ENDING})", r"nlohmann::.+"),
-    _library("flann", "libflann-dev", rf"(?P<path>flann/.+{_ENDING})", r"flann::.+"),
-    _library("ccd", "libccd-dev", rf"(?P<path>ccd/.+{_ENDING})", r"ccd_\w+"),
-    _library("nlopt", "libnlopt-dev", r"(?P<path>nlopt\.hp?p?)", r"nlopt::.+|nlopt_\w+"),
-    _library("gtest", "libg(?:test|mock)-dev", rf"(?P<path>g(?:test|mock)/.+{_ENDING})", r"testing::.+"),
-    _library("zeromq", "libzmq3-dev", r"(?P<path>zmq(?:_utils)?\.h)", r"zmq_\w+|ZMQ_\w+"),
-    _library("poco", "libpoco-dev", rf"(?P<path>Poco/.+{_ENDING})", r"Poco::.+"),
-    _library("ogre", r"libogre-1\.\d+-dev", rf"OGRE/(?P<path>.+{_ENDING})", r"Ogre::.+"),
+    _make_library("glog", "libgoogle-glog-dev", rf"(?P<path>glog/.+{_ENDING})", r"google::.+"),
+    _make_library("tbb", "libtbb-dev", rf"(?P<path>(?:tbb|oneapi)/.+{_ENDING})", r"tbb::.+"),
+    _make_library("jsoncpp", "libjsoncpp-dev", rf"(?:jsoncpp/)?(?P<path>json/.+{_ENDING})", r"Json::.+"),
+    _make_library("nlohmann-json", "nlohmann-json3-dev", rf"(?P<path>nlohmann/.+{_ENDING})", r"nlohmann::.+"),
+    _make_library("flann", "libflann-dev", rf"(?P<path>flann/.+{_ENDING})", r"flann::.+"),
+    _make_library("ccd", "libccd-dev", rf"(?P<path>ccd/.+{_ENDING})", r"ccd_\w+"),
+    _make_library("nlopt", "libnlopt-dev", r"(?P<path>nlopt\.hp?p?)", r"nlopt::.+|nlopt_\w+"),
+    _make_library("gtest", "libg(?:test|mock)-dev", rf"(?P<path>g(?:test|mock)/.+{_ENDING})", r"testing::.+"),
+    _make_library("zeromq", "libzmq3-dev", r"(?P<path>zmq(?:_utils)?\.h)", r"zmq_\w+|ZMQ_\w+"),
+    _make_library("poco", "libpoco-dev", rf"(?P<path>Poco/.+{_ENDING})", r"Poco::.+"),
+    _make_library("ogre", r"libogre-1\.\d+-dev", rf"OGRE/(?P<path>.+{_ENDING})", r"Ogre::.+"),
 )
-_LIBAV = _library(
+_LIBAV = _make_library(
     "libav",
     "",
     "",
@@ -143,7 +143,7 @@ def read_library(library: Library, facts: LibraryFacts, release: str, texts: Tex
             path = told["path"]
             headers[path] = HeaderSurface(()) if INNER.search(path) else text.surface
             words.update(text.words)
-    return Version(release, upstream(facts.version), headers, frozenset(words)) if headers else None
+    return Version(release, extract_upstream_version(facts.version), headers, frozenset(words)) if headers else None
 
 
 class Lost(NamedTuple):
@@ -168,11 +168,11 @@ class _Rest(NamedTuple):
     simple: frozenset[str] = frozenset()
 
 
-def _rests(versions: Sequence[Version]) -> list[_Rest]:
+def _collect_rests(versions: Sequence[Version]) -> list[_Rest]:
     found: list[_Rest] = []
     last = _Rest()
     for version in reversed(versions):
-        there = [(e.name, e.name.rpartition("::")[2], e.kind) for e in offered(version.headers.values())]
+        there = [(e.name, e.name.rpartition("::")[2], e.kind) for e in list_offered(version.headers.values())]
         last = _Rest(
             last.headers.union(version.headers),
             last.words | version.words,
@@ -184,35 +184,35 @@ def _rests(versions: Sequence[Version]) -> list[_Rest]:
     return found[::-1]
 
 
-def lost(library: Library, versions: Sequence[Version], steps: int | None = None) -> Iterator[Lost]:
+def find_lost(library: Library, versions: Sequence[Version], steps: int | None = None) -> Iterator[Lost]:
     """What went from each version to the next one for good. versions: oldest first. steps: to how many of them that is
     told, by default to all; the others say what came back."""
-    rests = _rests(versions)
-    functions = [_functions(library, version) for version in versions]
+    rests = _collect_rests(versions)
+    functions = [_group_functions(library, version) for version in versions]
     for place, (before, now) in enumerate(pairwise(versions[: None if steps is None else steps + 1])):
-        if parts(before.number) == parts(now.number):
+        if parse(before.number) == parse(now.number):
             continue
         rest = rests[place + 1]
-        there = {e.name for e in offered(now.headers.values())}
+        there = {e.name for e in list_offered(now.headers.values())}
         headers = {
-            path: _new_place(before, now, path)
+            path: _find_new_header(before, now, path)
             for path in before.headers
             if not INNER.search(path) and path not in rest.headers
         }
         names = {
-            one.name: _successor(one, there)
-            for one in offered(before.headers.values())
-            if _told(library, one)
+            one.name: _find_successor(one, there)
+            for one in list_offered(before.headers.values())
+            if _is_named_by_users(library, one)
             and (last := one.name.rpartition("::")[2]) in before.words
             and last not in rest.words
             and last not in rest.declared  # a macro may put names together
         }
         # Members of what went as a whole are no more than it.
         names = {name: new for name, new in names.items() if name.rpartition("::")[0] not in names}
-        yield Lost(before, now, headers, names, _calls(functions[place], functions[place + 1 :], rest))
+        yield Lost(before, now, headers, names, _find_rejected_calls(functions[place], functions[place + 1 :], rest))
 
 
-def _told(library: Library, one: Entity) -> bool:
+def _is_named_by_users(library: Library, one: Entity) -> bool:
     """Whether an entity is one that users name, of a name that is its own."""
     last = one.name.rpartition("::")[2]
     return (
@@ -230,7 +230,7 @@ def _told(library: Library, one: Entity) -> bool:
     )
 
 
-def _new_place(before: Version, now: Version, path: str) -> str:
+def _find_new_header(before: Version, now: Version, path: str) -> str:
     """The header that has most of what a lost one had, or that it took in; empty where there is none."""
     surface = before.headers[path]
     if surface.instead in now.headers:
@@ -246,7 +246,7 @@ def _new_place(before: Version, now: Version, path: str) -> str:
 _USE = re.compile(r"\b[Uu]se\s+(?:the\s+)?['`\"]?([A-Za-z_][\w:]+)")
 
 
-def _successor(one: Entity, there: Collection[str]) -> str:
+def _find_successor(one: Entity, there: Collection[str]) -> str:
     """What its deprecation said to use, where that is there."""
     found = _USE.search(one.deprecated or "")
     if found is None:
@@ -255,7 +255,7 @@ def _successor(one: Entity, there: Collection[str]) -> str:
     return next((name for name in (f"{scope}::{found[1]}", found[1]) if name in there), "")
 
 
-def _accepted(one: Entity) -> tuple[int, float]:
+def _count_args(one: Entity) -> tuple[int, float]:
     given = one.parameters or ()
     endless = "variadic" in one.traits or any(p.pack for p in given)
     needed = sum(1 for p in given if p.default is None and not p.pack)
@@ -263,10 +263,10 @@ def _accepted(one: Entity) -> tuple[int, float]:
 
 
 def _takes(one: Sequence[Entity], count: int) -> bool:
-    return any(low <= count <= high for low, high in map(_accepted, one))
+    return any(low <= count <= high for low, high in map(_count_args, one))
 
 
-def _calls(
+def _find_rejected_calls(
     old: Mapping[str, Sequence[Entity]], later: Sequence[Mapping[str, Sequence[Entity]]], rest: _Rest
 ) -> dict[str, tuple[int, ...]]:
     """Functions of namespaces that are there still, to the numbers of arguments that no version from then on takes."""
@@ -275,18 +275,18 @@ def _calls(
         # What a macro, an alias or anything but a function may be called by a later version is not told.
         if name in rest.others or name.rpartition("::")[2] in rest.simple or not all(name in known for known in later):
             continue
-        counts = {n for one in forms if (ends := _accepted(one))[1] < 12 for n in range(ends[0], int(ends[1]) + 1)}
+        counts = {n for one in forms if (ends := _count_args(one))[1] < 12 for n in range(ends[0], int(ends[1]) + 1)}
         gone = tuple(sorted(n for n in counts if n and not any(_takes(known[name], n) for known in later)))
         if gone:
             found[name] = gone
     return found
 
 
-def _functions(library: Library, version: Version) -> dict[str, list[Entity]]:
+def _group_functions(library: Library, version: Version) -> dict[str, list[Entity]]:
     """Functions outside classes by name."""
     found: dict[str, list[Entity]] = defaultdict(list)
-    classes = {e.name for e in offered(version.headers.values()) if e.kind in CLASSES}
-    for one in offered(version.headers.values()):
+    classes = {e.name for e in list_offered(version.headers.values()) if e.kind in CLASSES}
+    for one in list_offered(version.headers.values()):
         scope, _, last = one.name.rpartition("::")
         if one.kind != "function" or not scope or scope in classes or not last.isidentifier() or "<" in one.name:
             continue
@@ -295,14 +295,14 @@ def _functions(library: Library, version: Version) -> dict[str, list[Entity]]:
     return found
 
 
-def _tails(name: str) -> Iterator[str]:
+def _list_suffixes(name: str) -> Iterator[str]:
     yield name
     while "::" in name:
         name = name.partition("::")[2]
         yield name
 
 
-def groups(
+def group_rows(
     library: Library,
     versions: Sequence[Version],
     known: Callable[[str, str], bool],
@@ -312,7 +312,7 @@ def groups(
     """Groups of rows as in data/changes.json and data/uses_libraries.json, with which of both it is. known: whether a
     kind and name are told elsewhere already. steps: as lost() has it. elsewhere: whether any library has such a thing
     in a release or a later one."""
-    for step in lost(library, versions, steps):
+    for step in find_lost(library, versions, steps):
         old, new = step.before, step.now
         where = (
             f"Debian's packages: {old.number} in {old.release} and {new.number} in {new.release} compared"
@@ -335,7 +335,7 @@ def groups(
             if kept:
                 yield "changes", {"kind": kind, **shared, "names": kept}
         uses = {
-            f"{name} with {count} arguments" if count > 1 else f"{name} with one argument": _pattern(name, count)
+            f"{name} with {count} arguments" if count > 1 else f"{name} with one argument": _make_pattern(name, count)
             for name, counts in sorted(step.calls.items())
             for count in counts
             if not known("api-removed", name)
@@ -344,7 +344,7 @@ def groups(
             yield "uses", {"kind": "call-changed", **shared, "uses": uses}
 
 
-def _pattern(name: str, count: int) -> dict[str, str]:
+def _make_pattern(name: str, count: int) -> dict[str, str]:
     scope, _, last = name.rpartition("::")
     before = r"\s*::\s*".join(scope.split("::"))
     return {"word": last, "before": rf"\b{before}\s*::\s*", "arguments": str(count)}
@@ -352,42 +352,42 @@ def _pattern(name: str, count: int) -> dict[str, str]:
 
 def find_treated_elsewhere() -> Callable[[str, str], bool]:
     """What the reviewed tables treat, under any part of its name, and what some ROS package has or had."""
-    reviewed = {name for row in all_rows() if not row.last_in for name in (row.old, row.new) if name}
-    used = {row.pattern.word for row in all_uses().values() if row.pattern is not None and not row.last_in}
-    ros = _of_ros_packages()
+    reviewed = {name for row in load_rows() if not row.last_in for name in (row.old, row.new) if name}
+    used = {row.pattern.word for row in load_uses().values() if row.pattern is not None and not row.last_in}
+    ros = _collect_ros_names()
 
     def is_treated(kind: str, name: str) -> bool:
         if kind.startswith("header"):
             return name in reviewed or name in ros
         last = name.rpartition("::")[2]
-        return not reviewed.isdisjoint(_tails(name)) or last in used or name in ros
+        return not reviewed.isdisjoint(_list_suffixes(name)) or last in used or name in ros
 
     return is_treated
 
 
-def _of_ros_packages() -> frozenset[str]:
+def _collect_ros_names() -> frozenset[str]:
     """Headers and C++ names that any stored version of any ROS package has."""
-    stored, found = shipped(), set()
+    stored, found = load_shipped(), set()
     for package in stored.packages:
-        for ros in stored.generations(package):
-            if (history := stored.history(package, ros)) is not None:
-                found |= history.names().keys()
+        for ros in stored.list_ros(package):
+            if (history := stored.find_history(package, ros)) is not None:
+                found |= history.index_names().keys()
     return frozenset(found)
 
 
-def _tagged(clones: Path, library: Library, packaged: Sequence[Version]) -> tuple[list[Version], int]:
+def _list_tagged_versions(clones: Path, library: Library, packaged: Sequence[Version]) -> tuple[list[Version], int]:
     """The versions at release tags, then the packaged ones; and how many steps lead to the first packaged one, or where
     there is none, to the last one that a platform has."""
-    platforms = platform_versions(library.name)
+    platforms = list_platform_versions(library.name)
     tagged = [Version("", *one) for one in library_tags.read(clones, library.name, platforms, INNER)]
     if not tagged:
         return [], 0
-    last = packaged[0].number if packaged else max(platforms, key=parts)
-    steps = sum(1 for version in tagged[1:] if at_least(last, version.number))
+    last = packaged[0].number if packaged else max(platforms, key=parse)
+    steps = sum(1 for version in tagged[1:] if is_at_least(last, version.number))
     return [*tagged, *packaged], steps
 
 
-def packaged(library: Library, suites: Suites, texts: Texts) -> list[Version]:
+def list_packaged_versions(library: Library, suites: Suites, texts: Texts) -> list[Version]:
     """The versions of a library that releases have, oldest first."""
     found = []
     for suite, libraries in suites.items():
@@ -395,7 +395,7 @@ def packaged(library: Library, suites: Suites, texts: Texts) -> list[Version]:
             if any(library.packages.match(name) for name in facts.packages):
                 version = read_library(library, facts, suite, texts)
                 found += [version] if version is not None else []
-    return sorted(found, key=lambda version: (parts(version.number), _ORDER.get(version.release, len(_ORDER))))
+    return sorted(found, key=lambda version: (parse(version.number), _ORDER.get(version.release, len(_ORDER))))
 
 
 _OWN = 0.95
@@ -414,7 +414,7 @@ def start_of(name: str) -> str:
     return f"{head}::" if colons else ""
 
 
-def other_libraries(suites: Suites, texts: Texts) -> list[Library]:
+def find_other_libraries(suites: Suites, texts: Texts) -> list[Library]:
     """The libraries besides LIBRARIES, with the names that are theirs alone among all that were read."""
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     packages: dict[str, set[str]] = defaultdict(set)
@@ -494,19 +494,19 @@ def derive(suites: Suites, texts: Texts, clones: Path | None, output: Path) -> N
     uses: list[dict] = []
     early: list[dict] = []
     for library in (*LIBRARIES, *((_LIBAV,) if clones is not None else ())):
-        versions = packaged(library, suites, texts)
-        for key, group in groups(library, versions, reviewed, elsewhere=everywhere.has):
+        versions = list_packaged_versions(library, suites, texts)
+        for key, group in group_rows(library, versions, reviewed, elsewhere=everywhere.has):
             (changes if key == "changes" else uses).append(group)
-        tagged, steps = _tagged(clones, library, versions) if clones is not None else ([], 0)
+        tagged, steps = _list_tagged_versions(clones, library, versions) if clones is not None else ([], 0)
         # Macros that only old versions have may declare more than is read, so that no numbers of arguments are told.
-        early += [group for key, group in groups(library, tagged, reviewed, steps) if key == "changes" and steps]
+        early += [group for key, group in group_rows(library, tagged, reviewed, steps) if key == "changes" and steps]
     uses_of = count_uses()
-    for library in other_libraries(suites, texts):
+    for library in find_other_libraries(suites, texts):
         if sum(count for name, count in uses_of.items() if library.packages.match(name)) < _USED:
             continue
-        versions = packaged(library, suites, texts)
+        versions = list_packaged_versions(library, suites, texts)
         if not _has_shrunk(versions):
-            told = groups(library, versions, reviewed, elsewhere=everywhere.has)
+            told = group_rows(library, versions, reviewed, elsewhere=everywhere.has)
             changes += [group for key, group in told if key == "changes"]
     write(output / "changes_debian.json", "changes", changes)
     write(output / "uses_debian.json", "uses", uses)
@@ -526,8 +526,8 @@ def main(arguments: list[str] | None = None) -> None:
     for item in asked.suite:
         name, _, configuration = item.partition("=")
         run.read_suite(name, Path(configuration).absolute(), [one.packages for one in LIBRARIES])
-    names = sorted(run.suites(), key=lambda name: _ORDER.get(name, len(_ORDER)))
-    suites = {name: {facts.library: facts for facts in run.facts(name)} for name in names}
+    names = sorted(run.list_suites(), key=lambda name: _ORDER.get(name, len(_ORDER)))
+    suites = {name: {facts.library: facts for facts in run.read_facts(name)} for name in names}
     if not suites:
         parser.error(f"{asked.work}: nothing was read yet; give a --suite for each Debian release")
     print(library_file.write(asked.output / "libraries.sqlite", suites, run.texts), flush=True)

@@ -23,9 +23,9 @@ import zstandard
 
 from ..edges.files import write_file
 from ..impact.facts.interface import PRIMITIVES, Interface, extract
-from ..impact.targets.snapshot import default
-from ..impact.targets.version import parts
-from .surface.releases import git_directory
+from ..impact.targets.snapshot import load_snapshot
+from ..impact.targets.version import parse
+from .surface.releases import find_git_directory
 
 # One member of an interface: section, name, nested type (`*` behind it for arrays; `!` for constants), written type.
 Member = tuple[str, str, str, str]
@@ -59,20 +59,20 @@ class FieldsReader:
         self._folders: dict[bytes, tuple[Released, ...]] = {}
         self._parsed: dict[tuple[bytes, str], tuple[Member, ...]] = {}
 
-    def packages(self, tree) -> tuple[Released, ...]:
+    def read_packages(self, tree) -> tuple[Released, ...]:
         """All wanted packages in a tree that define interfaces."""
         known = self._folders.get(tree.id.raw)
         if known is None:
-            known = self._folders[tree.id.raw] = tuple(self._packages(tree))
+            known = self._folders[tree.id.raw] = tuple(self._find_packages(tree))
         return known
 
-    def _packages(self, tree) -> Iterator[Released]:
+    def _find_packages(self, tree) -> Iterator[Released]:
         entries = {entry.name: entry for entry in tree}
         manifests = [n for n in ("package.xml", "package_ROS2.xml", "package_ROS1.xml") if n in entries]
         if not manifests:
             for name, entry in entries.items():
                 if entry.type_str == "tree" and name not in _ASIDE and not name.startswith("."):
-                    yield from self.packages(entry)
+                    yield from self.read_packages(entry)
             return
         definitions = None
         for file in manifests:
@@ -85,18 +85,18 @@ class FieldsReader:
             tools = set(_TOOL.findall(text))
             ros = tuple(g for g, there in ((1, b"catkin" in tools), (2, bool(tools - {b"catkin"}))) if there)
             if definitions is None:
-                definitions = self._definitions(tree, name.group(1).decode())
+                definitions = self._read_definitions(tree, name.group(1).decode())
             if definitions and ros and not _takes_files_of_others(entries.get("CMakeLists.txt")):
                 yield Released(name.group(1).decode(), ros, version.group(1).decode(), definitions)
 
-    def _definitions(self, tree, package: str) -> Definitions:
+    def _read_definitions(self, tree, package: str) -> Definitions:
         found: Definitions = {}
         for path, entry in _walk(tree, ""):
             name, _, kind = path.rpartition("/")[2].rpartition(".")
             if kind in _KINDS and not _ASIDE & set(path.split("/")[:-1]):
                 key = (entry.id.raw, package)
                 if key not in self._parsed:
-                    self._parsed[key] = _members(extract(entry.data, kind), package)
+                    self._parsed[key] = _list_members(extract(entry.data, kind), package)
                 found.setdefault(f"{kind}/{name}", self._parsed[key])
         return found
 
@@ -121,18 +121,18 @@ def _walk(tree, prefix: str):
             yield prefix + entry.name, entry
 
 
-def _members(definition: Interface, package: str) -> tuple[Member, ...]:
+def _list_members(definition: Interface, package: str) -> tuple[Member, ...]:
     found = []
     for section in definition.sections:
         for field in section.fields:
-            nested = _nested(field.type, package)
+            nested = _find_nested_type(field.type, package)
             mark = nested + ("*" if nested and field.array else "")
             found.append((section.name, field.name, mark, field.type + field.array))
         found.extend((section.name, constant.name, "!", constant.type) for constant in section.constants)
     return tuple(found)
 
 
-def _nested(type_: str, package: str) -> str:
+def _find_nested_type(type_: str, package: str) -> str:
     """`geometry_msgs/Pose` for a nested interface however it is written, empty for a primitive."""
     plain = type_.partition("<=")[0].replace("/msg/", "/")
     if plain in _PRIMITIVE:
@@ -152,7 +152,7 @@ def read_repository(repository, wanted: frozenset[str]) -> Iterator[Released]:
             tree = repository.revparse_single(ref).peel(pygit2.Tree)
         except (KeyError, ValueError, pygit2.GitError):
             continue
-        for released in reader.packages(tree):
+        for released in reader.read_packages(tree):
             if ref.endswith(released.version):
                 yield released
             else:
@@ -160,34 +160,34 @@ def read_repository(repository, wanted: frozenset[str]) -> Iterator[Released]:
     yield from later
 
 
-def table(released: Iterable[Released]) -> dict[str, str]:
+def build_table(released: Iterable[Released]) -> dict[str, str]:
     """`package generation` to its history, as fields.py reads it. Of one version told twice, the first counts."""
     known: dict[tuple[str, int], dict[str, Definitions]] = {}
     for item in released:
         for ros in item.ros:
             known.setdefault((item.package, ros), {}).setdefault(item.version, item.definitions)
-    return {f"{package} {ros}": _history(versions) for (package, ros), versions in sorted(known.items())}
+    return {f"{package} {ros}": _format_history(versions) for (package, ros), versions in sorted(known.items())}
 
 
-def _history(versions: dict[str, Definitions]) -> str:
-    order = sorted(versions, key=parts)
+def _format_history(versions: dict[str, Definitions]) -> str:
+    order = sorted(versions, key=parse)
     states: list[tuple[str, Definitions]] = []
     last: dict[int, str] = {}
     for version in order:
-        last[parts(version)[0]] = version
+        last[parse(version)[0]] = version
         if not states or versions[version] != states[-1][1]:
             states.append((version, versions[version]))
     lines = [" ".join(version for version, _ in states), " ".join(last.values())]
     definitions = [definition for _, definition in states]
     for name in sorted({name for definition in definitions for name in definition}):
         having = [name in definition for definition in definitions]
-        lines.append(f"{name}{_spans(having, [True] * len(having))}")
+        lines.append(f"{name}{_format_spans(having, [True] * len(having))}")
         sections: dict[str, dict[tuple[str, str], list[bool]]] = {}
         for place, definition in enumerate(definitions):
             for section, member, mark, _ in definition.get(name, ()):
                 row = sections.setdefault(section, {}).setdefault((member, mark), [False] * len(definitions))
                 row[place] = True
-        successors = _successors(name, definitions)
+        successors = _find_successors(name, definitions)
         for section, members in sections.items():
             texts = []
             for (member, mark), there in members.items():
@@ -195,12 +195,12 @@ def _history(versions: dict[str, Definitions]) -> str:
                     continue  # constants are only asked for where some version lacks them
                 kind = mark if mark in ("", "!") else f":{mark}"
                 new = successors.get((section, member))
-                texts.append(f"{member}{kind}{_spans(there, having)}{f'>{new}' if new else ''}")
+                texts.append(f"{member}{kind}{_format_spans(there, having)}{f'>{new}' if new else ''}")
             lines.append(f" {section} {' '.join(texts)}")
     return "\n".join(lines)
 
 
-def _spans(there: list[bool], usual: list[bool]) -> str:
+def _format_spans(there: list[bool], usual: list[bool]) -> str:
     """`@2-5,7-`: in which states something is there; empty when it is there whenever it usually is."""
     if there == usual:
         return ""
@@ -214,7 +214,7 @@ def _spans(there: list[bool], usual: list[bool]) -> str:
     return "@" + ",".join(runs)
 
 
-def _successors(name: str, definitions: list[Definitions]) -> dict[tuple[str, str], str]:
+def _find_successors(name: str, definitions: list[Definitions]) -> dict[tuple[str, str], str]:
     """Members that went, with the one of the same type and kind in the same section that stands for them since."""
     last: dict[tuple[str, str], int] = {}
     for place, definition in enumerate(definitions):
@@ -252,7 +252,7 @@ def read_folder(folder: Path, wanted: frozenset[str]) -> Iterator[Released]:
     import pygit2
 
     for clone in sorted(folder.iterdir()):
-        where = git_directory(clone) if clone.is_dir() and "-release" not in clone.name else None
+        where = find_git_directory(clone) if clone.is_dir() and "-release" not in clone.name else None
         if where is not None:
             yield from read_repository(pygit2.Repository(str(where)), wanted)
 
@@ -262,8 +262,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("repositories", type=Path)
     parser.add_argument("--output", "-o", type=Path, required=True)
     given = parser.parse_args(arguments)
-    wanted = frozenset(name for (name,) in default().rows("SELECT name FROM package"))
-    found = table(read_folder(given.repositories, wanted))
+    wanted = frozenset(name for (name,) in load_snapshot().fetch("SELECT name FROM package"))
+    found = build_table(read_folder(given.repositories, wanted))
     write_file(given.output, zstandard.ZstdCompressor(level=19).compress(msgspec.json.encode(found)))
     print(f"{given.output}: {len(found)} packages", file=sys.stderr)
     return 0

@@ -30,21 +30,21 @@ _OTHER_SYSTEM = re.compile(r"\b(?:(?:CMAKE_HOST_)?(?:WIN32|APPLE)|CYGWIN|MSVC\w*
 _NAME = re.compile(r"[\w./+-]+\Z")
 
 
-def looked_for(data: bytes) -> dict[str, list[str]]:
+def find_requirements(data: bytes) -> dict[str, list[str]]:
     """What one module requires first. Returns its kind (`header`, `program`) with the names any of which will do; empty
     where that is a library, or hangs on the project. Further requirements often belong to components."""
     found: dict[str, tuple[str, list[str]]] = {}
     required: set[str] = set()
     lists: dict[str, list[str]] = {}
-    for command in _of_linux(list(extract(data).commands)):
-        words = [word for argument in command.arguments for word in _expanded(argument.text, lists)]
+    for command in _select_linux_commands(list(extract(data).commands)):
+        words = [word for argument in command.arguments for word in _expand_word(argument.text, lists)]
         if command.name == "set" and words:
             lists.setdefault(words[0], []).extend(words[1:])
         elif command.name == "list" and words[:1] == ["APPEND"]:
             lists.setdefault(words[1], []).extend(words[2:])
         kind = _KINDS.get(command.name)
         if kind and words:
-            found.setdefault(words[0], (kind, []))[1].extend(n for n in _names(words[1:]) if _NAME.match(n))
+            found.setdefault(words[0], (kind, []))[1].extend(n for n in _list_names(words[1:]) if _NAME.match(n))
         elif command.name == "find_package_handle_standard_args":
             required.update(words[1:])
     for variable, (kind, names) in found.items():
@@ -53,12 +53,12 @@ def looked_for(data: bytes) -> dict[str, list[str]]:
     return {}
 
 
-def _expanded(text: str, lists: Mapping[str, list[str]]) -> list[str]:
+def _expand_word(text: str, lists: Mapping[str, list[str]]) -> list[str]:
     """A word, or where it is a reference to a variable all that it is ever set to."""
     return lists.get(text[2:-1], [text]) if text.startswith("${") and text.endswith("}") else [text]
 
 
-def _names(words: list[str]) -> Iterator[str]:
+def _list_names(words: list[str]) -> Iterator[str]:
     """The names of a find_path() or find_program() call, after its variable; in the short form the first word is one
     and the others are folders."""
     if words and not _OPTION.match(words[0]):
@@ -71,7 +71,7 @@ def _names(words: list[str]) -> Iterator[str]:
             yield word
 
 
-def _of_linux(commands: list[Command]) -> Iterator[Command]:
+def _select_linux_commands(commands: list[Command]) -> Iterator[Command]:
     """Commands outside of branches that only another system takes."""
     skipped: list[bool] = []
     for command in commands:
@@ -99,7 +99,7 @@ def main(arguments: list[str] | None = None) -> None:
     modules: dict[str, dict[str, list[str]]] = {}
     for folder in given.folders:
         for path in sorted(folder.glob("Find*.cmake")):
-            made = looked_for(path.read_bytes())
+            made = find_requirements(path.read_bytes())
             if made:
                 modules[path.stem.removeprefix("Find")] = made
     written = msgspec.json.format(msgspec.json.encode(modules, order="sorted"), indent=1) + b"\n"

@@ -38,7 +38,7 @@ def open_repository(path: Path) -> Any:
         raise BuildError(f"{path} is no git repository") from None
 
 
-def first_parents(repository: Any, start: Any) -> Line:
+def read_first_parents(repository: Any, start: Any) -> Line:
     """The first-parent line that ends in a commit.
 
     Some commits of rosdistro go back in time or share a second; each then counts one second after the one before it, so
@@ -60,7 +60,7 @@ def first_parents(repository: Any, start: Any) -> Line:
     return Line(tuple(steady))
 
 
-def file_versions(
+def read_file_versions(
     repository: Any, line: Line, wanted: Mapping[str, Sequence[str]], report: Report | None = None
 ) -> dict[str, list[FileVersion]]:
     """For each name the versions of its file: of the paths given, the first that exists at a commit counts.
@@ -92,7 +92,7 @@ def file_versions(
             if blob == old:
                 continue
             if not old and len(commit.parent_ids) > 1 and not versions[name]:
-                versions[name].extend(_side_history(repository, commit, choices, ts))
+                versions[name].extend(_read_side(repository, commit, choices, ts))
                 if versions[name] and versions[name][-1].blob == blob:
                     continue
             versions[name].append(FileVersion(ts, path, blob))
@@ -111,7 +111,7 @@ def _find(tree: Any, choices: Sequence[tuple[str, ...]]) -> tuple[str, str]:
     return "/".join(choices[0]), ""
 
 
-def _side_history(repository: Any, merge: Any, choices: Sequence[tuple[str, ...]], until: int) -> list[FileVersion]:
+def _read_side(repository: Any, merge: Any, choices: Sequence[tuple[str, ...]], until: int) -> list[FileVersion]:
     """Versions of a file on the merged side, oldest first, not later than the merge."""
     parts: list[list[FileVersion]] = []
     while True:
@@ -127,7 +127,7 @@ def _side_history(repository: Any, merge: Any, choices: Sequence[tuple[str, ...]
             break
         found: list[FileVersion] = []
         first = None
-        for oid, ts in first_parents(repository, side).commits:
+        for oid, ts in read_first_parents(repository, side).commits:
             path, blob = _find(repository[oid].tree, choices)
             if blob != (found[-1].blob if found else ""):
                 found.append(FileVersion(min(ts, until), path, blob))
@@ -150,7 +150,7 @@ def place_on_line(repository: Any, oid: str, cuts: Mapping[str, int]) -> int | N
     return cuts[str(commit.id)] + beside
 
 
-def with_side_version(
+def insert_side_version(
     repository: Any, versions: Sequence[FileVersion], oid: str, ts: int, paths: Sequence[str]
 ) -> list[FileVersion]:
     """The versions of a file with the one of a commit beside the line put in at `ts`, followed by the line's own again.
@@ -166,7 +166,7 @@ def with_side_version(
     return [*before, FileVersion(ts, path, blob), *(back if not after or after[0].ts > ts + 1 else []), *after]
 
 
-def tags(repository: Any) -> Iterator[tuple[str, str, int]]:
+def list_tags(repository: Any) -> Iterator[tuple[str, str, int]]:
     """(name without `refs/tags/`, commit id, commit time) of each tag that leads to a commit."""
     import pygit2
 

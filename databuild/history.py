@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from ..impact.targets.snapshot import Snapshot, default
-from ..impact.targets.version import parts
-from .surface.releases import Release, git_directory, releases_of, tag_of
+from ..impact.targets.snapshot import Snapshot, load_snapshot
+from ..impact.targets.version import parse
+from .surface.releases import Release, find_git_directory, list_releases, tag_of
 
 
 class RosFacts(NamedTuple):
@@ -67,26 +67,26 @@ class SurfaceReader:
         self._repository = repository
         self._folders: dict[bytes, tuple[Surface, ...]] = {}
 
-    def packages(self, tree) -> tuple[Surface, ...]:
+    def read_packages(self, tree) -> tuple[Surface, ...]:
         """All packages in a tree, as colcon finds them: the first package.xml on the way down."""
         known = self._folders.get(tree.id.raw)
         if known is None:
-            known = self._folders[tree.id.raw] = tuple(self._packages(tree))
+            known = self._folders[tree.id.raw] = tuple(self._find_packages(tree))
         return known
 
-    def _packages(self, tree) -> Iterator[Surface]:
+    def _find_packages(self, tree) -> Iterator[Surface]:
         entries = {entry.name: entry for entry in tree}
         manifest = entries.get("package.xml")
         if manifest is not None and manifest.type_str == "blob":
             match = _NAME.search(manifest.data)
             if match:
-                yield self._surface(match.group(1).decode("utf-8", "replace"), tree)
+                yield self._read_surface(match.group(1).decode("utf-8", "replace"), tree)
             return
         for name, entry in entries.items():
             if entry.type_str == _TREE and name not in _ASIDE and not name.startswith("."):
-                yield from self.packages(entry)
+                yield from self.read_packages(entry)
 
-    def _surface(self, name: str, tree) -> Surface:
+    def _read_surface(self, name: str, tree) -> Surface:
         headers: set[str] = set()
         modules: set[str] = set()
         cmake: set[str] = set()
@@ -111,18 +111,18 @@ class SurfaceReader:
                     cmake.add(plain[len("Find") :])
                 for end in ("Config", "-config"):
                     asked = plain.removesuffix(end)
-                    if asked != plain and _folded(asked) == _folded(name.removesuffix("_vendor")):
+                    if asked != plain and _normalize_name(asked) == _normalize_name(name.removesuffix("_vendor")):
                         cmake.add(asked)
             elif file == "CMakeLists.txt" and path.count("/") < 3:
                 for match in _INSTALLED_SOURCES.finditer(entry.data.decode("utf-8", "replace")):
                     folder = match.group(1).replace("${PROJECT_NAME}", name)
                     if not folder.startswith("include"):
-                        headers.update(self._installed(name, tree, where, folder))
+                        headers.update(self._list_installed_headers(name, tree, where, folder))
         for folder in beside:
             headers.update([h.removeprefix(f"{folder}/") for h in headers if h.startswith(f"{folder}/")])
         return Surface(name, frozenset(headers), frozenset(modules - {name}), frozenset(cmake - {name, ""}))
 
-    def _installed(self, name: str, tree, where: str, folder: str) -> Iterator[str]:
+    def _list_installed_headers(self, name: str, tree, where: str, folder: str) -> Iterator[str]:
         plain = "/".join(part for part in f"{where}/{folder}".split("/") if part not in ("", "."))
         try:
             below = tree[plain] if plain else tree
@@ -135,7 +135,7 @@ class SurfaceReader:
                     yield f"{name}/{base}{path}"
 
 
-def _folded(name: str) -> str:
+def _normalize_name(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
@@ -165,22 +165,22 @@ def read_repositories(folder: Path, snapshot: Snapshot | None = None) -> RosFact
     seen: set[tuple[str, str]] = set()
     modules: dict[str, set[str]] = defaultdict(set)
     cmake: dict[str, set[str]] = defaultdict(set)
-    data = snapshot or default()
+    data = snapshot or load_snapshot()
     for clone in sorted(folder.iterdir()):
-        where = git_directory(clone)
+        where = find_git_directory(clone)
         if where is None:
             continue
         repository = pygit2.Repository(str(where))
         reader = SurfaceReader(repository)
         tags = {ref.removeprefix("refs/tags/"): ref for ref in repository.references if ref.startswith("refs/tags/")}
-        releases = releases_of(data, clone.name.replace("+", "/"))
-        surfaces = list(_tips(repository, reader, releases))
+        releases = list_releases(data, clone.name.replace("+", "/"))
+        surfaces = list(_read_tips(repository, reader, releases))
         for release in releases:
             ref = tag_of(tags, release.version, clone.name.rpartition("+")[2])
-            tree = ref and _tree(repository, ref)
+            tree = ref and _find_tree(repository, ref)
             if not tree:
                 continue
-            for surface in reader.packages(tree):
+            for surface in reader.read_packages(tree):
                 if surface.name in release.packages:
                     _record(known[surface.name], release, surface)
                     surfaces.append(surface)
@@ -193,16 +193,16 @@ def read_repositories(folder: Path, snapshot: Snapshot | None = None) -> RosFact
     headers = {(header, package): "" for header, package in seen}
     for package, facts in known.items():
         for header, having in facts.headers.items():
-            headers[header, package] = _spans(facts.versions, having)
+            headers[header, package] = _format_spans(facts.versions, having)
     return RosFacts(
         headers,
-        {package: _all_spans(facts.versions) for package, facts in known.items()},
+        {package: _format_all_spans(facts.versions) for package, facts in known.items()},
         {name: " ".join(sorted(packages)) for name, packages in modules.items()},
         {name: " ".join(sorted(packages)) for name, packages in cmake.items()},
     )
 
 
-def _tree(repository, ref: str):
+def _find_tree(repository, ref: str):
     import pygit2
 
     try:
@@ -211,14 +211,14 @@ def _tree(repository, ref: str):
         return None
 
 
-def _tips(repository, reader: SurfaceReader, releases: list[Release]) -> Iterator[Surface]:
+def _read_tips(repository, reader: SurfaceReader, releases: list[Release]) -> Iterator[Surface]:
     """Packages at the branches' ends that any distro released: who has a header, not since when."""
     released = frozenset().union(*(release.packages for release in releases)) if releases else frozenset()
     for ref in repository.references:
         if ref.startswith(("refs/heads/", "refs/remotes/origin/")) and "/" not in ref.split("/", 2)[2]:
-            tree = _tree(repository, ref)
+            tree = _find_tree(repository, ref)
             if tree:
-                yield from (s for s in reader.packages(tree) if s.name in released)
+                yield from (s for s in reader.read_packages(tree) if s.name in released)
 
 
 def _record(known: _Known, release: Release, surface: Surface) -> None:
@@ -229,11 +229,11 @@ def _record(known: _Known, release: Release, surface: Surface) -> None:
         known.headers.setdefault(header, {}).setdefault(release.distro, set()).add(release.version)
 
 
-def _spans(versions: dict[str, list[str]], having: dict[str, set[str]]) -> str:
+def _format_spans(versions: dict[str, list[str]], having: dict[str, set[str]]) -> str:
     """Runs of versions that have something, one line each: distro, first, last or `-` at the end."""
     lines = []
     for distro in sorted(versions):
-        order = sorted(versions[distro], key=parts)
+        order = sorted(versions[distro], key=parse)
         start = None
         for place, version in enumerate(order):
             has = version in having.get(distro, ())
@@ -247,7 +247,7 @@ def _spans(versions: dict[str, list[str]], having: dict[str, set[str]]) -> str:
     return "\n".join(lines)
 
 
-def _all_spans(versions: dict[str, list[str]]) -> str:
+def _format_all_spans(versions: dict[str, list[str]]) -> str:
     return "\n".join(
-        f"{distro} {min(known, key=parts)} {max(known, key=parts)}" for distro, known in sorted(versions.items())
+        f"{distro} {min(known, key=parse)} {max(known, key=parse)}" for distro, known in sorted(versions.items())
     )

@@ -34,10 +34,10 @@ from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.providers import includes
 from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.includes import Included
-from ..impact.targets.surface.store import Surfaces, shipped
-from ..impact.targets.version import parts
-from .history import _tree
-from .surface.releases import git_directory
+from ..impact.targets.surface.store import Surfaces, load_shipped
+from ..impact.targets.version import parse
+from .history import _find_tree
+from .surface.releases import find_git_directory
 
 _HEADER = re.compile(r"(?:\.(?:h|hh|hpp|hxx|h\+\+|inl|ipp|tcc)(?:\.in|\.em|\.template)?|/[A-Z][A-Za-z]+)$")
 _INNER = re.compile(r"(?:^|/)(?:details?|impl|internal|aux_|preprocessed|src|arch|private|hal|cuda|experimental/impl)/")
@@ -102,26 +102,26 @@ _ELSEWHERE = re.compile(
 _WORD = re.compile(r"defined\s*(?:\(\s*(\w+)\s*\)|(\w+))|\b([A-Za-z_]\w*)\b")
 
 
-def _elsewhere(text: str) -> str:
+def _replace_foreign_macros(text: str) -> str:
     """A test with 0 for every macro that GCC on Linux surely lacks."""
 
-    def told(match: re.Match[str]) -> str:
+    def replace_macro(match: re.Match[str]) -> str:
         name = match[1] or match[2] or match[3]
         return "0" if _ELSEWHERE.match(name) else match[0]
 
-    return _WORD.sub(told, text.replace("\\\n", " "))
+    return _WORD.sub(replace_macro, text.replace("\\\n", " "))
 
 
-def included(text: str) -> tuple[str, ...]:
+def list_includes(text: str) -> tuple[str, ...]:
     """Include paths of a header, without those that GCC on Linux surely skips."""
     found: dict[str, None] = {}
     groups: list[_Group] = []
     for directive, rest in _DIRECTIVE.findall(_COMMENT.sub(lambda m: "\n" * m.group().count("\n"), text)):
         if directive in ("if", "ifdef", "ifndef"):
             groups.append(_Group())
-            groups[-1].reach(_test(directive, rest))
+            groups[-1].reach(_evaluate_directive(directive, rest))
         elif directive in ("else", "elif") and groups:
-            groups[-1].reach(None if directive == "else" else _test("if", rest))
+            groups[-1].reach(None if directive == "else" else _evaluate_directive("if", rest))
         elif directive == "endif" and groups:
             groups.pop()
         elif directive == "include" and all(group.read for group in groups):
@@ -143,11 +143,11 @@ class _Group:
         self.done = self.done or test is True
 
 
-def _test(directive: str, rest: str) -> bool | None:
+def _evaluate_directive(directive: str, rest: str) -> bool | None:
     from ..impact.conditions import Environment, holds
 
     text = rest if directive == "if" else f"defined({rest.split()[0] if rest.split() else ''})"
-    condition = Condition("cpp", _elsewhere(text), directive == "ifndef")
+    condition = Condition("cpp", _replace_foreign_macros(text), directive == "ifndef")
     return holds(condition, Environment())
 
 
@@ -158,7 +158,7 @@ _TOKEN = re.compile(
 )
 
 
-def defined(text: str) -> tuple[frozenset[str], frozenset[str]]:
+def find_types(text: str) -> tuple[frozenset[str], frozenset[str]]:
     """Qualified names of types that a header defines, and of those that it only announces."""
     text = re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', _COMMENT.sub(" ", text))
     text = re.sub(r"^[ \t]*#(?:[^\n\\]|\\\n|\\)*", "", text, flags=re.MULTILINE)
@@ -200,7 +200,7 @@ class Header(msgspec.Struct, frozen=True):
 
 def _read(data: bytes) -> Header:
     text = data.decode("utf-8", "replace")
-    return Header(included(text), *defined(text))
+    return Header(list_includes(text), *find_types(text))
 
 
 class Clone:
@@ -211,7 +211,7 @@ class Clone:
         self.blobs: dict[bytes, Header] = {}
         self.trees: dict[bytes, dict[str, dict[str, bytes]]] = {}
 
-    def packages(self, tree) -> dict[str, dict[str, bytes]]:
+    def read_packages(self, tree) -> dict[str, dict[str, bytes]]:
         """Package to include path to blob; a platform library is one package."""
         if self.library:
             headers: dict[str, bytes] = {}
@@ -223,10 +223,10 @@ class Clone:
             return {self.library: headers}
         known = self.trees.get(tree.id.raw)
         if known is None:
-            known = self.trees[tree.id.raw] = self._packages(tree)
+            known = self.trees[tree.id.raw] = self._find_packages(tree)
         return known
 
-    def _packages(self, tree) -> dict[str, dict[str, bytes]]:
+    def _find_packages(self, tree) -> dict[str, dict[str, bytes]]:
         entries = {entry.name: entry for entry in tree}
         manifest = entries.get("package.xml")
         if manifest is not None and manifest.type_str == "blob":
@@ -239,7 +239,7 @@ class Clone:
         found = {}
         for name, entry in entries.items():
             if entry.type_str == "tree" and name not in _ASIDE and not name.startswith("."):
-                found.update(self.packages(entry))
+                found.update(self.read_packages(entry))
         return found
 
     def _add(self, headers: dict[str, bytes], path: str, entry, package: str) -> None:
@@ -288,12 +288,12 @@ def read_clones(folder: Path, names: Iterable[str]) -> Iterator[tuple[str, str, 
     whole: dict[str, dict[str, State]] = {}
     for name in names:
         if name.startswith(_BOOST):
-            wanted = platform_versions("boost")
+            wanted = list_platform_versions("boost")
             whole[name] = {v: state for _, v, state in _read_clone(folder / name, "boost", wanted)}
         else:
             yield from _read_clone(folder / name, _LIBRARIES.get(name, ""))
-    for version in sorted({v for found in whole.values() for v in found}, key=parts):
-        begun = [found for found in whole.values() if any(parts(v) <= parts(version) for v in found)]
+    for version in sorted({v for found in whole.values() for v in found}, key=parse):
+        begun = [found for found in whole.values() if any(parse(v) <= parse(version) for v in found)]
         there = [found[version] for found in begun if version in found]
         if len(there) * 10 >= len(begun) * 9:
             yield "boost", version, {path: header for state in there for path, header in state.items()}
@@ -303,7 +303,7 @@ def _read_clone(folder: Path, library: str, wanted: Container[str] | None = None
     """wanted: the versions that are read, by default all."""
     import pygit2
 
-    where = git_directory(folder)
+    where = find_git_directory(folder)
     if where is None:
         raise FileNotFoundError(f"{folder}: no git directory")
     repository = pygit2.Repository(str(where))
@@ -313,13 +313,13 @@ def _read_clone(folder: Path, library: str, wanted: Container[str] | None = None
         version = match.group(1).replace("_", ".") if match else ""
         if not version or (wanted is not None and version not in wanted):
             continue
-        tree = _tree(repository, ref)
-        for package, headers in clone.packages(tree).items() if tree else ():
+        tree = _find_tree(repository, ref)
+        for package, headers in clone.read_packages(tree).items() if tree else ():
             yield package, version, {h: clone.blobs[b] for h, b in headers.items()}
 
 
 @cache
-def platform_versions(library: str) -> frozenset[str]:
+def list_platform_versions(library: str) -> frozenset[str]:
     """The versions of a library that platforms have."""
     import yaml
 
@@ -335,11 +335,11 @@ def read_generators(folder: Path) -> Iterator[tuple[str, str, State]]:
         ("ros+gencpp", ("scripts", ""), "msg.h.template", "gencpp"),
         ("ros2+rosidl", ("rosidl_generator_cpp/resource",), ".em", "rosidl_generator_cpp"),
     ):
-        where = git_directory(folder / name)
+        where = find_git_directory(folder / name)
         repository = pygit2.Repository(str(where))
         for ref in sorted(repository.references):
             match = _VERSION.match(ref.removeprefix("refs/tags/")) if ref.startswith("refs/tags/") else None
-            tree = match and _tree(repository, ref)
+            tree = match and _find_tree(repository, ref)
             if not match or not tree:
                 continue
             found: dict[str, None] = {}
@@ -371,10 +371,10 @@ _COMPUTED = {
 """Headers to those that they include by a macro, with GCC on Linux."""
 
 
-def direct(state: State, kept) -> dict[str, tuple[str, ...]]:
+def list_direct(state: State, kept) -> dict[str, tuple[str, ...]]:
     """Header to what it includes, through headers that are not kept. kept: include path to whether it is."""
 
-    def answer(path: str, by: str) -> str:
+    def resolve_include(path: str, by: str) -> str:
         beside = by.rpartition("/")[0]
         while path.startswith("../"):
             path, beside = path[3:], beside.rpartition("/")[0]
@@ -391,7 +391,7 @@ def direct(state: State, kept) -> dict[str, tuple[str, ...]]:
         while stack:
             at = stack.pop()
             for path in (*state[at].includes, *_COMPUTED.get(at, ())):
-                to = answer(path, at)
+                to = resolve_include(path, at)
                 if to in seen:
                     continue
                 seen.add(to)
@@ -403,12 +403,12 @@ def direct(state: State, kept) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def table_of(states: dict[str, dict[str, dict[str, tuple[str, ...]]]], libraries, sparse) -> includes.IncludesTable:
+def build_table(states: dict[str, dict[str, dict[str, tuple[str, ...]]]], libraries, sparse) -> includes.IncludesTable:
     """states: owner to version to header to its includes."""
     places: dict[str, int] = {}
     owners = {}
     for owner, versions in sorted(states.items()):
-        order = sorted(versions, key=parts)
+        order = sorted(versions, key=parse)
         rows = {}
         for header in sorted({h for v in versions.values() for h in v}):
             runs, last = [], None
@@ -420,7 +420,7 @@ def table_of(states: dict[str, dict[str, dict[str, tuple[str, ...]]]], libraries
                     runs.append(f"{version} {text}".rstrip())
             rows[header] = ";".join(runs)
         owners[owner] = rows
-    read = {owner: tuple(sorted(states[owner], key=parts)) for owner in sorted(sparse)}
+    read = {owner: tuple(sorted(states[owner], key=parse)) for owner in sorted(sparse)}
     return includes.IncludesTable(tuple(places), owners, frozenset(libraries), read)
 
 
@@ -434,7 +434,7 @@ def _main() -> None:
     parser.add_argument("--output", type=Path, default=DATA)
     asked = parser.parse_args()
     if asked.shipped:
-        _write(beside(shipped(), includes.default().table), asked.output)
+        _write(drop_stored(load_shipped(), includes.load_includes().table), asked.output)
         return
     if asked.folder is None:
         parser.error("a folder of clones is needed, or --shipped")
@@ -456,17 +456,17 @@ def _main() -> None:
         if owner == "boost":
             large.append((owner, version, state))
         elif version not in states[owner] and state:
-            states[owner][version] = direct(state, lambda h: not _INNER.search(h))
+            states[owner][version] = list_direct(state, lambda h: not _INNER.search(h))
             note(state)
     used = {p for versions in states.values() for v in versions.values() for found in v.values() for p in found}
     if asked.onto:
-        used.update(includes.default().table.paths)
+        used.update(includes.load_includes().table.paths)
     anew = {*states, *(owner for owner, _, _ in large)}
     large += [(library, version, read_folder(Path(where))) for library, version, where in told]
     libraries, sparse = (set(_LIBRARIES.values()) | {"boost"}) & anew | {one[0] for one in told}, set()
     for owner, version, state in large:
         sparse.add(owner)
-        states[owner][version] = direct(
+        states[owner][version] = list_direct(
             state,
             lambda h: (
                 (h.count("/") == 1 and not h.startswith("lib"))
@@ -477,23 +477,23 @@ def _main() -> None:
         )
         note({p: h for p, h in state.items() if not p.startswith("boost/")})
     if asked.onto:
-        known = includes.default().table
+        known = includes.load_includes().table
         rest = {o: h for o, h in known.owners.items() if not (o in known.libraries and o in anew)}
-        _write(onto(msgspec.structs.replace(known, owners=rest), states, libraries, sparse), asked.output)
+        _write(extend_table(msgspec.structs.replace(known, owners=rest), states, libraries, sparse), asked.output)
         return
-    table = table_of({o: v for o, v in states.items() if any(v.values())}, libraries, sparse)
+    table = build_table({o: v for o, v in states.items() if any(v.values())}, libraries, sparse)
     table = msgspec.structs.replace(
         table,
-        versions={distro: _versions(distro, table) for distro in DISTROS},
+        versions={distro: _list_versions(distro, table) for distro in DISTROS},
         names={n: tuple(sorted(p)) for n, p in defining.items() if len(p) < 4 and not _PRIVATE.search(n)},
     )
-    stopped = frozenset().union(*(_stopped(table, ros) for ros in (1, 2)))
+    stopped = frozenset().union(*(_find_stopped_types(table, ros) for ros in (1, 2)))
     names = {n: p for n, p in table.names.items() if n in stopped}
     announced = {n: tuple(sorted(p)) for n, p in announcing.items() if n in names}
-    _write(beside(shipped(), msgspec.structs.replace(table, names=names, announced=announced)), asked.output)
+    _write(drop_stored(load_shipped(), msgspec.structs.replace(table, names=names, announced=announced)), asked.output)
 
 
-def beside(surfaces: Surfaces, table: includes.IncludesTable) -> includes.IncludesTable:
+def drop_stored(surfaces: Surfaces, table: includes.IncludesTable) -> includes.IncludesTable:
     """The table without what stored surfaces tell: what their packages' headers include, from the first stored version
     of each on. Names get the headers that define or announce them there."""
     numbers: dict[str, int] = {}
@@ -501,19 +501,19 @@ def beside(surfaces: Surfaces, table: includes.IncludesTable) -> includes.Includ
     names = {name: dict.fromkeys(headers) for name, headers in table.names.items()}
     announced = {name: dict.fromkeys(headers) for name, headers in table.announced.items()}
     for owner, headers in table.owners.items():
-        each = [] if owner in table.libraries else [surfaces.included(owner, n) for n in surfaces.generations(owner)]
-        kept = _before([one for one in each if one is not None], headers) if each else headers
+        each = [] if owner in table.libraries else [surfaces.find_included(owner, n) for n in surfaces.list_ros(owner)]
+        kept = _select_unstored([one for one in each if one is not None], headers) if each else headers
         if kept:
-            owners[owner] = {header: _numbered(states, table.paths, numbers) for header, states in kept.items()}
+            owners[owner] = {header: _renumber_states(states, table.paths, numbers) for header, states in kept.items()}
     for package in sorted(surfaces.packages):
-        for ros in surfaces.generations(package):
-            history = surfaces.history(package, ros)
+        for ros in surfaces.list_ros(package):
+            history = surfaces.find_history(package, ros)
             if history is None:
                 continue
-            for name, where in history.types().items():
+            for name, where in history.index_types().items():
                 if name in names:
                     names[name].update(dict.fromkeys(where))
-            for name, where in _announcing(history.included).items():
+            for name, where in _find_announcing_headers(history.included).items():
                 if name in names:
                     announced.setdefault(name, {}).update(dict.fromkeys(where))
     versions = {
@@ -530,22 +530,22 @@ def beside(surfaces: Surfaces, table: includes.IncludesTable) -> includes.Includ
     )
 
 
-def _before(each: Sequence[Included], headers: dict[str, str]) -> dict[str, str]:
+def _select_unstored(each: Sequence[Included], headers: dict[str, str]) -> dict[str, str]:
     """The states of headers that no stored version stands for: of those that surfaces never have, all. each: of the
     ROS generations that have the package."""
     firsts = [next(included.read(), None) for included in each]
-    known = [parts(first) for first in firsts if first is not None]
+    known = [parse(first) for first in firsts if first is not None]
     found = {}
     for header, states in headers.items():
         runs = states.split(";")
         if known and any(header in included.headers for included in each):
-            runs = [run for run in runs if parts(run.partition(" ")[0]) < max(known)]
+            runs = [run for run in runs if parse(run.partition(" ")[0]) < max(known)]
         if runs:
             found[header] = ";".join(runs)
     return found
 
 
-def _numbered(states: str, paths: tuple[str, ...], numbers: dict[str, int]) -> str:
+def _renumber_states(states: str, paths: tuple[str, ...], numbers: dict[str, int]) -> str:
     """States of a header with other numbers for its paths."""
     runs = []
     for run in states.split(";"):
@@ -559,42 +559,44 @@ _States = dict[str, dict[str, dict[str, tuple[str, ...]]]]
 """Owner to version to header to what it includes."""
 
 
-def onto(
+def extend_table(
     known: includes.IncludesTable, states: _States, libraries: Iterable[str], sparse: Iterable[str]
 ) -> includes.IncludesTable:
     """A table with more versions and owners. Which types stopped coming along stays as it was."""
     merged: _States = {}
     for owner, headers in known.owners.items():
-        versions = merged[owner] = {v: {} for text in headers.values() for v, _ in _runs(text)}
+        versions = merged[owner] = {v: {} for text in headers.values() for v, _ in _parse_states(text)}
         versions.update((v, {}) for v in known.sparse.get(owner, ()))
         for header, text in headers.items():
-            runs = _runs(text)
+            runs = _parse_states(text)
             for version, found in versions.items():
-                now = [places for first, places in runs if parts(first) <= parts(version)]
+                now = [places for first, places in runs if parse(first) <= parse(version)]
                 if now and now[-1] != "-":
                     found[header] = tuple(known.paths[int(place)] for place in now[-1].split())
     for owner, versions in states.items():
         merged.setdefault(owner, {}).update(versions)
-    table = table_of(merged, known.libraries.union(libraries), {*known.sparse, *sparse} & merged.keys())
-    versions = {d: {**_versions(d, table), **known.versions.get(d, {})} for d in DISTROS}
+    table = build_table(merged, known.libraries.union(libraries), {*known.sparse, *sparse} & merged.keys())
+    versions = {d: {**_list_versions(d, table), **known.versions.get(d, {})} for d in DISTROS}
     return msgspec.structs.replace(table, names=known.names, announced=known.announced, versions=versions)
 
 
-def _runs(text: str) -> list[tuple[str, str]]:
+def _parse_states(text: str) -> list[tuple[str, str]]:
     """The states of a header, oldest first: first version, and the places of what it includes."""
     return [(version, places) for version, _, places in (run.partition(" ") for run in text.split(";"))]
 
 
-def _versions(distro: str, table: includes.IncludesTable) -> dict[str, str]:
+def _list_versions(distro: str, table: includes.IncludesTable) -> dict[str, str]:
     """The version of each owner in a distro, as the shipped snapshot has it at its end."""
     target = DistroTarget(distro)
-    found = {"gcc": target.library("gcc") or ""}
+    found = {"gcc": target.find_library("gcc") or ""}
     for owner in table.owners:
-        found[owner] = (target.library(owner) if owner in table.libraries else None) or target.version(owner) or ""
+        found[owner] = (
+            (target.find_library(owner) if owner in table.libraries else None) or target.find_version(owner) or ""
+        )
     return {owner: version for owner, version in found.items() if version}
 
 
-def _stopped(table: includes.IncludesTable, ros: int) -> set[str]:
+def _find_stopped_types(table: includes.IncludesTable, ros: int) -> set[str]:
     """Types of which some header brings the definition in one distro and not in the next."""
     distros = [d for d in DISTROS if d != "rolling" and DistroTarget(d).ros == ros]
     found: set[str] = set()
@@ -604,11 +606,11 @@ def _stopped(table: includes.IncludesTable, ros: int) -> set[str]:
     for name, headers in names.items():
         for header in headers:
             by_header[header].add(name)
-    for before, after in pairwise(includes.machine_of(d, ros, shipped) for d in distros):
+    for before, after in pairwise(includes.load_machine(d, ros, shipped) for d in distros):
         for header in shipped.owners_of:
             if before.includes(header) is None or after.includes(header) is None:
                 continue
-            had, has = before.brought(header).headers, after.brought(header).headers
+            had, has = before.find_brought(header).headers, after.find_brought(header).headers
             for name in {n for lost in had - has for n in by_header.get(lost, ())} - found:
                 if has.isdisjoint(names[name]) and any(after.includes(h) is not None for h in names[name]):
                     found.add(name)
@@ -621,7 +623,7 @@ def _write(table: includes.IncludesTable, output: Path) -> None:
     write_file(output / "includes.json.zst", zstandard.ZstdCompressor(level=19).compress(raw))
 
 
-def _announcing(included: Included) -> dict[str, tuple[str, ...]]:
+def _find_announcing_headers(included: Included) -> dict[str, tuple[str, ...]]:
     """Types with the headers that announce them in any version."""
     found: dict[str, dict[str, None]] = {}
     for header, rows in included.headers.items():

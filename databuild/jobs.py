@@ -12,7 +12,7 @@ from ..impact.targets.surface.surface import Surface
 from ..impact.tree import TreeError
 from .surface.clones import Clone
 from .surface.compare import RepositorySurfaces
-from .surface.package import surfaces_of
+from .surface.package import build_surfaces
 from .surface_changes import Lines
 from .surface_file import Including, Packed, Packer, Stored
 
@@ -37,12 +37,12 @@ class Job(NamedTuple):
     states: tuple[Wanted, ...]
     trees: tuple[str, ...]
 
-    def key(self) -> str:
+    def compute_key(self) -> str:
         """Changes with all that the result depends on."""
-        from ..edges.limits import limits_stamp
-        from ..impact.source_keys import source_key
+        from ..edges.limits import format_limits
+        from ..impact.source_keys import compute_source_key
 
-        about = (self.name, self.states, self.trees, source_key(__name__), limits_stamp())
+        about = (self.name, self.states, self.trees, compute_source_key(__name__), format_limits())
         return hashlib.sha1(repr(about).encode()).hexdigest()
 
 
@@ -78,11 +78,11 @@ class Packing:
             self._including.setdefault(key, Including()).add(version, surface.headers, approximate)
         self._lines.add(package, version, generations, state, approximate)
 
-    def packed(self) -> dict[tuple[str, int], Packed]:
+    def pack_packages(self) -> dict[tuple[str, int], Packed]:
         """The packages of each ROS generation as they are stored."""
-        changes = self._lines.packed()
+        changes = self._lines.pack_lines()
         return {
-            key: Packed(packer.packed(), changes[key], self._including[key].packed())
+            key: Packed(packer.pack_versions(), changes[key], self._including[key].pack_versions())
             for key, packer in self._packers.items()
         }
 
@@ -98,22 +98,24 @@ def run(job: Job) -> Result:
             if tree not in read:
                 read.clear()  # one state at a time is enough
                 try:
-                    read[tree] = RepositorySurfaces(surfaces_of(clones[state.clone].tree(state.revision), store, 1))
+                    read[tree] = RepositorySurfaces(
+                        build_surfaces(clones[state.clone].read_tree(state.revision), store, 1)
+                    )
                 except (TreeError, OSError) as error:
                     failed.append(f"{state.clone} {state.version}: {error}")
                     continue
             for package in state.packages:
                 if package in read[tree].surfaces:
-                    whose = _of_its_generation(read[tree].surfaces[package], state.generations)
+                    whose = _select_generations(read[tree].surfaces[package], state.generations)
                     packing.add(package, state.version, whose, read[tree], state.approximate)
                     if whose != state.generations:
                         failed.append(f"{package} {state.version}: {state.clone} has a ROS 1 package at its tag")
                 elif not state.approximate:
                     failed.append(f"{package} {state.version}: not in {state.clone} at its tag")
-    return Result(packing.packed(), tuple(failed))
+    return Result(packing.pack_packages(), tuple(failed))
 
 
-def _of_its_generation(surface: Surface, generations: tuple[int, ...]) -> tuple[int, ...]:
+def _select_generations(surface: Surface, generations: tuple[int, ...]) -> tuple[int, ...]:
     """Those of some ROS generations that a package as it was read can be of: one that only catkin builds is none of
     ROS 2, whatever its tag is called."""
     return tuple(ros for ros in generations if ros == 1 or surface.build.build_type != "catkin")

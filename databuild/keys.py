@@ -61,14 +61,14 @@ def parse_rules(block: bytes) -> dict[tuple[str, str], str] | None:
 
 def _encode(rule: Any) -> str:
     """Canonical JSON; install scripts of old rules are left out: only package names are facts."""
-    return msgspec.json.encode(_plain(rule), order="sorted").decode()
+    return msgspec.json.encode(_simplify(rule), order="sorted").decode()
 
 
-def _plain(value: Any) -> Any:
+def _simplify(value: Any) -> Any:
     if isinstance(value, dict):
         if "packages" in value:
-            return {"packages": _plain(value["packages"])}
-        return {str(key): _plain(item) for key, item in value.items() if str(key) not in ("script", "uri", "md5sum")}
+            return {"packages": _simplify(value["packages"])}
+        return {str(key): _simplify(item) for key, item in value.items() if str(key) not in ("script", "uri", "md5sum")}
     if isinstance(value, list):
         return [str(item) for item in value]
     if value is None:
@@ -115,12 +115,12 @@ def read_rules(
                     memo.pop(block, None)
                 state, before = now, blocks
     return sorted(
-        (event for pair, timeline in timelines.items() for event in _merged(pair, timeline)),
+        (event for pair, timeline in timelines.items() for event in _merge_events(pair, timeline)),
         key=lambda event: (event.ts, event.key, event.os),
     )
 
 
-def _merged(pair: tuple[str, str], timeline: list[tuple[int, int, str | None]]) -> list[RuleEvent]:
+def _merge_events(pair: tuple[str, str], timeline: list[tuple[int, int, str | None]]) -> list[RuleEvent]:
     """Events of one key and system over all files: the lowest-ranked file that has a rule wins."""
     timeline.sort(key=lambda item: item[:2])
     held: dict[int, str] = {}

@@ -27,12 +27,12 @@ import zstandard
 
 from ..edges.files import write_file
 from ..impact.facts.surface import HeaderSurface
-from ..impact.targets.snapshot import default
+from ..impact.targets.snapshot import load_snapshot
 from ..impact.targets.surface.surface import ExportedTarget
 from .extract import cpp
-from .providers import cmake_names, dependencies_of, include_paths, is_of_compiler, lines_of, of_ros, read_keys
-from .surface.headers import compiled
-from .surface.unpacked_deb import DebError, members_and_links
+from .providers import include_paths, is_of_compiler, is_ros_source, list_cmake, read_dependencies, read_keys, unpack
+from .surface.headers import keep_compiled_includes
+from .surface.unpacked_deb import DebError, read_members_and_links
 
 # What nobody outside of a library is meant to include or to call; and libraries of Boost that are made for others.
 _PARTS = (
@@ -113,7 +113,7 @@ class HeaderText(msgspec.Struct, frozen=True, array_like=True):
     refuses: str = ""
 
 
-def upstream(version: str) -> str:
+def extract_upstream_version(version: str) -> str:
     """The version of the library itself: `7:5.1.9-0+deb12u1` is 5.1.9, `2.1.0+really2.1.0+dfsg-1` is 2.1.0."""
     version = re.split(r"\+really|\.really\.", version.rpartition(":")[2])[-1]
     found = re.match(r"\d+(?:\.\d+)*", version)
@@ -126,17 +126,17 @@ def list_packages(lists: Path, named: Iterable[str], besides: Sequence[re.Patter
     fields: dict[str, dict[str, str]] = {}
     name = ""
     for index in sorted(lists.glob("*_Packages*")):
-        for line in lines_of(index):
+        for line in unpack(index):
             key, _, value = line.decode("utf-8", "replace").partition(": ")
             if key == "Package":
                 name = value.strip()
                 fields[name] = {}
             elif key in ("Size", "Version", "Source", "Section"):
                 fields[name][key] = value.strip()
-    depends = dependencies_of(lists)
+    depends = read_dependencies(lists)
     source = {name: told.get("Source", name).partition(" ")[0] for name, told in fields.items()}
     sources = frozenset(source.values())
-    library = {name: library_of_source(one, sources) for name, one in source.items()}
+    library = {name: derive_library_name(one, sources) for name, one in source.items()}
     found: dict[str, Packaged] = {}
     for start in {*named, *(name for name in fields if any(one.match(name) for one in besides))}:
         ring, seen = [start] if start in fields else [], {start}
@@ -151,7 +151,7 @@ def list_packages(lists: Path, named: Iterable[str], besides: Sequence[re.Patter
     return sorted(found.values())
 
 
-def library_of_source(source: str, sources: Collection[str]) -> str:
+def derive_library_name(source: str, sources: Collection[str]) -> str:
     """A source package without versions: `boost1.74` and `boost-defaults` are `boost`, `tinyxml2` is itself, and so is
     `libusb-1.0` where `libusb` is another one of these sources."""
     plain = re.sub(r"-?\d+\.[\d.]+\Z", "", source.removesuffix("-defaults"))
@@ -163,13 +163,13 @@ def _is_development(name: str, told: Mapping[str, str]) -> bool:
     if not (name.endswith("-dev") or told.get("Section", "").endswith("libdevel")):
         return False
     source = told.get("Source", name).partition(" ")[0]
-    return not (of_ros(source) or is_of_compiler(name) or _APART.fullmatch(name))
+    return not (is_ros_source(source) or is_of_compiler(name) or _APART.fullmatch(name))
 
 
 def count_uses() -> Counter[str]:
     """The Debian packages that rosdep keys of released packages install, or ever did, and how often manifests name
     them."""
-    keys = read_keys(default())
+    keys = read_keys(load_snapshot())
     found: Counter[str] = Counter()
     for key, count in keys.uses.items():
         found.update(dict.fromkeys(keys.debian.get(key, ()), count))
@@ -190,8 +190,8 @@ class Texts:
         sha = hashlib.sha1(data).hexdigest()
         if self._db.execute("SELECT 1 FROM text WHERE sha = ?", (sha,)).fetchone() is None:
             plain = _COMMENT.sub(" ", data.decode("utf-8", "replace"))
-            surface = compiled(cpp.extract(data))
-            text = HeaderText(surface, tuple(sorted(set(_WORD.findall(plain)))), refusal(plain))
+            surface = keep_compiled_includes(cpp.extract(data))
+            text = HeaderText(surface, tuple(sorted(set(_WORD.findall(plain)))), find_refusal(plain))
             self._db.execute("INSERT INTO text VALUES(?, ?)", (sha, self._pack.compress(_encode(text))))
         return sha
 
@@ -214,7 +214,7 @@ _decode_text = msgspec.msgpack.Decoder(HeaderText).decode
 _decode_facts = msgspec.msgpack.Decoder(LibraryFacts).decode
 
 
-def refusal(plain: str) -> str:
+def find_refusal(plain: str) -> str:
     """The message of a header, given without comments, that holds nothing but `#error`; empty for others."""
     message = ""
     depth = 0
@@ -242,13 +242,13 @@ def read_packages(library: str, files: Sequence[tuple[Packaged, Path]], texts: T
     read: list[tuple[Packaged, dict[str, bytes], tuple[str, ...]]] = []
     for package, file in files:
         try:
-            held, links = members_and_links(file)
+            held, links = read_members_and_links(file)
         except (DebError, OSError) as error:
             unread.append((package.name, str(error)))
             continue
         stems = {told[1] for path in (*held, *links) if (told := _LINK.match(path))}
         read.append((package, {path: member.data for path, member in held.items()}, tuple(sorted(stems))))
-    flags = [pkgconfig_of(path, data) for _, held, _ in read for path, data in held.items() if _PC.match(path)]
+    flags = [parse_pkgconfig(path, data) for _, held, _ in read for path, data in held.items() if _PC.match(path)]
     roots = {root.strip("/") for _, _, folders in flags for root in folders}
     headers: dict[str, HeaderFile] = {}
     counts: Counter[str] = Counter()
@@ -257,7 +257,7 @@ def read_packages(library: str, files: Sequence[tuple[Packaged, Path]], texts: T
             paths = include_paths(path)
             if not paths:
                 continue
-            include = below(paths, roots)
+            include = find_include_path(paths, roots)
             if include in headers:
                 continue
             counts[package.version] += 1
@@ -290,7 +290,7 @@ def read_packages(library: str, files: Sequence[tuple[Packaged, Path]], texts: T
     )
 
 
-def below(paths: Sequence[str], roots: Iterable[str]) -> str:
+def find_include_path(paths: Sequence[str], roots: Iterable[str]) -> str:
     """How dependants include a header, of the ways in which they may: below the deepest folder that flags name."""
     inside = [paths[0][len(root) + 1 :] for root in roots if root and paths[0].startswith(f"{root}/")]
     return min((*paths, *inside), key=len)
@@ -299,7 +299,7 @@ def below(paths: Sequence[str], roots: Iterable[str]) -> str:
 _EXPAND = re.compile(r"\$\{(\w+)\}")
 
 
-def pkgconfig_of(path: str, data: bytes) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
+def parse_pkgconfig(path: str, data: bytes) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
     """A pkg-config file: its name, the libraries that it links, and the folders below the system's include folder."""
     told = _PC.match(path)
     assert told is not None
@@ -314,11 +314,11 @@ def pkgconfig_of(path: str, data: bytes) -> tuple[str, tuple[str, ...], tuple[st
                 text = _EXPAND.sub(lambda m: values.get(m[1], ""), text)
             (values if match[2] == "=" else fields)[match[1]] = text.strip()
     stems = tuple(dict.fromkeys(re.findall(r"(?<!\S)-l([\w.+-]+)", fields.get("Libs", ""))))
-    folders = tuple(dict.fromkeys(_ROOT.findall(posix(fields.get("Cflags", "")))))
+    folders = tuple(dict.fromkeys(_ROOT.findall(normalize_flags(fields.get("Cflags", "")))))
     return told[1], stems, folders
 
 
-def posix(flags: str) -> str:
+def normalize_flags(flags: str) -> str:
     """Flags with their folders made plain: no `..`, one slash."""
     return " ".join(
         f"-I{posixpath.normpath(flag[2:].strip() or '/')}" if flag.startswith("-I") else flag for flag in flags.split()
@@ -336,7 +336,7 @@ def read_cmake(
     is_open = False
     each = [(path, data.decode("utf-8", "replace")) for path, data in files]
     for path, _ in each:
-        names.update(cmake_names(path)[:1])
+        names.update(list_cmake(path)[:1])
     starts = {re.sub(r"\W", "", name).lower() for name in names}
     for _, text in each:
         plain = re.sub(r"#[^\n]*", "", text)
@@ -389,7 +389,7 @@ class Run:
     ) -> list[tuple[Packaged, Path]]:
         folder = self.work / "debs" / suite
         folder.mkdir(parents=True, exist_ok=True)
-        missing = [package for package in packages if _downloaded(folder, package) is None]
+        missing = [package for package in packages if _find_downloaded(folder, package) is None]
         if missing:
             subprocess.run(
                 ["apt-get", "-qq", "download", *(f"{package.name}={package.version}" for package in missing)],
@@ -398,9 +398,9 @@ class Run:
                 check=False,
                 capture_output=True,
             )
-        return [(package, file) for package in packages if (file := _downloaded(folder, package)) is not None]
+        return [(package, file) for package in packages if (file := _find_downloaded(folder, package)) is not None]
 
-    def suites(self) -> list[str]:
+    def list_suites(self) -> list[str]:
         """The suites of which something was read."""
         return [folder.name for folder in (self.work / "read").iterdir()]
 
@@ -411,13 +411,13 @@ class Run:
         folder.mkdir(parents=True, exist_ok=True)
         write_file(folder / f"{facts.library}.msgpack", _encode(facts))
 
-    def facts(self, suite: str) -> Iterator[LibraryFacts]:
+    def read_facts(self, suite: str) -> Iterator[LibraryFacts]:
         """The libraries of a suite that were read."""
         for file in sorted((self.work / "read" / suite).glob("*.msgpack")):
             yield _decode_facts(file.read_bytes())
 
 
-def _downloaded(folder: Path, package: Packaged) -> Path | None:
+def _find_downloaded(folder: Path, package: Packaged) -> Path | None:
     return next(iter(folder.glob(f"{package.name}_{package.version.replace(':', '%3a')}_*.deb")), None)
 
 

@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 import zstandard
 
-from ..edges.files import read_chunks, writing
+from ..edges.files import open_for_replacing, read_chunks
 from ..impact.facts.surface import Entity, HeaderSurface
 from ..impact.targets.providers.libraries import NEAREST, HeaderBlock, HeaderState
-from ..impact.targets.providers.providers import default_providers
+from ..impact.targets.providers.providers import load_providers
 from ..impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
-from ..impact.targets.version import parts
-from .libraries import INNER, INNER_NAME, upstream
-from .surface_file import Packer, Stored, spans_of
+from ..impact.targets.version import parse
+from .libraries import INNER, INNER_NAME, extract_upstream_version
+from .surface_file import Packer, Stored, find_spans
 
 if TYPE_CHECKING:
     from ..impact.facts.cpp.lexical import Include
@@ -69,25 +69,25 @@ def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: T
             db.execute("PRAGMA page_size=512")
             db.executescript(_SCHEMA)
             for name, each in sorted(by_library.items()):
-                data, names, blocks = _packed(name, each, texts)
+                data, names, blocks = _pack_library(name, each, texts)
                 versions += len(each)
                 headers += sum(len(facts.headers) for _, facts in each)
                 roots = " ".join(dict.fromkeys(root for _, facts in each for root in facts.roots))
-                told = " ".join(f"{suite}={upstream(facts.version)}" for suite, facts in each)
+                told = " ".join(f"{suite}={extract_upstream_version(facts.version)}" for suite, facts in each)
                 db.execute("INSERT INTO package VALUES(?, ?, ?, ?, ?)", (name, data, names, roots, told))
                 db.executemany("INSERT INTO block VALUES(?, ?, ?)", ((name, *block) for block in blocks))
-            db.executemany("INSERT INTO target VALUES(?, ?)", sorted(_targets(by_library).items()))
-            db.executemany("INSERT INTO header VALUES(?, ?)", sorted(_strays(by_library, debian).items()))
+            db.executemany("INSERT INTO target VALUES(?, ?)", sorted(_collect_targets(by_library).items()))
+            db.executemany("INSERT INTO header VALUES(?, ?)", sorted(_find_stray_headers(by_library, debian).items()))
             db.executemany("INSERT INTO debian VALUES(?, ?)", sorted(debian.items()))
             db.commit()
             db.execute("VACUUM")
-        with writing(file) as output:
+        with open_for_replacing(file) as output:
             for piece in read_chunks(fresh):
                 output.write(piece)
     return WrittenCounts(len(by_library), versions, headers, file.stat().st_size)
 
 
-def _targets(by_library: Mapping[str, Sequence[tuple[str, LibraryFacts]]]) -> dict[str, str]:
+def _collect_targets(by_library: Mapping[str, Sequence[tuple[str, LibraryFacts]]]) -> dict[str, str]:
     """Exported targets with a namespace to the library that has them. A library may make targets for what it needs."""
     found: dict[str, set[str]] = defaultdict(set)
     for library, each in by_library.items():
@@ -100,7 +100,7 @@ def _targets(by_library: Mapping[str, Sequence[tuple[str, LibraryFacts]]]) -> di
     return {name: libraries.pop() for name, libraries in found.items() if len(libraries) == 1}
 
 
-def _strays(
+def _find_stray_headers(
     by_library: Mapping[str, Sequence[tuple[str, LibraryFacts]]], debian: Mapping[str, str]
 ) -> dict[str, str]:
     """Headers that one library has, and of which those that bring it name none of its packages."""
@@ -110,7 +110,7 @@ def _strays(
             owners[path].add(library)
     found = {}
     for path, libraries in owners.items():
-        packages = [p.package for p in default_providers().header(path) if p.kind == "system" and p.package]
+        packages = [p.package for p in load_providers().find_header(path) if p.kind == "system" and p.package]
         if packages and len(libraries) == 1 and libraries.isdisjoint(map(debian.get, packages[:NEAREST])):
             found[path] = next(iter(libraries))
     return found
@@ -121,7 +121,7 @@ def fold(name: str) -> str:
     return re.sub(r"[\W_]", "", name.lower())
 
 
-def _packed(
+def _pack_library(
     name: str, each: Sequence[tuple[str, LibraryFacts]], texts: Texts
 ) -> tuple[bytes, bytes, list[tuple[str, bytes]]]:
     """What is stored of a library: what its versions offer, what their headers declare, and the blocks of these."""
@@ -129,15 +129,15 @@ def _packed(
     blocks = Blocks(header.path for _, facts in each for header in facts.headers)
     of_version: dict[str, LibraryFacts] = {}
     for _, facts in each:
-        of_version.setdefault(upstream(facts.version), facts)
-    for version, facts in sorted(of_version.items(), key=lambda one: parts(one[0])):
-        headers = list(_headers(facts, texts))
-        packer.add(Stored(version, False, _surface(facts, version)))
+        of_version.setdefault(extract_upstream_version(facts.version), facts)
+    for version, facts in sorted(of_version.items(), key=lambda one: parse(one[0])):
+        headers = list(_select_headers(facts, texts))
+        packer.add(Stored(version, False, _make_surface(facts, version)))
         empty = BuildSurface(name, version), PythonSurface(name)
         names.add(Stored(version, False, Surface(name, version, *empty, headers=tuple(headers))))
         links = (" ".join(header.links) for header in facts.headers)
         blocks.add((path, header.includes, told) for (path, header), told in zip(headers, links, strict=True))
-    return packer.packed(), names.packed(), list(blocks.packed())
+    return packer.pack_versions(), names.pack_versions(), list(blocks.pack_blocks())
 
 
 class Blocks:
@@ -156,7 +156,7 @@ class Blocks:
                 places.append(self._versions)
         self._versions += 1
 
-    def packed(self) -> Iterator[tuple[str, bytes]]:
+    def pack_blocks(self) -> Iterator[tuple[str, bytes]]:
         """The first header of each block, and the block."""
         paths = list(self._places)
         for at in range(0, len(paths), _BLOCK):
@@ -164,7 +164,7 @@ class Blocks:
             headers = {
                 path: tuple(
                     HeaderState(
-                        tuple(spans_of(places, self._versions)),
+                        tuple(find_spans(places, self._versions)),
                         tuple(numbers.setdefault(include, len(numbers)) for include in includes),
                         links,
                     )
@@ -176,7 +176,7 @@ class Blocks:
             yield paths[at], zstandard.ZstdCompressor(level=19).compress(whole)
 
 
-def _headers(facts: LibraryFacts, texts: Texts) -> Iterator[tuple[str, HeaderSurface]]:
+def _select_headers(facts: LibraryFacts, texts: Texts) -> Iterator[tuple[str, HeaderSurface]]:
     for header in facts.headers:
         text = texts.get(header.sha)
         if text.refuses:
@@ -191,7 +191,7 @@ def _is_told(one: Entity) -> bool:
     return not one.internal and one.access in ("", "public") and INNER_NAME.search(one.name) is None
 
 
-def _surface(facts: LibraryFacts, version: str) -> Surface:
+def _make_surface(facts: LibraryFacts, version: str) -> Surface:
     build = BuildSurface(
         facts.library,
         version,

@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..impact.facts.surface import HeaderSurface
-from ..impact.targets.version import at_least, parts
+from ..impact.targets.version import is_at_least, parse
 from .extract import cpp
-from .history import _tree
+from .history import _find_tree
 from .includes import AV_HEADERS
-from .surface.releases import git_directory
+from .surface.releases import find_git_directory
 
 if TYPE_CHECKING:
     import pygit2
@@ -34,38 +34,38 @@ class LibraryClones(NamedTuple):
     below: str = ""
 
 
-def _sources(names: str, headers: str, below: str = "") -> LibraryClones:
+def _make_clones(names: str, headers: str, below: str = "") -> LibraryClones:
     return LibraryClones(names, re.compile(rf"(?:{headers})\Z"), below)
 
 
-def _of_include(folder: str) -> str:
+def _make_include_pattern(folder: str) -> str:
     return rf"(?:[\w-]+/)*include/(?P<path>{folder}/.+{_ENDING})"
 
 
 SOURCES = {
-    "pcl": _sources("PointCloudLibrary+pcl", _of_include("pcl")),
-    "boost": _sources("boostorg+*", rf"(?:[\w-]+/)?include/(?P<path>boost/.+{_ENDING})"),
-    "eigen3": _sources("eigenteam+eigen-git-mirror", r"(?P<path>(?:Eigen|unsupported/Eigen)/[\w./]+)"),
-    "yaml-cpp": _sources("jbeder+yaml-cpp", _of_include("yaml-cpp")),
-    "fmt": _sources("fmtlib+fmt", rf"(?:include/)?(?P<path>fmt/.+{_ENDING})"),
-    "tinyxml2": _sources("leethomason+tinyxml2", rf"(?P<path>tinyxml2{_ENDING})"),
-    "bullet": _sources("bulletphysics+bullet3", rf"src/(?P<path>.+{_ENDING})"),
-    "orocos-kdl": _sources(
+    "pcl": _make_clones("PointCloudLibrary+pcl", _make_include_pattern("pcl")),
+    "boost": _make_clones("boostorg+*", rf"(?:[\w-]+/)?include/(?P<path>boost/.+{_ENDING})"),
+    "eigen3": _make_clones("eigenteam+eigen-git-mirror", r"(?P<path>(?:Eigen|unsupported/Eigen)/[\w./]+)"),
+    "yaml-cpp": _make_clones("jbeder+yaml-cpp", _make_include_pattern("yaml-cpp")),
+    "fmt": _make_clones("fmtlib+fmt", rf"(?:include/)?(?P<path>fmt/.+{_ENDING})"),
+    "tinyxml2": _make_clones("leethomason+tinyxml2", rf"(?P<path>tinyxml2{_ENDING})"),
+    "bullet": _make_clones("bulletphysics+bullet3", rf"src/(?P<path>.+{_ENDING})"),
+    "orocos-kdl": _make_clones(
         "orocos+orocos_kinematics_dynamics", rf"orocos_kdl/src/(?P<path>(?:utilities/)?\w+{_ENDING})", "kdl/"
     ),
-    "assimp": _sources("assimp+assimp", _of_include("assimp")),
-    "ceres": _sources("ceres-solver+ceres-solver", _of_include("ceres")),
-    "fcl": _sources("flexible-collision-library+fcl", _of_include("fcl")),
-    "ompl": _sources("ompl+ompl", rf"src/(?P<path>ompl/.+{_ENDING})"),
-    "octomap": _sources("OctoMap+octomap", _of_include("octomap")),
-    "spdlog": _sources("gabime+spdlog", _of_include("spdlog")),
-    "libav": _sources("libav+libav", rf"(?P<path>{AV_HEADERS.pattern})"),
-    "console-bridge": _sources("ros+console_bridge", _of_include("console_bridge")),
-    "urdfdom-headers": _sources("ros+urdfdom_headers", _of_include(r"urdf_\w+")),
-    "urdfdom": _sources("ros+urdfdom", _of_include("urdf_parser")),
-    "flann": _sources("flann-lib+flann", rf"src/cpp/(?P<path>flann/.+{_ENDING})"),
-    "gtest": _sources("google+googletest", _of_include("g(?:test|mock)")),
-    "ogre": _sources("OGRECave+ogre", rf"OgreMain/include/(?P<path>Ogre\w+{_ENDING})"),
+    "assimp": _make_clones("assimp+assimp", _make_include_pattern("assimp")),
+    "ceres": _make_clones("ceres-solver+ceres-solver", _make_include_pattern("ceres")),
+    "fcl": _make_clones("flexible-collision-library+fcl", _make_include_pattern("fcl")),
+    "ompl": _make_clones("ompl+ompl", rf"src/(?P<path>ompl/.+{_ENDING})"),
+    "octomap": _make_clones("OctoMap+octomap", _make_include_pattern("octomap")),
+    "spdlog": _make_clones("gabime+spdlog", _make_include_pattern("spdlog")),
+    "libav": _make_clones("libav+libav", rf"(?P<path>{AV_HEADERS.pattern})"),
+    "console-bridge": _make_clones("ros+console_bridge", _make_include_pattern("console_bridge")),
+    "urdfdom-headers": _make_clones("ros+urdfdom_headers", _make_include_pattern(r"urdf_\w+")),
+    "urdfdom": _make_clones("ros+urdfdom", _make_include_pattern("urdf_parser")),
+    "flann": _make_clones("flann-lib+flann", rf"src/cpp/(?P<path>flann/.+{_ENDING})"),
+    "gtest": _make_clones("google+googletest", _make_include_pattern("g(?:test|mock)")),
+    "ogre": _make_clones("OGRECave+ogre", rf"OgreMain/include/(?P<path>Ogre\w+{_ENDING})"),
 }
 """Platform libraries by their names in platform_versions.yaml."""
 _TAG = re.compile(r"(?:(?:rel/)?v|pcl-|release-|yaml-cpp-|boost-)?(\d+(?:[._-]\d+){1,3})(?:-src)?\Z")
@@ -93,35 +93,35 @@ def read(folder: Path, library: str, platforms: Collection[str], inner: re.Patte
     known: dict[bytes, tuple[HeaderSurface, frozenset[str]]] = {}
     if told is None or not platforms:
         return
-    for where in filter(None, map(git_directory, sorted(folder.glob(told.names)))):
+    for where in filter(None, map(find_git_directory, sorted(folder.glob(told.names)))):
         repository = pygit2.Repository(str(where))
-        for number, tree in _versions(repository, min(platforms, key=parts)).items():
+        for number, tree in _find_versions(repository, min(platforms, key=parse)).items():
             if "*" in told.names and number not in platforms:
                 continue
-            for path, blob in _headers(tree, told):
+            for path, blob in _list_headers(tree, told):
                 versions[number][path] = blob.id.raw
                 if blob.id.raw not in known:
                     text = blob.data
                     words = frozenset(_WORD.findall(_COMMENT.sub(" ", text.decode("utf-8", "replace"))))
                     known[blob.id.raw] = (HeaderSurface(()) if inner.search(path) else cpp.extract(text), words)
-    for number in sorted(versions, key=parts):
+    for number in sorted(versions, key=parse):
         found = versions[number]
         words = frozenset().union(*(known[blob][1] for blob in found.values()))
         yield Tagged(number, {path: known[blob][0] for path, blob in sorted(found.items())}, words)
 
 
-def _versions(repository: pygit2.Repository, oldest: str) -> dict[str, pygit2.Tree]:
+def _find_versions(repository: pygit2.Repository, oldest: str) -> dict[str, pygit2.Tree]:
     found: dict[str, pygit2.Tree] = {}
     for ref in sorted(repository.references):
         match = _TAG.match(ref.removeprefix("refs/tags/")) if ref.startswith("refs/tags/") else None
-        tree = _tree(repository, ref) if match else None
+        tree = _find_tree(repository, ref) if match else None
         if match and tree is not None:
             found.setdefault(re.sub(r"[_-]", ".", match.group(1)), tree)
-    first = max((v for v in found if at_least(oldest, v)), key=parts, default="0")
-    return {version: tree for version, tree in found.items() if at_least(version, first)}
+    first = max((v for v in found if is_at_least(oldest, v)), key=parse, default="0")
+    return {version: tree for version, tree in found.items() if is_at_least(version, first)}
 
 
-def _headers(tree: pygit2.Tree, told: LibraryClones) -> Iterator[tuple[str, pygit2.Blob]]:
+def _list_headers(tree: pygit2.Tree, told: LibraryClones) -> Iterator[tuple[str, pygit2.Blob]]:
     import pygit2
 
     stack = [(tree, "")]

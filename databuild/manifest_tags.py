@@ -19,11 +19,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ..impact.targets.distro.distro import version_key
-from ..impact.targets.snapshot import DATA, Snapshot, shipped_info
+from ..impact.targets.distro.distro import make_version_key
+from ..impact.targets.snapshot import DATA, Snapshot, read_shipped
 from .git import open_repository
 from .manifests import DeclaredVersion, changes_only, parse_manifest
-from .surface.releases import Release, git_directory, releases_of, tag_of
+from .surface.releases import Release, find_git_directory, list_releases, tag_of
 from .write import write_snapshot
 
 _TREE = "tree"
@@ -37,14 +37,14 @@ class ManifestReader:
         self._repository = repository
         self._folders: dict[bytes, dict[str, str]] = {}
 
-    def manifests(self, tree: Any) -> dict[str, str]:
+    def read_manifests(self, tree: Any) -> dict[str, str]:
         """Package to the text of its package.xml, as colcon finds them: the first one on the way down."""
         known = self._folders.get(tree.id.raw)
         if known is None:
-            known = self._folders[tree.id.raw] = dict(self._found(tree))
+            known = self._folders[tree.id.raw] = dict(self._find_manifests(tree))
         return known
 
-    def _found(self, tree: Any) -> Iterator[tuple[str, str]]:
+    def _find_manifests(self, tree: Any) -> Iterator[tuple[str, str]]:
         entries = {entry.name: entry for entry in tree}
         manifest = entries.get("package.xml")
         if manifest is not None and manifest.type_str == "blob":
@@ -54,7 +54,7 @@ class ManifestReader:
             return
         for name, entry in entries.items():
             if entry.type_str == _TREE and not name.startswith("."):
-                yield from self.manifests(entry).items()
+                yield from self.read_manifests(entry).items()
 
 
 def read_clone(place: Path, name: str, releases: list[Release]) -> Iterator[DeclaredVersion]:
@@ -75,7 +75,7 @@ def read_clone(place: Path, name: str, releases: list[Release]) -> Iterator[Decl
             tree = repository.revparse_single(ref).peel(pygit2.Tree)
         except (KeyError, ValueError, pygit2.GitError):
             continue
-        for package, text in reader.manifests(tree).items():
+        for package, text in reader.read_manifests(tree).items():
             declared = parse_manifest(release.distro, text) if package in release.packages else None
             if declared is not None and declared.version == release.version:
                 yield declared
@@ -108,13 +108,13 @@ def read_clones(folder: Path, snapshot: Snapshot) -> list[DeclaredVersion]:
     """The same for all clones in a folder, one entry where the declaration changed with a version."""
     found: list[DeclaredVersion] = []
     for clone in sorted(folder.iterdir()):
-        where = git_directory(clone) if clone.is_dir() else None
+        where = find_git_directory(clone) if clone.is_dir() else None
         if where is not None:
             name = clone.name.replace("+", "/")
-            found.extend(read_clone(where, name, releases_of(snapshot, name)))
+            found.extend(read_clone(where, name, list_releases(snapshot, name)))
             if name.endswith("-release"):
                 found.extend(read_release_clone(where))
-    return changes_only(found, version_key)
+    return changes_only(found, make_version_key)
 
 
 def add(raw: bytes, declared: list[DeclaredVersion]) -> tuple[bytes, int]:
@@ -155,7 +155,7 @@ def main(arguments: list[str] | None = None) -> None:
     given = parser.parse_args(arguments)
     declared = read_clones(given.clones, Snapshot(given.data))
     raw, added = add(Snapshot(given.data).unpack(), declared)
-    info = shipped_info(given.data)
+    info = read_shipped(given.data)
     size = write_snapshot(raw, info.date, info.sources, given.output)
     print(f"{len(declared)} manifests at tags, {added} added; {size} bytes packed")
 

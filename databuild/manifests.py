@@ -143,14 +143,14 @@ def read_caches(distro: str, caches: Iterable[bytes]) -> list[DeclaredVersion]:
             if block in memo:
                 continue
             memo.add(block)
-            text = _text_of(block)
+            text = _extract_text(block)
             declared = parse_manifest(distro, text) if text else None
             if declared:
                 found[declared.package, declared.version] = declared
     return list(found.values())
 
 
-def _text_of(block: bytes) -> str:
+def _extract_text(block: bytes) -> str:
     try:
         parsed = yaml.load(block, Loader=_LOADER)
     except (yaml.YAMLError, ValueError):

@@ -28,7 +28,7 @@ import msgspec
 from ..edges.files import write_file
 from ..impact.targets.distro.rosdep import decode_rule
 from ..impact.targets.providers.providers import BY_FOLDER
-from ..impact.targets.snapshot import DATA, Snapshot, default
+from ..impact.targets.snapshot import DATA, Snapshot, load_snapshot
 from .history import RosFacts, read_repositories
 
 SCHEMA = """
@@ -59,7 +59,7 @@ _MODULE_DEPTH = 2
 _PROGRAM_DEPTH = 1
 
 
-def _words(text: str) -> frozenset[str]:
+def _split_words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
@@ -81,10 +81,10 @@ class Suite(NamedTuple):
     ros: frozenset[str]
     source: dict[str, str]
 
-    def files(self) -> Iterator[tuple[str, tuple[str, ...]]]:
+    def list_files(self) -> Iterator[tuple[str, tuple[str, ...]]]:
         """(path, Debian packages) of every file that may be a header, module, program or configuration."""
         for index in self.contents:
-            for line in lines_of(index):
+            for line in unpack(index):
                 path, _, where = line.rstrip().rpartition(b" " if b"\t" not in line else b"\t")
                 path = path.rstrip()
                 if _WANTED.match(path) and not _SKIP.match(path):
@@ -102,12 +102,12 @@ _SKIP = re.compile(rb"usr/share/(?:doc|gir-1\.0|perl5|icons|javascript|nodejs|ca
 _ROS_SOURCE = re.compile(r"(?:ros|ament|ros2|rosidl)-|ament_|catkin$")
 
 
-def of_ros(source: str) -> bool:
+def is_ros_source(source: str) -> bool:
     """Whether a Debian source package is of ROS itself."""
     return _ROS_SOURCE.match(source) is not None
 
 
-def lines_of(path: Path) -> Iterator[bytes]:
+def unpack(path: Path) -> Iterator[bytes]:
     """Lines of an index however apt compressed it, through apt's own helper."""
     with subprocess.Popen(["/usr/lib/apt/apt-helper", "cat-file", str(path)], stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
@@ -126,25 +126,25 @@ def read_suite(platform: str, lists: Path) -> Suite:
     essential: set[str] = set()
     ros: set[str] = set()
     source: dict[str, str] = {}
-    for name, fields in _fields_of(packages):
+    for name, fields in _read_fields(packages):
         if fields.get("Essential") == "yes" or fields.get("Priority") == "required":
             essential.add(name)
         origin = fields.get("Source", name).partition(" ")[0]
         source[name] = sys.intern(re.sub(r"-?[\d.]+$", "", origin.removesuffix("-defaults")))
-        if of_ros(origin):
+        if is_ros_source(origin):
             ros.add(name)
-    real = dependencies_of(lists)
+    real = read_dependencies(lists)
     return Suite(platform, tuple(contents), real, frozenset(essential), frozenset(ros), source)
 
 
-def dependencies_of(lists: Path) -> dict[str, tuple[str, ...]]:
+def read_dependencies(lists: Path) -> dict[str, tuple[str, ...]]:
     """Each package of a suite to what it depends on, read from the Packages indices in an apt lists folder; virtual
     packages are replaced by the first one that provides them."""
     depends: dict[str, tuple[str, ...]] = {}
     provides: dict[str, list[str]] = defaultdict(list)
-    for name, fields in _fields_of(sorted(lists.glob("*_Packages*"))):
-        depends[name] = _relations(fields.get("Pre-Depends", "") + "," + fields.get("Depends", ""))
-        for other in _relations(fields.get("Provides", "")):
+    for name, fields in _read_fields(sorted(lists.glob("*_Packages*"))):
+        depends[name] = _parse_relations(fields.get("Pre-Depends", "") + "," + fields.get("Depends", ""))
+        for other in _parse_relations(fields.get("Provides", "")):
             provides[other].append(name)
     return {
         name: tuple(d if d in depends else next(iter(provides.get(d, (d,)))) for d in found)
@@ -152,12 +152,12 @@ def dependencies_of(lists: Path) -> dict[str, tuple[str, ...]]:
     }
 
 
-def _fields_of(indices: Iterable[Path]) -> Iterator[tuple[str, dict[str, str]]]:
+def _read_fields(indices: Iterable[Path]) -> Iterator[tuple[str, dict[str, str]]]:
     for index in indices:
-        yield from _paragraphs(lines_of(index))
+        yield from _parse_paragraphs(unpack(index))
 
 
-def _paragraphs(lines: Iterable[bytes]) -> Iterator[tuple[str, dict[str, str]]]:
+def _parse_paragraphs(lines: Iterable[bytes]) -> Iterator[tuple[str, dict[str, str]]]:
     wanted = (b"Package", b"Source", b"Depends", b"Pre-Depends", b"Provides", b"Essential", b"Priority")
     fields: dict[str, str] = {}
     for line in lines:
@@ -172,7 +172,7 @@ def _paragraphs(lines: Iterable[bytes]) -> Iterator[tuple[str, dict[str, str]]]:
         yield fields["Package"], fields
 
 
-def _relations(text: str) -> tuple[str, ...]:
+def _parse_relations(text: str) -> tuple[str, ...]:
     """`a (>= 1), b | c, d:any` gives a, b, d: apt takes the first alternative."""
     found = []
     for item in text.split(","):
@@ -195,16 +195,16 @@ class Keys(NamedTuple):
 def read_keys(snapshot: Snapshot) -> Keys:
     """rosdep keys with their packages, the newest rule's first, and how often released manifests name them."""
     found: dict[str, dict[str, None]] = defaultdict(dict)
-    for key, rule in snapshot.rows("SELECT key, rule FROM rule WHERE os IN ('debian', 'ubuntu') ORDER BY ts DESC"):
-        for name in _apt_names(decode_rule(rule)):
+    for key, rule in snapshot.fetch("SELECT key, rule FROM rule WHERE os IN ('debian', 'ubuntu') ORDER BY ts DESC"):
+        for name in _list_apt_names(decode_rule(rule)):
             found[key].setdefault(name)
     uses: Counter[str] = Counter()
-    for (entries,) in snapshot.rows("SELECT d.entries FROM manifest m JOIN dependencies d ON d.id = m.dependencies"):
+    for (entries,) in snapshot.fetch("SELECT d.entries FROM manifest m JOIN dependencies d ON d.id = m.dependencies"):
         uses.update({line.partition("\t")[0] for line in (entries or "").splitlines()})
     return Keys({key: tuple(names) for key, names in found.items()}, uses)
 
 
-def _apt_names(rule: object) -> Iterator[str]:
+def _list_apt_names(rule: object) -> Iterator[str]:
     if isinstance(rule, str):
         yield from rule.split() if "\n" not in rule.strip() else ()
     elif isinstance(rule, list):
@@ -212,16 +212,16 @@ def _apt_names(rule: object) -> Iterator[str]:
     elif isinstance(rule, dict):
         for name, value in rule.items():
             if name in _APT_MANAGERS and isinstance(value, dict):
-                yield from _apt_names(value.get("packages"))
+                yield from _list_apt_names(value.get("packages"))
             elif name not in _OTHER_MANAGERS:
-                yield from _apt_names(value)
+                yield from _list_apt_names(value)
 
 
 # What a path means
 
 # Folders below /usr/include that a package's own flags put on the include path (its .pc or CMake file says -I there).
 # Most carry a version in their name; these do not.
-_ROOTS = _words(
+_ROOTS = _split_words(
     """
     OGRE opencv bullet jsoncpp suitesparse cairo ni nite OpenNI2 openni2 nss qwt openmpi mpi ImageMagick tirpc
     postgresql mysql mariadb Imath OpenEXR nspr superlu libxml2 schroedinger libcec coin Inventor opencascade oce
@@ -282,7 +282,7 @@ def include_paths(path: str) -> tuple[str, ...]:
 
 
 # Names that any project gives its own headers: without a folder they say nothing about whose they are.
-_TOO_COMMON = _words(
+_TOO_COMMON = _split_words(
     """
     config.h types.h common.h util.h utils.h version.h defs.h error.h errors.h log.h logger.h logging.h debug.h
     main.h list.h queue.h thread.h threads.h timer.h vector.h matrix.h array.h buffer.h object.h node.h event.h
@@ -301,7 +301,7 @@ _MODULE_FILE = re.compile(r"([A-Za-z_]\w*)(?:\.py|(?:\.[\w-]+)?\.so)?$")
 _PROGRAM = re.compile(r"(?:usr/)?(?:s?bin|games)/([^/]+)$")
 
 
-def cmake_names(path: str) -> tuple[str, ...]:
+def list_cmake(path: str) -> tuple[str, ...]:
     """The find_package names that a file answers in config mode: `…/PCLConfig.cmake` gives `PCL`.
 
     `sdl2-config.cmake` gives `sdl2` and `sdl2-config`; the latter marks that any letter case finds it.
@@ -312,7 +312,7 @@ def cmake_names(path: str) -> tuple[str, ...]:
     return (match.group(1),) if match.group(2) == "Config" else (match.group(1), f"{match.group(1).lower()}-config")
 
 
-def module_names(path: str) -> tuple[str, ...]:
+def list_modules(path: str) -> tuple[str, ...]:
     """Python modules that a file gives, outermost first: `…/dist-packages/ruamel/yaml/x.py` gives two names."""
     match = _MODULE.match(path)
     if not match or ".egg-info" in path or ".dist-info" in path:
@@ -395,7 +395,7 @@ def is_of_compiler(package: str) -> bool:
     return _COMPILER_PACKAGE.fullmatch(package) is not None
 
 
-def _same_python(names: Iterable[str]) -> set[str]:
+def _add_python_twins(names: Iterable[str]) -> set[str]:
     """Adds the Python 2 name of a Python 3 package and the other way round: keys of old distros name those."""
     found = set(names)
     for name in tuple(found):
@@ -426,23 +426,23 @@ def join(suites: list[Suite], keys: Keys) -> Tables:
     essential = frozenset().union(*(suite.essential for suite in suites))
     direct: set[str] = set()
 
-    def packages_of_compiler(packages: tuple[str, ...]) -> bool:
+    def has_compiler_package(packages: tuple[str, ...]) -> bool:
         return any(package in compiler for package in packages)
 
     for place, suite in enumerate(suites):
         installable = by_suite[place] | compiler | essential
-        for path, packages in suite.files():
+        for path, packages in suite.list_files():
             # A package that only another suite's keys bring tells who provides a name, not that this suite has it.
             bit = 0 if installable.isdisjoint(packages) else 1 << place
             packages = tuple(p for p in packages if p not in suite.ros or p in named)
             if not any(p in reached or p in compiler or p in essential for p in packages):
                 if not path.startswith("usr/lib/python"):
                     continue
-                packages = tuple(p for p in _same_python(packages) if p in reached)
+                packages = tuple(p for p in _add_python_twins(packages) if p in reached)
                 if not packages:
                     continue
             for place_, name in enumerate(include_paths(path)):
-                if "/" in name or name not in _TOO_COMMON or packages_of_compiler(packages):
+                if "/" in name or name not in _TOO_COMMON or has_compiler_package(packages):
                     header.add(name, packages, bit)
                     if not place_:
                         direct.add(name)
@@ -450,15 +450,15 @@ def join(suites: list[Suite], keys: Keys) -> Tables:
                 own = _CMAKE_FIND.match(path)
                 if own and "cmake-data" not in packages:
                     cmake.add(own.group(1), packages, bit)
-                for name in cmake_names(path):
+                for name in list_cmake(path):
                     cmake.add(name, packages, bit)
             elif path.endswith(".pc"):
                 match = _PKGCONFIG.match(path)
                 if match:
                     pkgconfig.add(match.group(1), packages, bit)
             elif "-packages/" in path or "/pyshared/" in path:
-                for name in module_names(path):
-                    module.add(name, _same_python(packages), bit)
+                for name in list_modules(path):
+                    module.add(name, _add_python_twins(packages), bit)
             else:
                 match = _PROGRAM.match(path)
                 if match:
@@ -468,15 +468,15 @@ def join(suites: list[Suite], keys: Keys) -> Tables:
         {
             name: (entry, header.suites[name] | (0 if "/" in name or name in direct else BY_FOLDER))
             for name, packages in header.packages.items()
-            if (entry := (("", ""),) if packages & compiler else ranked.of(packages, _HEADER_DEPTH))
+            if (entry := (("", ""),) if packages & compiler else ranked.rank(packages, _HEADER_DEPTH))
         },
         _rank(cmake, ranked, _HEADER_DEPTH),
         _rank(pkgconfig, ranked, _HEADER_DEPTH),
-        _without_repetition(_rank(module, ranked, _MODULE_DEPTH)),
+        _drop_repetition(_rank(module, ranked, _MODULE_DEPTH)),
         {
             name: (entry, program.suites[name])
             for name, packages in program.packages.items()
-            if (entry := (("", ""),) if packages & essential else ranked.of(packages, _PROGRAM_DEPTH))
+            if (entry := (("", ""),) if packages & essential else ranked.rank(packages, _PROGRAM_DEPTH))
         },
     )
 
@@ -488,7 +488,7 @@ class _Ranking:
         self._reached, self._uses = reached, keys.uses
         self._known: dict[tuple[frozenset[str], int], tuple[tuple[str, str], ...]] = {}
 
-    def of(self, packages: Iterable[str], depth: int) -> tuple[tuple[str, str], ...]:
+    def rank(self, packages: Iterable[str], depth: int) -> tuple[tuple[str, str], ...]:
         wanted = frozenset(packages)
         known = self._known.get((wanted, depth))
         if known is None:
@@ -507,11 +507,11 @@ def _rank(names: _Names, ranked: _Ranking, depth: int) -> dict[str, tuple[tuple[
     return {
         name: (entry, names.suites[name])
         for name, packages in names.packages.items()
-        if (entry := ranked.of(packages, depth))
+        if (entry := ranked.rank(packages, depth))
     }
 
 
-def _without_repetition(
+def _drop_repetition(
     modules: dict[str, tuple[tuple[tuple[str, str], ...], int]],
 ) -> dict[str, tuple[tuple[tuple[str, str], ...], int]]:
     """Drops `a.b` where `a` has the same providers: the lookup falls back to it."""
@@ -556,7 +556,7 @@ def write(tables: Tables, platforms: list[str], ros: RosFacts, output: Path) -> 
     connection.executemany("INSERT INTO ros_cmake VALUES(?, ?)", sorted(ros.cmake.items()))
     connection.commit()
     connection.execute("VACUUM")
-    raw = _bytes_of(connection)
+    raw = _dump_database(connection)
     packed = zstandard.ZstdCompressor(level=22).compress(raw)
     write_file(output / "providers.sqlite.zst", packed)
     sha = hashlib.sha256(raw).hexdigest()
@@ -565,7 +565,7 @@ def write(tables: Tables, platforms: list[str], ros: RosFacts, output: Path) -> 
     return raw
 
 
-def _bytes_of(connection: sqlite3.Connection) -> bytes:
+def _dump_database(connection: sqlite3.Connection) -> bytes:
     import tempfile
 
     with tempfile.TemporaryDirectory() as folder:
@@ -588,7 +588,7 @@ def main(arguments: list[str] | None = None) -> None:
         platform, _, lists = item.partition("=")
         suites.append(read_suite(platform, Path(lists)))
         print(platform, len(suites[-1].depends), "packages", flush=True)
-    tables = join(suites, read_keys(default()))
+    tables = join(suites, read_keys(load_snapshot()))
     ros = read_repositories(given.repositories) if given.repositories else RosFacts({}, {}, {}, {})
     raw = write(tables, [suite.platform for suite in suites], ros, given.output)
     print({name: len(part) for name, part in zip(Tables._fields, tables, strict=True)}, len(raw), "bytes unpacked")

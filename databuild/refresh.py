@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..edges.limits import size_text
+from ..edges.limits import format_size
 from .git import BuildError, Report
 from .keys import FILES, parse_rules
 from .manifests import parse_manifest
@@ -34,7 +34,7 @@ class Refreshed(NamedTuple):
     failures: tuple[str, ...]
 
 
-def github_sync_days(distro: str) -> list[str]:
+def fetch_sync_days(distro: str) -> list[str]:
     """Days of a distro's sync tags in ros/rosdistro, through GitHub's interface."""
     from github import Github
 
@@ -43,18 +43,18 @@ def github_sync_days(distro: str) -> list[str]:
     return sorted(ref.ref.removeprefix(f"refs/{prefix}") for ref in repository.get_git_matching_refs(prefix))
 
 
-def refreshed(
+def refresh_database(
     raw: bytes,
     index_url: str = INDEX,
-    sync_days: Callable[[str], Iterable[str]] = github_sync_days,
+    sync_days: Callable[[str], Iterable[str]] = fetch_sync_days,
     report: Report | None = None,
 ) -> tuple[bytes, Refreshed]:
     """The database with everything newer added, and what that was. raw: an unpacked database.
 
     Raises BuildError when the index cannot be had; what fails later is listed in the result and left as it was.
     """
-    with _known_hosts(index_url):
-        return _refreshed(raw, index_url, sync_days, report)
+    with _restrict_hosts(index_url):
+        return _add_newer(raw, index_url, sync_days, report)
 
 
 _HOSTS = ("raw.githubusercontent.com", "repo.ros2.org", "repositories.ros.org", "packages.ros.org", "docs.ros.org")
@@ -62,7 +62,7 @@ _HOSTS = ("raw.githubusercontent.com", "repo.ros2.org", "repositories.ros.org", 
 
 
 @contextlib.contextmanager
-def _known_hosts(index_url: str) -> Iterator[None]:
+def _restrict_hosts(index_url: str) -> Iterator[None]:
     """Lets urllib, with which the rosdistro library asks, ask these hosts alone, also when it is redirected: what an
     index names is not the user's word. Files are read where the index is a file itself."""
     import urllib.error
@@ -90,7 +90,7 @@ def _known_hosts(index_url: str) -> Iterator[None]:
         urllib.request.install_opener(None)  # type: ignore[arg-type]
 
 
-def _refreshed(
+def _add_newer(
     raw: bytes, index_url: str, sync_days: Callable[[str], Iterable[str]], report: Report | None
 ) -> tuple[bytes, Refreshed]:
     import rosdistro
@@ -111,26 +111,26 @@ def _refreshed(
             into = _Writer(connection)
             syncs: list[str] = []
             releases = manifests = 0
-            living = [name for name, entry in sorted(index.distributions.items()) if _lives(entry)]
+            living = [name for name, entry in sorted(index.distributions.items()) if _is_supported(entry)]
             for done, name in enumerate(living):
                 tell(f"reading {name}", done, len(living))
-                distro = into.distro(name, index.distributions[name])
+                distro = into.ensure_distro(name, index.distributions[name])
                 try:
-                    days = [day for day in sync_days(name) if _is_day(day) and day[:10] > into.last_sync(distro)]
+                    days = [day for day in sync_days(name) if _is_day(day) and day[:10] > into.find_last_sync(distro)]
                     for day in days:
                         tagged = rosdistro.get_index(index_url.format(ref=f"{name}/{day}"))
-                        releases += into.state(distro, rosdistro.get_distribution_file(tagged, name), day[:10])
+                        releases += into.write_state(distro, rosdistro.get_distribution_file(tagged, name), day[:10])
                         syncs.append(f"{name}/{day}")
                 except Exception as error:
                     failures.append(f"syncs of {name}: {error}")
                 try:
                     cache = rosdistro.get_distribution_cache(index, name)
-                    manifests += into.manifests(distro, name, cache.release_package_xmls)
+                    manifests += into.add_manifests(distro, name, cache.release_package_xmls)
                 except Exception as error:
                     failures.append(f"manifests of {name}: {error}")
             tell("reading rosdep rules", 0, 0)
             try:
-                rules = into.rules(_rosdep_files(index_url), now)
+                rules = into.write_rules(_fetch_rosdep_rules(index_url), now)
             except (OSError, ValueError) as error:
                 rules = 0
                 failures.append(f"rosdep rules: {error}")
@@ -141,7 +141,7 @@ def _refreshed(
         return path.read_bytes(), Refreshed(tuple(syncs), releases, manifests, rules, tuple(failures))
 
 
-def _lives(entry: dict[str, Any]) -> bool:
+def _is_supported(entry: dict[str, Any]) -> bool:
     return entry.get("distribution_status") != "end-of-life"
 
 
@@ -153,7 +153,7 @@ def _is_day(text: str) -> bool:
     return True
 
 
-def _rosdep_files(index_url: str) -> dict[tuple[str, str], str]:
+def _fetch_rosdep_rules(index_url: str) -> dict[tuple[str, str], str]:
     """Today's rules of rosdep's default files, the first file that has one winning."""
     import urllib.request
 
@@ -163,7 +163,7 @@ def _rosdep_files(index_url: str) -> dict[tuple[str, str], str]:
         with urllib.request.urlopen(f"{base}/{name}", timeout=30) as answer:
             data = answer.read(_LARGEST + 1)
             if len(data) > _LARGEST:
-                raise ValueError(f"{name} is larger than {size_text(_LARGEST)}")
+                raise ValueError(f"{name} is larger than {format_size(_LARGEST)}")
             parsed = parse_rules(data)
         if parsed is None:
             raise ValueError(f"{name} is no YAML mapping")
@@ -178,7 +178,7 @@ class _Writer:
         self.connection = connection
         self._ids: dict[str, dict[str, int]] = {}
 
-    def distro(self, name: str, entry: dict[str, Any]) -> int:
+    def ensure_distro(self, name: str, entry: dict[str, Any]) -> int:
         """The id of a distro, which is added when it is new."""
         self.connection.execute(
             "INSERT INTO distro(name, ros, python, status) VALUES(?, ?, ?, ?)"
@@ -192,10 +192,10 @@ class _Writer:
         )
         return self.connection.execute("SELECT id FROM distro WHERE name = ?", (name,)).fetchone()[0]
 
-    def last_sync(self, distro: int) -> str:
+    def find_last_sync(self, distro: int) -> str:
         return self.connection.execute("SELECT max(day) FROM sync WHERE distro = ?", (distro,)).fetchone()[0] or ""
 
-    def state(self, distro: int, file: Any, day: str) -> int:
+    def write_state(self, distro: int, file: Any, day: str) -> int:
         """Makes a distribution file (of the rosdistro library) the state as of a sync; gives the number of changes."""
         start = datetime.datetime.combine(datetime.date.fromisoformat(day), datetime.time(), datetime.timezone.utc)
         newest = self.connection.execute("SELECT max(ts) FROM release WHERE distro = ?", (distro,)).fetchone()[0] or 0
@@ -230,33 +230,33 @@ class _Writer:
             if old.get(name, (None, "")) == (version, names):
                 continue
             changed += 1
-            repository = self._id("repository", name)
-            packages = self._id("packages", names) if version is not None else None
+            repository = self._add_id("repository", name)
+            packages = self._add_id("packages", names) if version is not None else None
             self.connection.execute(
                 "INSERT OR REPLACE INTO release VALUES(?, ?, ?, ?, ?)", (distro, repository, ts, version, packages)
             )
             for package in names.split():
                 self.connection.execute(
-                    "INSERT OR IGNORE INTO home VALUES(?, ?, ?)", (self._id("package", package), distro, repository)
+                    "INSERT OR IGNORE INTO home VALUES(?, ?, ?)", (self._add_id("package", package), distro, repository)
                 )
         return changed
 
-    def manifests(self, distro: int, name: str, texts: dict[str, str]) -> int:
+    def add_manifests(self, distro: int, name: str, texts: dict[str, str]) -> int:
         """Adds the manifests of a rosdistro cache that the database lacks; gives their number."""
         added = 0
         for text in texts.values():
             declared = parse_manifest(name, text)
             if declared is None:
                 continue
-            package = self._id("package", declared.package)
-            dependencies = self._id("dependencies", declared.entries)
+            package = self._add_id("package", declared.package)
+            dependencies = self._add_id("dependencies", declared.entries)
             added += self.connection.execute(
                 "INSERT OR IGNORE INTO manifest VALUES(?, ?, ?, ?, ?)",
                 (distro, package, declared.version, dependencies, declared.build_type),
             ).rowcount
         return added
 
-    def rules(self, rules: dict[tuple[str, str], str], ts: int) -> int:
+    def write_rules(self, rules: dict[tuple[str, str], str], ts: int) -> int:
         """Makes these the rosdep rules from `ts` on; gives the number of changes."""
         old = {
             (key, system): rule
@@ -272,7 +272,7 @@ class _Writer:
         self.connection.executemany("INSERT OR REPLACE INTO rule VALUES(?, ?, ?, ?)", changed)
         return len(changed)
 
-    def _id(self, table: str, text: str) -> int:
+    def _add_id(self, table: str, text: str) -> int:
         column = {"packages": "names", "dependencies": "entries"}.get(table, "name")
         if table not in self._ids:
             self._ids[table] = {

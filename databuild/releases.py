@@ -59,7 +59,7 @@ class DistroHistory(msgspec.Struct, frozen=True, array_like=True):
     unreadable: tuple[tuple[int, str], ...] = ()
 
 
-def distribution_paths(distro: str) -> tuple[str, ...]:
+def list_distribution_paths(distro: str) -> tuple[str, ...]:
     """Where rosdistro kept a distro's releases, newest form first."""
     return f"{distro}/distribution.yaml", f"{distro}/release.yaml", f"releases/{distro}.yaml"
 
@@ -90,8 +90,8 @@ def parse_block(block: bytes, path: str) -> tuple[str, RepositoryEntry] | None:
         return None
     ((name, value),) = parsed.items()
     value = value if isinstance(value, dict) else {}
-    release = _mapping(value.get("release")) if path.endswith("/distribution.yaml") else value
-    source = _mapping(value.get("source")) or _mapping(value.get("doc"))
+    release = _ensure_mapping(value.get("release")) if path.endswith("/distribution.yaml") else value
+    source = _ensure_mapping(value.get("source")) or _ensure_mapping(value.get("doc"))
     version = release.get("version")
     packages: tuple[str, ...] = ()
     if version is not None:
@@ -106,17 +106,17 @@ def parse_block(block: bytes, path: str) -> tuple[str, RepositoryEntry] | None:
     )
 
 
-def _mapping(value: Any) -> dict:
+def _ensure_mapping(value: Any) -> dict:
     return value if isinstance(value, dict) else {}
 
 
 def parse_platforms(head: bytes) -> tuple[str, ...]:
     """Platforms named in the head of a distribution file, `ubuntu jammy` first; empty when it names none."""
     try:
-        parsed = _mapping(yaml.load(head, Loader=_LOADER))
+        parsed = _ensure_mapping(yaml.load(head, Loader=_LOADER))
     except (yaml.YAMLError, ValueError):
         return ()
-    platforms = _mapping(parsed.get("release_platforms") or parsed.get("platforms"))
+    platforms = _ensure_mapping(parsed.get("release_platforms") or parsed.get("platforms"))
     names = []
     for system in sorted(platforms, key=lambda s: _SYSTEMS.index(s) if s in _SYSTEMS else len(_SYSTEMS)):
         names.extend(f"{system} {release}".lower() for release in platforms[system] or ())
@@ -147,7 +147,7 @@ def read_history(
         data = blob(version.blob) if version.blob else b""
         if not version.blob:
             continue
-        problem = reader.step(data, version, events, platforms)
+        problem = reader.apply(data, version, events, platforms)
         if problem:
             unreadable.append((version.ts, problem))
     last = versions[end - 1].blob if end else ""
@@ -165,9 +165,9 @@ class _Reader:
         self.path = ""
 
     def restore(self, version: FileVersion, blob: Callable[[str], bytes]) -> None:
-        self.step(blob(version.blob), version, [], [])
+        self.apply(blob(version.blob), version, [], [])
 
-    def step(self, data: bytes, version: FileVersion, events: list[EntryEvent], platforms: list[PlatformEvent]) -> str:
+    def apply(self, data: bytes, version: FileVersion, events: list[EntryEvent], platforms: list[PlatformEvent]) -> str:
         """Adds what changed with a version; gives the reason when it cannot be read."""
         parts = split_file(data)
         if parts is None:

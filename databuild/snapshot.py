@@ -8,15 +8,15 @@ from typing import Any, NamedTuple
 import msgspec
 
 from ..edges.files import check_writable_path, read_file, write_file
-from ..edges.limits import limits
+from ..edges.limits import get_limits
 from ..impact.cache import cache_folder
 from ..impact.targets import snapshot as snapshots
 from ..impact.targets.snapshot import Snapshot
-from ..impact.targets.surface.store import shipped
+from ..impact.targets.surface.store import load_shipped
 from .git import BuildError, Report
 from .write import DistroRow, Sync
 
-__all__ = ["BuildError", "BuiltSnapshot", "Status", "Updated", "build", "status", "update"]
+__all__ = ["BuildError", "BuiltSnapshot", "Status", "Updated", "build", "read_status", "update"]
 
 _SAVE_EVERY = 2000
 
@@ -61,17 +61,17 @@ class Updated(NamedTuple):
     failures: tuple[str, ...]
 
 
-def status(snapshot: Snapshot | None = None) -> Status:
+def read_status(snapshot: Snapshot | None = None) -> Status:
     """Date and origin of the data in use. Raises SnapshotError when it cannot be read."""
-    used = snapshot or snapshots.default()
+    used = snapshot or snapshots.load_snapshot()
     return Status(
         used.date,
         dict(used.info.sources),
         used.data,
         used.data != snapshots.DATA,
         (used.data / "distros.sqlite.zst").stat().st_size,
-        dict(used.rows("SELECT d.name, max(s.day) FROM sync s JOIN distro d ON d.id = s.distro GROUP BY d.id")),
-        shipped().about._asdict(),
+        dict(used.fetch("SELECT d.name, max(s.day) FROM sync s JOIN distro d ON d.id = s.distro GROUP BY d.id")),
+        load_shipped().about._asdict(),
     )
 
 
@@ -89,17 +89,17 @@ def update(
     """
     from . import refresh, write
 
-    used = snapshot or snapshots.default()
+    used = snapshot or snapshots.load_snapshot()
     try:
-        raw, found = refresh.refreshed(
+        raw, found = refresh.refresh_database(
             used.unpack(),
             index_url or refresh.INDEX,
-            sync_days or refresh.github_sync_days,
+            sync_days or refresh.fetch_sync_days,
             report,
         )
     except BuildError as error:
         raise BuildError(f"{error}; the data of {used.date} stays in use") from None
-    folder = output or snapshots.updated_folder()
+    folder = output or snapshots.find_updated_folder()
     today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
     write.write_snapshot(raw, today, {**used.info.sources, "updated from": used.date}, folder)
     return Updated(today, folder, found.syncs, found.releases, found.manifests, found.rules, found.failures)
@@ -117,7 +117,7 @@ def build(
     output: the data folder to write into. work: a folder for what was read so far (None: one in the user's cache); a
     second run with it continues, also with a newer clone. Raises BuildError when a repository is unusable.
     """
-    from ..impact.targets.distro.distro import version_key
+    from ..impact.targets.distro.distro import make_version_key
     from . import git, keys, manifests, releases, write
 
     tell = report or (lambda what, done, total: None)
@@ -126,13 +126,13 @@ def build(
         raise BuildError(f"{rosdistro} has no commits")
     head = repository[repository.head.target]
     distros = _index(repository, head, rosdistro)
-    line = git.first_parents(repository, head)
-    wanted = {row.name: releases.distribution_paths(row.name) for row in distros}
+    line = git.read_first_parents(repository, head)
+    wanted = {row.name: releases.list_distribution_paths(row.name) for row in distros}
     wanted.update({path: (path,) for path in keys.FILES})
-    versions = git.file_versions(repository, line, wanted, tell)
-    syncs = _syncs(repository, line, versions, wanted)
+    versions = git.read_file_versions(repository, line, wanted, tell)
+    syncs = _find_syncs(repository, line, versions, wanted)
 
-    def blob(oid: str) -> bytes:
+    def read_blob(oid: str) -> bytes:
         return repository[oid].data
 
     work = work or cache_folder() / "build"
@@ -143,16 +143,16 @@ def build(
         path = work / f"{row.name}.history"
         history = _load(path, releases.DistroHistory)
         total = len(versions[row.name])
-        while history is None or history.read != total or history.last != _last(versions[row.name]):
+        while history is None or history.read != total or history.last != _get_last_blob(versions[row.name]):
             tell(f"reading {row.name}", history.read if history else 0, total)
-            history = releases.read_history(versions[row.name], blob, history, _SAVE_EVERY)
+            history = releases.read_history(versions[row.name], read_blob, history, _SAVE_EVERY)
             _save(path, history)
             if history.read >= total:
                 break
         histories[row.name] = history or releases.DistroHistory()
     rule_files = {path: versions[path] for path in keys.FILES}
     count = sum(map(len, rule_files.values()))
-    rules = keys.read_rules(rule_files, blob, lambda done: tell("reading rosdep rules", done, count))
+    rules = keys.read_rules(rule_files, read_blob, lambda done: tell("reading rosdep rules", done, count))
     declared: list[manifests.DeclaredVersion] = []
     sources = {"ros/rosdistro": str(head.id)}
     if meta_ros is not None:
@@ -162,11 +162,11 @@ def build(
         for number, (distro, blobs) in enumerate(sorted(found.items())):
             tell(f"reading caches of {distro}", number, len(found))
             declared.extend(manifests.read_caches(distro, (caches[oid].data for oid in blobs)))
-    known = manifests.changes_only(declared, version_key)
-    date = _day(head.commit_time)
+    known = manifests.changes_only(declared, make_version_key)
+    date = _format_day(head.commit_time)
     gathered = write.GatheredData(date, sources, distros, histories, syncs, rules, known)
     tell("writing", 0, 0)
-    raw = write.database(gathered)
+    raw = write.build_database(gathered)
     packed = write.write_snapshot(raw, date, sources, output)
     return BuiltSnapshot(
         date,
@@ -179,31 +179,31 @@ def build(
     )
 
 
-def _syncs(repository, line, versions: dict, wanted: dict) -> list[Sync]:
+def _find_syncs(repository, line, versions: dict, wanted: dict) -> list[Sync]:
     """The syncs that tags such as `humble/2024-03-01` name; what was tagged beside the line is put into `versions`."""
     from . import git
 
     cuts = dict(line.commits)
     syncs = []
-    for name, oid, ts in git.tags(repository):
+    for name, oid, ts in git.list_tags(repository):
         distro, _, day = name.partition("/")
         if distro not in wanted or not day:
             continue
         cut = git.place_on_line(repository, oid, cuts)
         if cut is not None and oid not in cuts:
-            versions[distro] = git.with_side_version(repository, versions[distro], oid, cut, wanted[distro])
+            versions[distro] = git.insert_side_version(repository, versions[distro], oid, cut, wanted[distro])
         # `noetic/final` names no day.
-        syncs.append(Sync(distro, day[:10] if _is_day(day) else _day(ts), ts if cut is None else cut))
+        syncs.append(Sync(distro, day[:10] if _is_day(day) else _format_day(ts), ts if cut is None else cut))
     return sorted(syncs)
 
 
-def _last(versions: list) -> str:
+def _get_last_blob(versions: list) -> str:
     return versions[-1].blob if versions else ""
 
 
 def _load(path: Path, kind: type):
     try:
-        return msgspec.msgpack.decode(read_file(path, limits().report), type=kind)
+        return msgspec.msgpack.decode(read_file(path, get_limits().report), type=kind)
     except (OSError, msgspec.MsgspecError):
         return None
 
@@ -212,7 +212,7 @@ def _save(path: Path, value: object) -> None:
     write_file(path, msgspec.msgpack.encode(value))
 
 
-def _day(ts: int) -> str:
+def _format_day(ts: int) -> str:
     return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
 
 

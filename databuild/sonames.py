@@ -22,7 +22,7 @@ import msgspec
 from ..edges.files import write_file
 from ..impact.targets.machine.sonames import FILE, SonamesTable
 from ..impact.targets.snapshot import DATA
-from .providers import lines_of
+from .providers import unpack
 
 _LIBRARY = re.compile(rb"(?:usr/)?lib(?:32|64|x32)?/(?!debug/)(?:[^ \t]*/)?([^/ \t]+\.so\.\d[\w.+~-]*)[ \t]+(\S+)$")
 _NO_LIBRARY = (b".py", b".gz", b".hmac", b".txt")
@@ -43,11 +43,11 @@ def read_suite(platform: str, lists: Path) -> Suite:
     packages = sorted(lists.glob("*_Packages*"))
     if not contents or not packages:
         raise FileNotFoundError(f"{lists}: no Contents or no Packages index; enable apt's Contents targets and update")
-    libraries = libraries_of(line for index in contents for line in lines_of(index))
-    return Suite(platform, libraries, symbols_of(libraries, (line for index in packages for line in lines_of(index))))
+    libraries = parse_libraries(line for index in contents for line in unpack(index))
+    return Suite(platform, libraries, parse_symbols(libraries, (line for index in packages for line in unpack(index))))
 
 
-def libraries_of(lines: Iterable[bytes]) -> dict[str, str]:
+def parse_libraries(lines: Iterable[bytes]) -> dict[str, str]:
     """File name to package, from the lines of a Contents index."""
     found: dict[str, str] = {}
     for line in lines:
@@ -61,7 +61,7 @@ def libraries_of(lines: Iterable[bytes]) -> dict[str, str]:
     return found
 
 
-def symbols_of(libraries: Mapping[str, str], lines: Iterable[bytes]) -> dict[str, str]:
+def parse_symbols(libraries: Mapping[str, str], lines: Iterable[bytes]) -> dict[str, str]:
     """How far the versions of symbols of the C and C++ libraries reach. lines: those of a Packages index.
 
     glibc 2.36 has symbols up to GLIBC_2.36; libstdc++.so.6.0.30 is the one that added GLIBCXX_3.4.30 (GCC, "libstdc++
@@ -82,7 +82,7 @@ def symbols_of(libraries: Mapping[str, str], lines: Iterable[bytes]) -> dict[str
     return found
 
 
-def table_of(suites: Iterable[Suite]) -> SonamesTable:
+def build_table(suites: Iterable[Suite]) -> SonamesTable:
     """The table of all suites, a later suite's package standing for a library that several have."""
     suites = list(suites)
     bits: dict[str, int] = {}
@@ -111,7 +111,7 @@ def main(arguments: list[str] | None = None) -> None:
         platform, _, lists = item.partition("=")
         suites.append(read_suite(platform, Path(lists)))
         print(platform, len(suites[-1].libraries), "libraries", suites[-1].symbols, flush=True)
-    raw = msgspec.json.encode(table_of(suites))
+    raw = msgspec.json.encode(build_table(suites))
     packed = zstandard.ZstdCompressor(level=22).compress(raw)
     write_file(given.output / FILE, packed)
     print(len(raw), "bytes,", len(packed), "packed")

@@ -222,7 +222,7 @@ class Probe:
         """True when this compiler finds a header."""
         return any((place / header).is_file() for place in self.places)
 
-    def headers(self) -> list[str]:
+    def list_headers(self) -> list[str]:
         """Those that are asked about: C++'s, and those of C and POSIX."""
         found = dict.fromkeys((*NAMES, *BARE, *HEADER_SINCE, *_CPP.split()))
         for folder in _FOLDERS:
@@ -232,10 +232,10 @@ class Probe:
                                            for p in sorted(below.glob("*.h"))))  # fmt: skip
         return [header for header in found if header and self.has(header)]
 
-    def brought(self, header: str, standard: int) -> frozenset[str]:
+    def find_names(self, header: str, standard: int) -> frozenset[str]:
         """The names that a header brings under a language standard; none when it is no header of it."""
         lines, asked = _COMMON.format(header=header).split("\n"), {}
-        for name, probe in probes():
+        for name, probe in list_probes():
             if probe.startswith("#"):
                 lines.append(probe)
             else:
@@ -254,37 +254,37 @@ class Probe:
         return frozenset(asked.values()) - missing
 
 
-def probes() -> Iterator[tuple[str, str]]:
+def list_probes() -> Iterator[tuple[str, str]]:
     """Names, and the line that the compiler refuses where a name is not there; directives around it have no name."""
-    for name, spelled in _entries(NAMES):
+    for name, spelled in _list_entries(NAMES):
         if spelled != name:
             yield f"std::{name}", f"enum {{ size = sizeof(std::{spelled.removesuffix('{}')}) }};"
         elif name.endswith(("::now", "::hardware_concurrency")):
             yield f"std::{name}", f"enum {{ size = sizeof(&std::{name}) }};"
         else:
             yield f"std::{name}", f"using std::{name};"
-    for name, _ in _entries(BARE):
+    for name, _ in _list_entries(BARE):
         yield "", f"#ifndef {name}"
         yield name, f"using ::{name};"
         yield "", "#endif"
 
 
-def _entries(groups: dict[str, str]) -> Iterator[tuple[str, str]]:
+def _list_entries(groups: dict[str, str]) -> Iterator[tuple[str, str]]:
     """Names and how they are written."""
     for text in groups.values():
         for entry in text.split():
             yield re.sub(r"<.*|\{\}$", "", entry), entry
 
 
-def home() -> dict[str, str]:
+def find_home_headers() -> dict[str, str]:
     """Names to the header that is theirs."""
-    of_std = {f"std::{name}": header for header, text in NAMES.items() for name, _ in _entries({header: text})}
+    of_std = {f"std::{name}": header for header, text in NAMES.items() for name, _ in _list_entries({header: text})}
     return {**of_std, **{name: header for header, text in BARE.items() for name in text.split()}}
 
 
-def table(folders: dict[int, Path]) -> dict:
+def build_table(folders: dict[int, Path]) -> dict:
     """The shipped table: names, the header of each, and GCC to language standard to header to the names' places."""
-    names = home()
+    names = find_home_headers()
     place = {name: number for number, name in enumerate(names)}
     found: dict[str, dict[str, dict[str, str]]] = {}
     for major, folder in sorted(folders.items()):
@@ -292,9 +292,9 @@ def table(folders: dict[int, Path]) -> dict:
         rows: dict[str, str] = {}
         for standard in _STANDARDS[:2] if major < 11 else _STANDARDS[1:]:
             # What C's own headers declare does not hang on the standard of C++.
-            headers = [header for header in probe.headers() if not (header.endswith(".h") and header in rows)]
+            headers = [header for header in probe.list_headers() if not (header.endswith(".h") and header in rows)]
             with ThreadPoolExecutor(2) as pool:
-                brought = pool.map(lambda header: probe.brought(header, standard), headers)  # noqa: B023
+                brought = pool.map(lambda header: probe.find_names(header, standard), headers)  # noqa: B023
                 rows = dict(rows)
                 for header, there in zip(headers, brought, strict=True):
                     rows[header] = f"{sum(1 << place[name] for name in there):x}"
@@ -308,7 +308,7 @@ def _main() -> None:
     parser.add_argument("--output", type=Path, default=DATA)
     asked = parser.parse_args()
     folders = {int(major): Path(folder) for major, _, folder in (text.partition("=") for text in asked.folders)}
-    raw = json.dumps(table(folders), separators=(",", ":")).encode()
+    raw = json.dumps(build_table(folders), separators=(",", ":")).encode()
     write_file(asked.output / "std_names.json.zst", zstandard.ZstdCompressor(level=19).compress(raw))
 
 

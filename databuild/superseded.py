@@ -31,13 +31,13 @@ from typing import Any
 from ..edges.files import write_file
 from ..impact.targets.changes import DISTROS
 from ..impact.targets.distro.distro import DistroTarget
-from ..impact.targets.distro.known import known_distros
+from ..impact.targets.distro.known import list_known_distros
 from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.changes import Line
-from ..impact.targets.surface.fields import Definition, default_fields, there
-from ..impact.targets.surface.offers import there_at
-from ..impact.targets.surface.store import shipped
-from ..impact.targets.version import at_least
+from ..impact.targets.surface.fields import Definition, covers, load_fields
+from ..impact.targets.surface.offers import is_there_at
+from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.version import is_at_least
 
 _SIDES = {"api": ("c++",), "python": ("python",), "header": ("header",), "cmake": ("command", "target", "variable")}
 _SEPARATOR = {"c++": "::", "python": ".", "header": "\0"}
@@ -46,7 +46,7 @@ _GOES = {True: ("answered", "contradicted", "bare"), False: ("answered", "bare")
 """Verdicts on rows that go: of derived files, and of reviewed ones."""
 
 
-def verdict(kind: str, package: str, old: str, new: str, removed_in: str, ros: int, deprecated: bool = False) -> str:
+def judge_row(kind: str, package: str, old: str, new: str, removed_in: str, ros: int, deprecated: bool = False) -> str:
     """What the stored data makes of a row; see the module. ros: as in changes.Row. deprecated: the row says from when
     on the name is deprecated."""
     side = kind.partition("-")[0]
@@ -58,11 +58,11 @@ def verdict(kind: str, package: str, old: str, new: str, removed_in: str, ros: i
         return "bare"
     answers: list[str] = []
     for generation in (ros,) if ros else (1, 2):
-        told = list(_told(side, package, old, generation))
-        found = _compare(told, _gone_from(removed_in, package, generation))
+        told = list(_list_presence(side, package, old, generation))
+        found = _compare(told, _make_gone_test(removed_in, package, generation))
         if found == "unknown":
             continue
-        instead, warns = _besides(side, package, old, generation)
+        instead, warns = _find_replacements(side, package, old, generation)
         if found == "answered" and ((new and new not in instead) or (deprecated and not warns)):
             found = "more"
         answers.append(found)
@@ -89,76 +89,76 @@ def _compare(told: list[tuple[str, bool]], gone: Callable[[str], bool | None]) -
     return "answered" if len(sides) == 2 else "unknown"
 
 
-def _gone_from(bound: str, package: str, ros: int) -> Callable[[str], bool | None]:
+def _make_gone_test(bound: str, package: str, ros: int) -> Callable[[str], bool | None]:
     """Whether a bound says of a version that the name is gone; None for one that distros on both sides had."""
     if bound == "ros2":
         return lambda version: ros == 2
     if bound not in DISTROS:
-        return lambda version: at_least(version, bound)
+        return lambda version: is_at_least(version, bound)
     if (DISTROS[bound] >= DISTROS["ardent"]) != (ros == 2):
         return lambda version: None
 
-    def gone(version: str) -> bool | None:
-        sides = {DISTROS[distro] >= DISTROS[bound] for distro in _having(package, ros).get(version, ())}
+    def is_gone(version: str) -> bool | None:
+        sides = {DISTROS[distro] >= DISTROS[bound] for distro in _find_distros(package, ros).get(version, ())}
         return sides.pop() if len(sides) == 1 else None
 
-    return gone
+    return is_gone
 
 
 @lru_cache(maxsize=16)
-def _having(package: str, ros: int) -> dict[str, set[str]]:
+def _find_distros(package: str, ros: int) -> dict[str, set[str]]:
     """The versions of a package with the distros of a generation that ever had them; rolling, which has no bound, left
     out."""
     found: dict[str, set[str]] = {}
-    for known in known_distros():
+    for known in list_known_distros():
         if known.ros == ros and known.name != "rolling":
-            for _, version in _target(known.name).history(package):
+            for _, version in _get_target(known.name).list_releases(package):
                 if version is not None:
                     found.setdefault(version, set()).add(known.name)
     return found
 
 
 @cache
-def _target(distro: str) -> DistroTarget:
+def _get_target(distro: str) -> DistroTarget:
     return DistroTarget(distro)
 
 
-def _told(side: str, package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
+def _list_presence(side: str, package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
     """The stored versions, and whether each has the name."""
     if side == "msg":
-        yield from _fields(package, old, ros)
+        yield from _list_field_presence(package, old, ros)
         return
-    line = shipped().line(package, ros)
+    line = load_shipped().find_line(package, ros)
     if line is None:
         return
     for which in _SIDES[side]:
         name = old.lower() if which == "command" else old
         events = line.events.get(which, {})
         if which == "c++" and "::" not in name:
-            yield from _of_bare(line, package, ros, name)
+            yield from _list_bare_presence(line, package, ros, name)
         elif name in events:
             for place, version in enumerate(line.versions):
                 if version not in line.approximate:
-                    yield version, there_at(which, events[name], place)
+                    yield version, is_there_at(which, events[name], place)
             return
-        elif _always(package, ros, which, name):
+        elif _is_always_there(package, ros, which, name):
             for version in line.versions:
                 yield version, True
 
 
-def _of_bare(line: Line, package: str, ros: int, name: str) -> Iterator[tuple[str, bool]]:
+def _list_bare_presence(line: Line, package: str, ros: int, name: str) -> Iterator[tuple[str, bool]]:
     """The same for a bare name of C++: that of a type or macro in whatever scope."""
-    known = [full for full in _names(package, ros) if full == name or full.endswith(f"::{name}")]
+    known = [full for full in _read_names(package, ros) if full == name or full.endswith(f"::{name}")]
     events = line.events.get("c++", {})
     for place, version in enumerate(line.versions):
         if known and version not in line.approximate:
-            yield version, any(full not in events or there_at("c++", events[full], place) for full in known)
+            yield version, any(full not in events or is_there_at("c++", events[full], place) for full in known)
 
 
-def _always(package: str, ros: int, side: str, name: str) -> bool:
+def _is_always_there(package: str, ros: int, side: str, name: str) -> bool:
     if side in ("c++", "python", "header"):
-        return name in _names(package, ros)
-    history = shipped().history(package, ros)
+        return name in _read_names(package, ros)
+    history = load_shipped().find_history(package, ros)
     build = history.build(history.versions[-1]) if history is not None else None
     if build is None:
         return False
@@ -167,14 +167,14 @@ def _always(package: str, ros: int, side: str, name: str) -> bool:
 
 
 @lru_cache(maxsize=4)
-def _names(package: str, ros: int) -> dict[str, tuple[str, ...]]:
-    history = shipped().history(package, ros)
-    return history.names() if history is not None else {}
+def _read_names(package: str, ros: int) -> dict[str, tuple[str, ...]]:
+    history = load_shipped().find_history(package, ros)
+    return history.index_names() if history is not None else {}
 
 
-def _besides(side: str, package: str, old: str, ros: int) -> tuple[set[str], bool]:
+def _find_replacements(side: str, package: str, old: str, ros: int) -> tuple[set[str], bool]:
     """What the stored surfaces name as replacement, and whether the name was deprecated in some version."""
-    line = shipped().line(package, ros)
+    line = load_shipped().find_line(package, ros)
     instead: set[str] = set()
     warns = False
     for which in _SIDES.get(side, ()):
@@ -184,19 +184,19 @@ def _besides(side: str, package: str, old: str, ros: int) -> tuple[set[str], boo
     return instead, warns
 
 
-def _fields(package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
+def _list_field_presence(package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
     """The same for `package/Name.field` or `package/Name`."""
-    history = default_fields().history(package, ros)
+    history = load_fields().find_history(package, ros)
     if history is None:
         return
     name, _, member = old.partition("/")[2].partition(".")
     name, _, part = name.rpartition("_") if name.endswith(("_Request", "_Response", "_Goal")) else (name, "", "")
     for kind in ("msg", "srv", "action"):
-        definition = history.definition(f"{kind}/{name}")
+        definition = history.find_definition(f"{kind}/{name}")
         if definition is None:
             continue
         for state, version in enumerate(history.starts):
-            if there(definition.spans, state):
+            if covers(definition.spans, state):
                 yield version, not member or _has(definition, part.lower(), member, state)
             elif not member:
                 yield version, False
@@ -204,10 +204,10 @@ def _fields(package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
 
 def _has(definition: Definition, section: str, member: str, state: int) -> bool:
     sections = [section] if section else list(definition.sections)
-    return any(there(row.spans, state) for one in sections for row in definition.members(one, member))
+    return any(covers(row.spans, state) for one in sections for row in definition.list_members(one, member))
 
 
-def rewritten(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
+def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
     """A file's content without superseded rows, and how many rows of each kind had which verdict."""
     content = json.loads(file.read_bytes())
     count: Counter[tuple[str, str]] = Counter()
@@ -219,7 +219,7 @@ def rewritten(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
             plain = not group.get("library") and not group.get("back_in") and not group["kind"].startswith("package")
             found = "unknown"
             if plain:
-                found = verdict(group["kind"], group["package"], old, new, group.get("removed_in", ""),
+                found = judge_row(group["kind"], group["package"], old, new, group.get("removed_in", ""),
                                 group.get("ros", 0), bool(group.get("deprecated_in")))  # fmt: skip
             count[group["kind"], found] += 1
             if found not in _GOES[file.name in _DERIVED]:
@@ -229,7 +229,7 @@ def rewritten(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
     return {**content, "changes": kept}, count
 
 
-def dumped(content: dict[str, Any]) -> str:
+def format_content(content: dict[str, Any]) -> str:
     """A file's content, a line for each name."""
     groups = []
     for group in content["changes"]:
@@ -243,14 +243,14 @@ def dumped(content: dict[str, Any]) -> str:
 def main(arguments: list[str]) -> None:
     """Prints what becomes of the rows of each file, and with --write takes out those that are superseded."""
     for file in sorted(DATA.glob("changes*.json")):
-        content, count = rewritten(file)
+        content, count = drop_superseded(file)
         before = sum(count.values())
         after = sum(len(group["names"]) for group in content["changes"])
         print(f"{file.name}: {before} rows, {after} left")
         for (kind, found), number in sorted(count.items()):
             print(f"  {kind:16} {found:13} {number}")
         if "--write" in arguments and after < before:
-            write_file(file, dumped(content).encode())
+            write_file(file, format_content(content).encode())
 
 
 if __name__ == "__main__":

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 import msgspec
 
 from ..impact.facts.surface import CLASSES, FUNCTIONS
-from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, VersionChange, overload_of
+from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, VersionChange, make_overload
 from ..impact.targets.surface.python import UNKNOWN
 from .surface.compare import RepositorySurfaces, compare
-from .surface_file import brief, pack
+from .surface_file import pack, shorten_message
 
 # What other tables tell (messages), and what a package has for itself.
 _UNTOLD = frozenset(("dependency", "system dependency", "package", "standard"))
@@ -45,7 +45,7 @@ class Lines:
             before = self._before.get(key)
             if before is not None:
                 if id(before) not in compared:
-                    compared[id(before)] = tuple(_events(package, before, state))
+                    compared[id(before)] = tuple(_list_events(package, before, state))
                 for thing, event in compared[id(before)]:
                     if thing not in self._events.get(key, {}) and _may_have_been(thing, event):
                         continue
@@ -56,14 +56,14 @@ class Lines:
                 self._approximate.setdefault(key, []).append(version)
             self._before[key] = state
 
-    def packed(self) -> dict[tuple[str, int], bytes]:
+    def pack_lines(self) -> dict[tuple[str, int], bytes]:
         """Package and ROS generation to its line as it is stored."""
         found: dict[tuple[str, int], bytes] = {}
         for (package, generation), versions in self._versions.items():
             events: dict[str, dict[str, tuple[ChangeEvent, ...]]] = {}
             for (side, name), told in sorted(self._events.get((package, generation), {}).items()):
                 events.setdefault(side, {})[name] = tuple(told)
-            bases = _bases(package, self._before[package, generation])
+            bases = _collect_bases(package, self._before[package, generation])
             approximate = tuple(self._approximate.get((package, generation), ()))
             found[package, generation] = pack(Line(tuple(versions), events, bases, approximate))
         return found
@@ -74,13 +74,13 @@ def _may_have_been(thing: tuple[str, str], event: ChangeEvent) -> bool:
     return thing[0] == "c++" and all(told.kind == "added" and told.sure < 1 for told in event.told)
 
 
-def _side(change: VersionChange) -> str:
+def _find_side(change: VersionChange) -> str:
     if change.what == "header":
         return "header"
     return change.side if change.side in ("c++", "python") else change.what
 
 
-def _events(
+def _list_events(
     package: str, before: RepositorySurfaces, after: RepositorySurfaces
 ) -> Iterator[tuple[tuple[str, str], ChangeEvent]]:
     """What changed of a package, by side and name. The places are filled in later."""
@@ -90,41 +90,41 @@ def _events(
             continue
         name = change.name.partition("(")[0] if change.what == "parameter" else change.name
         kept = change.kind in ("deprecated", "value") or (change.kind == "default" and change.side != "c++")
-        told = ComparedThing(change.kind, change.what, change.aspects, brief(change.now) if kept else "",
+        told = ComparedThing(change.kind, change.what, change.aspects, shorten_message(change.now) if kept else "",
                     change.instead,
                     change.moved_to, change.breaks, change.sure)  # fmt: skip
-        each = found.setdefault((_side(change), name), [])
+        each = found.setdefault((_find_side(change), name), [])
         if told not in each:
             each.append(told)
     for (side, name), each in found.items():
-        had, has = _form(package, side, name, before), _form(package, side, name, after)
+        had, has = _find_form(package, side, name, before), _find_form(package, side, name, after)
         if side == "c++" and had is not None and had == has and all(told.kind == "added" for told in each):
             continue  # another header declares it too
         yield (side, name), ChangeEvent(0, tuple(each), had, has)
 
 
-def _form(package: str, side: str, name: str, state: RepositorySurfaces) -> Form | None:
+def _find_form(package: str, side: str, name: str, state: RepositorySurfaces) -> Form | None:
     if side == "c++":
         entities = [place.entity for place in state.cpp.get(name, ()) if place.entity.access != "private"]
         if not entities:
             owner, _, last = name.rpartition("::")
-            entities = state.inherited(owner, last)[0] if owner else []
+            entities = state.find_in_base(owner, last)[0] if owner else []
         if not entities:
             return None
         called = [one for one in entities if one.kind in _CALLED and one.parameters is not None]
-        overloads = dict.fromkeys(map(overload_of, called))
+        overloads = dict.fromkeys(map(make_overload, called))
         messages = [one.deprecated for one in entities]
-        return Form(tuple(overloads), None if None in messages else brief(messages[0] or ""))
+        return Form(tuple(overloads), None if None in messages else shorten_message(messages[0] or ""))
     if side == "python":
-        entry = state.python(package).find(name)
+        entry = state.get_python_names(package).find(name)
         if entry is None or entry is UNKNOWN:
             return None
         deprecated = entry.bound.deprecated if entry.bound is not None else ""
-        return Form((), brief(deprecated) if deprecated else None)
+        return Form((), shorten_message(deprecated) if deprecated else None)
     return None
 
 
-def _bases(package: str, state: RepositorySurfaces) -> dict[str, tuple[str, ...]]:
+def _collect_bases(package: str, state: RepositorySurfaces) -> dict[str, tuple[str, ...]]:
     found = {}
     for name, places in state.cpp.items():
         for place in places:

@@ -16,11 +16,11 @@ from urllib.parse import quote
 import msgspec
 import zstandard
 
-from ..edges.files import read_chunks, writing
+from ..edges.files import open_for_replacing, read_chunks
 from ..impact.facts.interface import Interface
 from ..impact.facts.python.surface import Bound
 from ..impact.facts.surface import Entity, HeaderSurface
-from ..impact.targets.parameters import last_part
+from ..impact.targets.parameters import find_last_part
 from ..impact.targets.surface.changes import PARAMETER, Line
 from ..impact.targets.surface.includes import Include, Included, IncludesRow
 from ..impact.targets.surface.store import About, StoredSurfacesError, SurfaceHistory
@@ -84,17 +84,17 @@ class Packer:
         self._versions.append(stored.version)
         if stored.approximate:
             self._approximate.append(stored.version)
-        for part in _parts(stored.surface):
+        for part in _list_parts(stored.surface):
             whole = _encoder.encode(part)
             numbers = self._parts.get(whole)
             if numbers is None:
-                numbers = self._parts[whole] = [self._number(row) for row in _rows(*part)]
+                numbers = self._parts[whole] = [self._assign_number(row) for row in _make_rows(*part)]
             for number in numbers:
                 places = self._places[number]
                 if not places or places[-1] != place:
                     places.append(place)
 
-    def _number(self, row: _Row) -> int:
+    def _assign_number(self, row: _Row) -> int:
         key = _encoder.encode(row)
         number = self._numbers.setdefault(key, len(self._values))
         if number == len(self._values):
@@ -102,10 +102,10 @@ class Packer:
             self._places.append([])
         return number
 
-    def packed(self) -> bytes:
+    def pack_versions(self) -> bytes:
         """All versions as they are stored."""
         count = len(self._versions)
-        rows = [(*value, spans_of(places, count)) for value, places in zip(self._values, self._places, strict=True)]
+        rows = [(*value, find_spans(places, count)) for value, places in zip(self._values, self._places, strict=True)]
         rows.sort(key=lambda row: (row[0], row[1]))  # stable: what is declared first comes first
         whole = _encoder.encode((self._versions, self._approximate, rows))
         return zstandard.ZstdCompressor(level=_LEVEL).compress(whole)
@@ -114,7 +114,7 @@ class Packer:
 _encoder = msgspec.msgpack.Encoder()
 
 
-def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
+def _list_parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
     """What a surface consists of: kind, name, value. Each gives rows of its own."""
     from ..impact.targets.surface.surface import BuildSurface
 
@@ -132,54 +132,54 @@ def _parts(surface: Surface) -> Iterator[tuple[str, str, Any]]:
     yield "surface", "", [surface.guessed, surface.runs_with]
 
 
-def _rows(kind: str, name: str, value: Any) -> Iterator[_Row]:
+def _make_rows(kind: str, name: str, value: Any) -> Iterator[_Row]:
     bare = msgspec.to_builtins
     if kind == "header":
-        yield "header", name, [value.inline, _brief(value.deprecated), value.instead, value.lost]
+        yield "header", name, [value.inline, _shorten(value.deprecated), value.instead, value.lost]
         for one in value.entities:
-            yield "entity", name, _short(bare(_without_text(one)), _ENTITY)
+            yield "entity", name, _trim_defaults(bare(_remove_text(one)), _ENTITY)
     elif kind == "module":
         told = value.surface
-        yield "module", name, [value.path, value.package, told.all, told.all_open, told.open, _brief(told.deprecated),
+        yield "module", name, [value.path, value.package, told.all, told.all_open, told.open, _shorten(told.deprecated),
                                told.parsed]  # fmt: skip
         for bound in told.names:
-            bound = msgspec.structs.replace(bound, line=0, deprecated=_brief(bound.deprecated))
-            yield "bound", name, _short(bare(bound), _BOUND)
+            bound = msgspec.structs.replace(bound, line=0, deprecated=_shorten(bound.deprecated))
+            yield "bound", name, _trim_defaults(bare(bound), _BOUND)
         for taken in told.imports:
             yield "taken", name, bare(msgspec.structs.replace(taken, line=0))
     elif kind == "interface":
-        yield kind, name, bare(_without_lines(value))
+        yield kind, name, bare(_remove_lines(value))
     else:
         yield kind, name, bare(value)
 
 
-def _brief(message: str | None) -> str | None:
-    return None if message is None else brief(message)
+def _shorten(message: str | None) -> str | None:
+    return None if message is None else shorten_message(message)
 
 
-def _without_text(one: Entity) -> Entity:
+def _remove_text(one: Entity) -> Entity:
     """An entity without its line, names of parameters, statements and long messages."""
     parameters = one.parameters
     if parameters is not None:
         parameters = tuple(
-            msgspec.structs.replace(p, name="", default=None if p.default is None else _without_statements(p.default))
+            msgspec.structs.replace(p, name="", default=None if p.default is None else _remove_statements(p.default))
             for p in parameters
         )
     return msgspec.structs.replace(
         one,
         line=0,
         parameters=parameters,
-        value=_without_statements(one.value),
-        deprecated=_brief(one.deprecated),
+        value=_remove_statements(one.value),
+        deprecated=_shorten(one.deprecated),
     )
 
 
-def _without_statements(value: str) -> str:
+def _remove_statements(value: str) -> str:
     """A default or a constant; of one that calls a lambda only a digest, which tells it from another."""
     return f"[](){{{hashlib.sha1(value.encode()).hexdigest()[:8]}}}()" if "{" in value and ";" in value else value
 
 
-def _without_lines(definition: Interface) -> Interface:
+def _remove_lines(definition: Interface) -> Interface:
     sections = tuple(
         msgspec.structs.replace(
             section,
@@ -191,7 +191,7 @@ def _without_lines(definition: Interface) -> Interface:
     return msgspec.structs.replace(definition, sections=sections, problems=())
 
 
-def _short(values: list[Any], defaults: list[Any]) -> list[Any]:
+def _trim_defaults(values: list[Any], defaults: list[Any]) -> list[Any]:
     """The values up to the last that is not what it is by default."""
     end = len(values)
     while end and values[end - 1] == defaults[end - 1]:
@@ -230,7 +230,7 @@ def write(file: Path, packages: Packages, distros: Sequence[str] = (), date: str
     with tempfile.TemporaryDirectory() as folder:
         fresh = Path(folder, "surfaces.sqlite")
         _fill(fresh, packages, about)
-        with writing(file) as output:
+        with open_for_replacing(file) as output:
             for piece in read_chunks(fresh):
                 output.write(piece)
     return about
@@ -243,15 +243,15 @@ def _fill(file: Path, packages: Packages, about: About) -> None:
         db.executemany(
             "INSERT INTO package VALUES(?, ?, ?, ?, ?)", ((*key, *packed) for key, packed in sorted(packages.items()))
         )
-        db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_elsewhere(packages).items()))
-        db.execute("INSERT INTO headers VALUES(?)", (_headers(packages),))
-        db.execute("INSERT INTO parameters VALUES(?)", (_parameters(packages),))
+        db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_pack_moved_names(packages).items()))
+        db.execute("INSERT INTO headers VALUES(?)", (_pack_headers(packages),))
+        db.execute("INSERT INTO parameters VALUES(?)", (_pack_parameters(packages),))
         db.execute("INSERT INTO about VALUES(?, ?, ?, ?)", about)
         db.commit()
         db.execute("VACUUM")
 
 
-def _elsewhere(packages: Packages) -> dict[str, str]:
+def _pack_moved_names(packages: Packages) -> dict[str, str]:
     """Names that a package lost and others have or had, with those packages."""
     lost: dict[str, set[str]] = {}
     for (package, _), packed in packages.items():
@@ -261,38 +261,38 @@ def _elsewhere(packages: Packages) -> dict[str, str]:
                 lost.setdefault(name, set()).add(package)
     found: dict[str, set[str]] = {}
     for (package, _), packed in packages.items():
-        for name in SurfaceHistory(package, packed.data, packed.includes).names().keys() & lost.keys():
+        for name in SurfaceHistory(package, packed.data, packed.includes).index_names().keys() & lost.keys():
             if lost[name] != {package}:
                 found.setdefault(name, set()).add(package)
     return {name: " ".join(sorted(those)) for name, those in found.items()}
 
 
-def _headers(packages: Packages) -> bytes:
+def _pack_headers(packages: Packages) -> bytes:
     """Headers that do not lie in a folder called like their package, with the packages that have or had them."""
     found: dict[str, dict[str, None]] = {}
     for (package, _), packed in sorted(packages.items()):
         for header in read_packed(packed.includes, Included).headers:
             if not header.startswith(f"{package}/"):
                 found.setdefault(header, {})[package] = None
-    return _listed(found)
+    return _pack_names(found)
 
 
-def _listed(found: dict[str, dict[str, None]]) -> bytes:
+def _pack_names(found: dict[str, dict[str, None]]) -> bytes:
     ordered = {name: list(packages) for name, packages in sorted(found.items())}
     return zstandard.ZstdCompressor(level=_LEVEL).compress(_encoder.encode(ordered))
 
 
-def _parameters(packages: Packages) -> bytes:
+def _pack_parameters(packages: Packages) -> bytes:
     """The last parts of names of parameters that came or went for sure, with the packages they did so in."""
     found: dict[str, dict[str, None]] = {}
     for (package, _), packed in sorted(packages.items()):
         for name, events in read_packed(packed.changes, Line).events.get(PARAMETER, {}).items():
             if any(told.kind in ("added", "removed") and told.sure >= 1 for event in events for told in event.told):
-                found.setdefault(last_part(name), {})[package] = None
-    return _listed(found)
+                found.setdefault(find_last_part(name), {})[package] = None
+    return _pack_names(found)
 
 
-def spans_of(places: Sequence[int], count: int) -> list[int]:
+def find_spans(places: Sequence[int], count: int) -> list[int]:
     """First and last places of each run; nothing for all of them."""
     if len(places) == count:
         return []
@@ -331,11 +331,11 @@ class Including:
             announced = tuple(self._types.setdefault(name, len(self._types)) for name in header.announced)
             self._places.setdefault(path, {}).setdefault((includes, announced), []).append(place)
 
-    def packed(self) -> bytes:
+    def pack_versions(self) -> bytes:
         """All versions as they are stored."""
         count = len(self._versions)
         headers = {
-            path: tuple(IncludesRow(tuple(spans_of(places, count)), *state) for state, places in states.items())
+            path: tuple(IncludesRow(tuple(find_spans(places, count)), *state) for state, places in states.items())
             for path, states in sorted(self._places.items())
         }
         whole = Included(
@@ -348,7 +348,7 @@ class Including:
         return zstandard.ZstdCompressor(level=19).compress(_encoder.encode(whole))
 
 
-def brief(message: str) -> str:
+def shorten_message(message: str) -> str:
     """A message of a deprecation, cut where it is longer than a sentence."""
     if len(message) <= _SENTENCE:
         return message

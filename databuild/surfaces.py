@@ -17,10 +17,10 @@ from typing import Any, Literal, NamedTuple
 
 from ..edges.files import check_writable_path
 from ..impact.targets.distro.distro import DistroTarget, TargetError
-from ..impact.targets.distro.known import known_distros
-from ..impact.targets.snapshot import Snapshot, default
+from ..impact.targets.distro.known import list_known_distros
+from ..impact.targets.snapshot import Snapshot, load_snapshot
 from ..impact.targets.surface.store import SurfaceHistory
-from ..impact.targets.version import parts
+from ..impact.targets.version import parse
 from .jobs import Job, Result, Wanted, run
 from .surface.clones import Clone, Clones, Release, Version
 from .surface_file import Packed, read_packages, write
@@ -49,7 +49,7 @@ def plan(
 ) -> tuple[list[Job], tuple[str, ...]]:
     """The jobs that read what distros have (`newest`) or ever had (`all`) of packages, and what no clone has (`package
     version distro`). Without packages all that the distros released. Raises TargetError for an unknown distro."""
-    data = data or default()
+    data = data or load_snapshot()
     asked = frozenset(packages)
     # A package of ROS 1 and one of ROS 2 may have the same name and version, and come from two repositories.
     found: dict[tuple[str, str, int], Version] = {}
@@ -57,13 +57,13 @@ def plan(
     for distro in distros:
         target = DistroTarget(distro, data=data)
         tagged: set[str] = set()
-        for package, release in (_released if versions == "all" else _newest)(target, data):
+        for package, release in (_list_released if versions == "all" else _list_newest)(target, data):
             if asked and package not in asked:
                 continue
             key = package, release.version, target.ros
             state = found.get(key)
             if state is None or state.approximate:
-                state = next(clones.standing_for(package, release), state)
+                state = next(clones.find_candidates(package, release), state)
             if state is None or (state.approximate and package in tagged):
                 # The distro's version before it stands for it better than a branch does, which may be years older.
                 missing.append(f"{package} {release.version} {distro}")
@@ -72,23 +72,23 @@ def plan(
                 tagged.add(package)
             if key not in found or not state.approximate:
                 found[key] = state
-    return _jobs(found), tuple(missing)
+    return _make_jobs(found), tuple(missing)
 
 
-def _newest(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+def _list_newest(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
     """What a distro has of each package."""
-    for package in sorted(target.released_names()):
-        home, version = target.repository(package), target.version(package)
+    for package in sorted(target.list_released()):
+        home, version = target.find_repository(package), target.find_version(package)
         if home is not None and version is not None:
             _, url, branch = home
             yield package, Release(target.distro, version, (url,) if url else (), branch)
 
 
-def _released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+def _list_released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
     """What a distro ever had of each package."""
     urls: dict[int, dict[str, None]] = {}
     branches: dict[int, str] = {}
-    for repository, url, branch in data.rows(
+    for repository, url, branch in data.fetch(
         "SELECT s.repository, u.text, s.branch FROM source s JOIN distro d ON d.id = s.distro"
         " JOIN url u ON u.id = s.url WHERE d.name = ? ORDER BY s.ts DESC",
         (target.distro,),
@@ -96,7 +96,7 @@ def _released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Relea
         urls.setdefault(repository, {})[url] = None
         branches.setdefault(repository, branch or "")
     told = set()
-    for repository, version, names in data.rows(
+    for repository, version, names in data.fetch(
         "SELECT r.repository, r.version, p.names FROM release r JOIN distro d ON d.id = r.distro"
         " JOIN packages p ON p.id = r.packages WHERE d.name = ? AND r.version IS NOT NULL ORDER BY r.ts",
         (target.distro,),
@@ -106,11 +106,11 @@ def _released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Relea
             if (package, plain) not in told:
                 told.add((package, plain))
                 release = Release(target.distro, plain, tuple(urls.get(repository, ())), branches.get(repository, ""),
-                                  target.version(package) != plain)  # fmt: skip
+                                  target.find_version(package) != plain)  # fmt: skip
                 yield package, release
 
 
-def _jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
+def _make_jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
     """States of packages, by name, version and ROS generation, each as often as it differs in who has it; one job has
     all states of a package, and those of all that is in one of them."""
     import networkx as nx
@@ -141,9 +141,9 @@ def _jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
         )
     jobs = []
     for group in grouped.values():
-        order = tuple(sorted(group, key=lambda state: (parts(state.version), state)))
+        order = tuple(sorted(group, key=lambda state: (parse(state.version), state)))
         name = Counter(state.clone for state in order).most_common(1)[0][0]
-        jobs.append(Job(name, order, tuple(clones[state.clone].folder_id(state.revision) for state in order)))
+        jobs.append(Job(name, order, tuple(clones[state.clone].find_folder_id(state.revision) for state in order)))
     return sorted(jobs)
 
 
@@ -178,15 +178,15 @@ def build(
             "(key TEXT, package TEXT, ros INTEGER, data BLOB, changes BLOB, includes BLOB,"
             " PRIMARY KEY(key, package, ros))"
         )
-        keys = {job.key(): job for job in todo}
+        keys = {job.compute_key(): job for job in todo}
         done = {key for (key,) in db.execute("SELECT key FROM done") if key in keys}
         left = [job for key, job in keys.items() if key not in done]
         left.sort(key=lambda job: -len(job.states))
-        with closing(_results(left, jobs, dask)) as ended:
+        with closing(_run_jobs(left, jobs, dask)) as ended:
             for number, (job, result) in enumerate(ended, len(done) + 1):
-                rows = ((job.key(), *whose, *packed) for whose, packed in result.packages.items())
+                rows = ((job.compute_key(), *whose, *packed) for whose, packed in result.packages.items())
                 db.executemany("INSERT OR REPLACE INTO part VALUES(?, ?, ?, ?, ?, ?)", rows)
-                db.execute("INSERT OR REPLACE INTO done VALUES(?, ?)", (job.key(), "\n".join(result.failed)))
+                db.execute("INSERT OR REPLACE INTO done VALUES(?, ?)", (job.compute_key(), "\n".join(result.failed)))
                 db.commit()
                 if progress is not None:
                     progress(job.name, number, len(todo))
@@ -199,7 +199,7 @@ def build(
                     written[package, ros] = packed
             (why,) = db.execute("SELECT failed FROM done WHERE key = ?", (key,)).fetchone()
             failed += why.split("\n") if why else []
-    about = write(output, written, list(dict.fromkeys((*older, *distros))), default().date)
+    about = write(output, written, list(dict.fromkeys((*older, *distros))), load_snapshot().date)
     work.unlink()
     histories = (SurfaceHistory(package, packed.data, packed.includes) for (package, _), packed in written.items())
     approximate = {history.package for history in histories if history.approximate}
@@ -210,12 +210,12 @@ def _count_versions(package: str, packed: Packed) -> int:
     return len(SurfaceHistory(package, packed.data, packed.includes).versions)
 
 
-def _results(todo: list[Job], jobs: int | None, dask: str | None) -> Generator[tuple[Job, Result], None, None]:
+def _run_jobs(todo: list[Job], jobs: int | None, dask: str | None) -> Generator[tuple[Job, Result], None, None]:
     """Jobs with their results as they end."""
     if dask is not None and todo:
-        from .cluster import done_by
+        from .cluster import run_on_cluster
 
-        yield from done_by(dask, todo)
+        yield from run_on_cluster(dask, todo)
         return
     from joblib import Parallel, delayed
 
@@ -223,16 +223,16 @@ def _results(todo: list[Job], jobs: int | None, dask: str | None) -> Generator[t
         yield from ((job, run(job)) for job in todo)
         return
     parallel: Any = Parallel(n_jobs=jobs or -1, return_as="generator_unordered", pre_dispatch="2*n_jobs")
-    yield from parallel(delayed(_with_job)(job) for job in todo)
+    yield from parallel(delayed(_run_with_job)(job) for job in todo)
 
 
-def _with_job(job: Job) -> tuple[Job, Result]:
+def _run_with_job(job: Job) -> tuple[Job, Result]:
     return job, run(job)
 
 
-def all_distros(names: Sequence[str]) -> tuple[str, ...]:
+def list_distros(names: Sequence[str]) -> tuple[str, ...]:
     """The distros asked for, each once. Raises TargetError for one that is not known."""
-    known = {distro.name for distro in known_distros()}
+    known = {distro.name for distro in list_known_distros()}
     for name in names:
         if name not in known:
             raise TargetError(f"`{name}` is no distro; known are {', '.join(sorted(known))}")

@@ -89,11 +89,11 @@ class _Ids:
     def __getitem__(self, text: str) -> int:
         return self.of.setdefault(text, len(self.of) + 1)
 
-    def rows(self) -> list[tuple[int, str]]:
+    def list_rows(self) -> list[tuple[int, str]]:
         return [(number, text) for text, number in self.of.items()]
 
 
-def database(gathered: GatheredData) -> bytes:
+def build_database(gathered: GatheredData) -> bytes:
     """The SQLite database as bytes; the same facts give the same bytes with the same SQLite."""
     handle, name = tempfile.mkstemp(suffix=".sqlite")
     os.close(handle)
@@ -139,7 +139,7 @@ def _fill(connection: sqlite3.Connection, gathered: GatheredData) -> None:
         ("packages", sets),
         ("dependencies", dependencies),
     ):
-        many(f"INSERT INTO {table} VALUES(?, ?)", ids.rows())
+        many(f"INSERT INTO {table} VALUES(?, ?)", ids.list_rows())
 
 
 def _fill_history(

@@ -35,16 +35,16 @@ A rule gets a `TargetView`: the workspace (`view.workspace`) as one target (`vie
 
 | to know | ask |
 |---|---|
-| which packages to report on, and all of them | `for package in view`, `for package in view.everyone()` |
+| which packages to report on, and all of them | `for package in view`, `for package in view.list_built()` |
 | what package.xml says | `package.manifest` |
 | what builds it: `ament_python`, `catkin` ... | `package.build_type` |
 | what CMakeLists.txt builds, installs and exports | `package.build` |
 | what setup.py, setup.cfg and pyproject.toml install | `package.digest.setup` |
 | what its files include and import | `package.digest.includes`, `package.digest.imports` |
 | which programs, files and plugins its launch files and scripts mention | `package.digest.references` |
-| what a package uses of others, with who provides it | `view.needs(package)` |
+| what a package uses of others, with who provides it | `view.list_needs(package)` |
 | which ROS, which distro, which version of a package or library | `view.target` |
-| whether something outside of the workspace is there | `view.availability(symbol)` |
+| whether something outside of the workspace is there | `view.find_availability(symbol)` |
 | whether something that nobody is known to have may be there all the same | `view.unknown_contents.may_hold(...)` |
 | what CMake finds along with packages, and what a package has at hand in a role | `view.roles` |
 | what targets link, pass on and are given by name | `model/cmake/links.py` |

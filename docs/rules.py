@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import groupby
 
-from rosimpact.impact.rules.rule import Rule, all_rules, groups
+from rosimpact.impact.rules.rule import Rule, group_rules, load_rules
 
 FAMILIES = {
     "api": "What other packages and libraries offer, and used to offer.",
@@ -43,11 +43,11 @@ of its rules. The name of a rule is more specific than that of its group.
 def page() -> str:
     """The text of docs/rules.md."""
     parts = [HEAD]
-    for family, rules in groupby(sorted(all_rules().values(), key=lambda rule: rule.family), lambda rule: rule.family):
+    for family, rules in groupby(sorted(load_rules().values(), key=lambda rule: rule.family), lambda rule: rule.family):
         parts.append(f"\n## {family}\n\n{FAMILIES[family]}\n\n| rule | severity | what it reports |\n|---|---|---|\n")
         parts += [row(rule) for rule in rules]
     parts.append(GROUPS)
-    for name, members in groups(all_rules()).items():
+    for name, members in group_rules(load_rules()).items():
         parts.append(f"| `{name}` | {', '.join(f'`{rule.name}`' for rule in members)} |\n")
     return "".join(parts)
 

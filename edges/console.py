@@ -19,8 +19,8 @@ import sys
 from collections.abc import Callable
 from typing import Any, TextIO
 
-from .interrupts import interruptible
-from .limits import LimitError, limits
+from .interrupts import run_interruptible
+from .limits import LimitError, get_limits
 
 DEBUG = "ROSIMPACT_DEBUG"
 """Set by people who work on rosimpact itself: an unforeseen error then comes with its traceback."""
@@ -49,26 +49,26 @@ _OBEYED = re.compile(
 _COLOUR = re.compile(r"\x1b\[(?:0|2|1|1;3[0-7]|3[0-7])m")
 
 
-def visible(text: str) -> str:
+def escape(text: str) -> str:
     """Text on one line in which nothing is hidden: control characters, line ends, direction marks and bytes that are no
     UTF-8 are shown as `\\x1b`, `\\n`, `\\u202e`, `\\xff`; so is the first `#` of what CI systems take for a command."""
     if text.isascii() and text.isprintable() and "##" not in text:
         return text
-    return _UNSAFE.sub(_escaped, text)
+    return _UNSAFE.sub(_escape_character, text)
 
 
-def visible_lines(text: str) -> str:
+def escape_lines(text: str) -> str:
     """The same for text of several lines: line feeds and tabs stay."""
-    return _UNSAFE_IN_BLOCK.sub(_escaped, text)
+    return _UNSAFE_IN_BLOCK.sub(_escape_character, text)
 
 
-def visible_in_page(text: str) -> str:
+def escape_page(text: str) -> str:
     """The same for HTML and XML, which have their own way to write what CI systems take for a command."""
-    return _UNSAFE_IN_PAGE.sub(_escaped, text)
+    return _UNSAFE_IN_PAGE.sub(_escape_character, text)
 
 
 def cut_visibly(text: str, *offsets: int) -> list[str]:
-    """visible_lines() of a text, cut where these ascending offsets of the text itself have come to lie."""
+    """escape_lines() of a text, cut where these ascending offsets of the text itself have come to lie."""
     pieces: list[str] = [""]
     cuts, last = list(offsets), 0
     for match in _UNSAFE_IN_BLOCK.finditer(text):
@@ -76,7 +76,7 @@ def cut_visibly(text: str, *offsets: int) -> list[str]:
             pieces[-1] += text[last : cuts[0]]
             pieces.append("")
             last = max(last, cuts.pop(0))
-        pieces[-1] += text[last : match.start()] + _escaped(match)
+        pieces[-1] += text[last : match.start()] + _escape_character(match)
         last = match.end()
     for cut in cuts:
         pieces[-1] += text[last:cut]
@@ -86,7 +86,7 @@ def cut_visibly(text: str, *offsets: int) -> list[str]:
     return pieces
 
 
-def _escaped(match: re.Match[str]) -> str:
+def _escape_character(match: re.Match[str]) -> str:
     character = match[0]
     code = ord(character)
     if character in _SHORT:
@@ -98,7 +98,7 @@ def _escaped(match: re.Match[str]) -> str:
     return f"\\u{code:04x}" if code <= 0xFFFF else f"\\U{code:08x}"
 
 
-def json_text(value: Any, indent: int | None = 1) -> str:
+def format_json(value: Any, indent: int | None = 1) -> str:
     """A value as JSON text that can be shown anywhere, see escape_json(). indent: None for all on one line."""
     separators = (",", ":") if indent is None else None
     return escape_json(json.dumps(value, ensure_ascii=False, indent=indent, separators=separators))
@@ -112,28 +112,28 @@ def escape_json(text: str) -> str:
     """
     if text.isascii() and "##" not in text and "\x7f" not in text:
         return text
-    return _UNSAFE_IN_JSON.sub(lambda match: _json_escape(match[0]), text)
+    return _UNSAFE_IN_JSON.sub(lambda match: _escape_for_json(match[0]), text)
 
 
-def visible_bytes_in_json(text: str) -> str:
+def escape_bytes_in_json(text: str) -> str:
     """JSON text in which bytes that are no UTF-8 are shown as visible() does: many readers refuse lone surrogates."""
-    return text if text.isascii() else _NOT_UTF8.sub(lambda match: "\\" + _escaped(match), text)
+    return text if text.isascii() else _NOT_UTF8.sub(lambda match: "\\" + _escape_character(match), text)
 
 
-def _json_escape(text: str) -> str:
+def _escape_for_json(text: str) -> str:
     return "".join(
         f"\\u{code:04x}" if code <= 0xFFFF else f"\\u{0xD7C0 + (code >> 10):04x}\\u{0xDC00 + (code & 0x3FF):04x}"
         for code in map(ord, text)
     )
 
 
-def _json_errors(error: UnicodeError) -> tuple[str, int]:
+def _replace_unencodable(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return _json_escape(error.object[error.start : error.end]), error.end
+    return _escape_for_json(error.object[error.start : error.end]), error.end
 
 
-codecs.register_error("rosimpact.json", _json_errors)
+codecs.register_error("rosimpact.json", _replace_unencodable)
 
 
 def is_obeyed(text: str) -> bool:
@@ -141,26 +141,26 @@ def is_obeyed(text: str) -> bool:
     return _OBEYED.search(text) is not None
 
 
-def without_commands(text: str) -> str:
+def escape_commands(text: str) -> str:
     """Text of which no line begins with `::`, which GitHub's runner obeys."""
     return _COMMAND.sub(r"\1\\x3a", text) if "::" in text else text
 
 
-def _finished(text: str) -> str:
+def _finish_text(text: str) -> str:
     """A text for people as it may be printed: of all escape sequences colours alone are left."""
     if "\x1b" in text:
         parts = _COLOUR.split(text)
         colours = [*_COLOUR.findall(text), ""]
-        text = "".join(visible_lines(part) + colour for part, colour in zip(parts, colours, strict=True))
+        text = "".join(escape_lines(part) + colour for part, colour in zip(parts, colours, strict=True))
     else:
-        text = visible_lines(text)
-    return without_commands(text)
+        text = escape_lines(text)
+    return escape_commands(text)
 
 
 def write(text: str, stream: TextIO | None = None) -> None:
     """Prints a text for people on standard output, ended by a line end; what the stream's encoding cannot say is
     escaped. Raises UserError where it cannot be written, BrokenPipeError when nobody reads any longer."""
-    _put(_finished(text), stream or sys.stdout, "backslashreplace")
+    _put(_finish_text(text), stream or sys.stdout, "backslashreplace")
 
 
 def write_json(text: str) -> None:
@@ -177,14 +177,14 @@ def write_exactly(text: str) -> None:
     holds, in UTF-8 whatever the stream's encoding is: that is what such documents say of themselves. Raises as write()
     does."""
     try:
-        data = _ended(text).encode("utf-8", "surrogateescape")
+        data = _end_line(text).encode("utf-8", "surrogateescape")
     except UnicodeEncodeError:
-        data = _ended(text).encode("utf-8", "backslashreplace")
+        data = _end_line(text).encode("utf-8", "backslashreplace")
     stream = sys.stdout
-    with _told_failures(stream):
+    with _convert_failures(stream):
         buffer = getattr(stream, "buffer", None)
         if buffer is None:
-            stream.write(_ended(text))
+            stream.write(_end_line(text))
         else:
             stream.flush()
             buffer.write(data)
@@ -193,34 +193,34 @@ def write_exactly(text: str) -> None:
 
 def _put(text: str, stream: TextIO | None, errors: str) -> None:
     """Writes a text in the encoding of a stream. errors: how to encode what that cannot say."""
-    with _told_failures(stream):
+    with _convert_failures(stream):
         assert stream is not None
         encoding = getattr(stream, "encoding", None) or "utf-8"
         # The stream encodes, since it alone knows whether a byte-order mark was written yet.
-        stream.write(_ended(text).encode(encoding, errors).decode(encoding))
+        stream.write(_end_line(text).encode(encoding, errors).decode(encoding))
         stream.flush()
 
 
-def _ended(text: str) -> str:
+def _end_line(text: str) -> str:
     return text + "\n" if text and not text.endswith("\n") else text
 
 
 @contextlib.contextmanager
-def _told_failures(stream: TextIO | None):
+def _convert_failures(stream: TextIO | None):
     """What a stream that cannot be written raises as UserError; it is let alone from then on, so that Python does not
     complain of it once more at its end."""
     if stream is None:
-        raise UserError(_unwritable(None))
+        raise UserError(_describe_unwritable(None))
     try:
         yield
     except (OSError, ValueError) as error:
         _silence(stream)
         if isinstance(error, BrokenPipeError):
             raise
-        raise UserError(_unwritable(error)) from None
+        raise UserError(_describe_unwritable(error)) from None
 
 
-def _unwritable(error: OSError | ValueError | None) -> str:
+def _describe_unwritable(error: OSError | ValueError | None) -> str:
     closed = error is None or (isinstance(error, OSError) and error.errno == errno.EBADF)
     reason = "it is closed" if closed else getattr(error, "strerror", None) or error
     return f"standard output cannot be written: {reason}; check where it goes, or name a file with --output"
@@ -234,10 +234,10 @@ def _silence(stream: TextIO) -> None:
         os.close(null)
 
 
-def output_failed(error: OSError) -> int:
+def report_output_failure(error: OSError) -> int:
     """Says that standard output cannot be written and gives the exit status; nothing more is written there."""
     _silence(sys.stdout)
-    return _failed(_unwritable(error))
+    return _report_failure(_describe_unwritable(error))
 
 
 def hold_streams() -> None:
@@ -256,7 +256,7 @@ def say(text: str) -> None:
     """A line for people, on standard error, whatever signs it can show. A stream that is closed or full is let alone:
     there is nobody to tell."""
     with contextlib.suppress(UserError, BrokenPipeError):
-        _put(without_commands(visible(text)), sys.stderr, "backslashreplace")
+        _put(escape_commands(escape(text)), sys.stderr, "backslashreplace")
 
 
 class UserError(Exception):
@@ -276,9 +276,9 @@ def run_command(
     returns the status, where that takes more than a line. Raises BrokenPipeError when nobody reads any longer.
     """
 
-    def contained() -> int:
+    def run_contained() -> int:
         try:
-            limits()
+            get_limits()
             return work()
         except BrokenPipeError:
             raise
@@ -287,25 +287,25 @@ def run_command(
                 raise
             message = describe(error, about)
         # Outside the handler, where what the work held is free again.
-        return (fail or _failed)(message)
+        return (fail or _report_failure)(message)
 
-    return interruptible(contained, lambda: say(f"rosimpact: {interrupted}"))
+    return run_interruptible(run_contained, lambda: say(f"rosimpact: {interrupted}"))
 
 
 def describe(error: Exception, about: object = "") -> str:
     """Why something failed and what to do, as a clause. about: what an error without a file of its own is about."""
     if isinstance(error, (UserError, LimitError)):
         return str(error)
-    if isinstance(error, OSError) and not _shortage(error):
+    if isinstance(error, OSError) and not _describe_shortage(error):
         place = error.filename if isinstance(error.filename, str | bytes) else str(about)
-        reason = f"{visible(os.fsdecode(place))}: {error.strerror or error}".removeprefix(": ")
+        reason = f"{escape(os.fsdecode(place))}: {error.strerror or error}".removeprefix(": ")
         if error.errno in (errno.ENOSPC, errno.EDQUOT):
             return f"{reason}; make room there"
         return f"{reason}; check that it can be read and written"
-    return unforeseen(error)
+    return describe_unforeseen(error)
 
 
-def _shortage(error: BaseException) -> str:
+def _describe_shortage(error: BaseException) -> str:
     """What the process ran out of, and what to do, as a clause; empty for other errors."""
     number = error.errno if isinstance(error, OSError) else 0
     if number in (errno.EMFILE, errno.ENFILE):
@@ -325,7 +325,7 @@ def _shortage(error: BaseException) -> str:
     return ""
 
 
-def steps() -> Callable[[str, int, int], None]:
+def make_step_reporter() -> Callable[[str, int, int], None]:
     """Tells how far long work is, given what is done, how often it was and how often in all (0: nobody knows): in a
     line of standard error that is rewritten on a terminal, in one line for each thing done elsewhere."""
     last = ""
@@ -346,12 +346,12 @@ def rewrite(text: str, *, ended: bool) -> None:
     """Writes the line of standard error anew that says how far the work is. ended: the next text goes below it."""
     with contextlib.suppress(OSError, ValueError):
         encoding = sys.stderr.encoding or "utf-8"
-        line = visible(text).encode(encoding, "backslashreplace").decode(encoding)
+        line = escape(text).encode(encoding, "backslashreplace").decode(encoding)
         sys.stderr.write(f"\r\x1b[K{line}" + ("\n" if ended else ""))
         sys.stderr.flush()
 
 
-def counted(number: int, noun: str) -> str:
+def format_count(number: int, noun: str) -> str:
     """`1 error`, `2 errors`, `2 dependencies`."""
     if number == 1:
         return f"1 {noun}"
@@ -359,12 +359,12 @@ def counted(number: int, noun: str) -> str:
     return f"{number:,} {plural}"
 
 
-def unforeseen(error: BaseException) -> str:
+def describe_unforeseen(error: BaseException) -> str:
     """An error that nobody foresaw as a clause: its kind, where it was raised, its text, and what to do. Running out of
     memory, open files or the like is no fault of rosimpact, and is said as it is."""
-    if shortage := _shortage(error):
+    if shortage := _describe_shortage(error):
         return shortage
-    text = visible(" ".join(str(error).split())[:200])
+    text = escape(" ".join(str(error).split())[:200])
     what = f"{type(error).__name__}{_place(error)}{': ' + text if text else ''}"
     return f"{what}; this is a fault of rosimpact, please report it"
 
@@ -376,6 +376,6 @@ def _place(error: BaseException) -> str:
     return f" in {os.path.basename(trace.tb_frame.f_code.co_filename)}:{trace.tb_lineno}" if trace is not None else ""
 
 
-def _failed(message: str) -> int:
+def _report_failure(message: str) -> int:
     say(f"rosimpact: {message}")
     return 2

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from typing import Any
 
 
-def methods_of(cls: type, prefix: str) -> dict[str, Callable[..., Any]]:
+def collect_methods(cls: type, prefix: str) -> dict[str, Callable[..., Any]]:
     """The methods of a class, those it inherits included, by what stands behind a prefix in their names."""
     return {name[len(prefix) :]: getattr(cls, name) for name in dir(cls) if name.startswith(prefix)}
 
 
-def node_methods(cls: type, prefix: str) -> dict[type, Callable[..., Any]]:
+def collect_node_methods(cls: type, prefix: str) -> dict[type, Callable[..., Any]]:
     """The same by the class of Python's syntax tree that is named, as far as this Python has it: `visit_If`."""
-    return {getattr(ast, name): method for name, method in methods_of(cls, prefix).items() if hasattr(ast, name)}
+    return {getattr(ast, name): method for name, method in collect_methods(cls, prefix).items() if hasattr(ast, name)}

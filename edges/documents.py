@@ -11,7 +11,7 @@ import json
 import re
 from typing import Any
 
-from .limits import limits
+from .limits import get_limits
 
 _DIGITS_AT_MOST = 1_000
 _NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
@@ -32,7 +32,7 @@ def load_yaml(data: bytes | str) -> Any:
     """
     import yaml
 
-    return _loaded(data, yaml, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    return _load_document(data, yaml, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
 
 def load_yaml_as_text(data: bytes | str) -> Any:
@@ -40,25 +40,25 @@ def load_yaml_as_text(data: bytes | str) -> Any:
     DocumentError."""
     import yaml
 
-    return _loaded(data, yaml, getattr(yaml, "CBaseLoader", yaml.BaseLoader))
+    return _load_document(data, yaml, getattr(yaml, "CBaseLoader", yaml.BaseLoader))
 
 
-def _loaded(data: bytes | str, yaml: Any, base: Any) -> Any:
+def _load_document(data: bytes | str, yaml: Any, base: Any) -> Any:
     try:
         return _construct(data, yaml, base)
     except DocumentError:
         raise
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        raise DocumentError(_clause(error.problem or error), mark.line + 1 if mark is not None else 0) from None
+        raise DocumentError(_format_error(error.problem or error), mark.line + 1 if mark is not None else 0) from None
     except (yaml.YAMLError, ValueError, TypeError, OverflowError, AttributeError, KeyError, IndexError) as error:
-        raise DocumentError(_clause(error)) from None
+        raise DocumentError(_format_error(error)) from None
     except RecursionError:
         raise DocumentError("nested too deeply") from None
 
 
 def _construct(data: bytes | str, yaml: Any, base: Any) -> Any:
-    budget = limits()
+    budget = get_limits()
     _check_depth(data, yaml, base, budget.depth)
     loader = base(data)
     try:
@@ -88,7 +88,7 @@ def _count(node: Any, yaml: Any, budget: int, depth: int) -> None:
     sizes: dict[int, int] = {}
     open_nodes: set[int] = set()
 
-    def size(each: Any, level: int) -> int:
+    def compute_size(each: Any, level: int) -> int:
         known = sizes.get(id(each))
         if known is not None:
             return known
@@ -105,14 +105,14 @@ def _count(node: Any, yaml: Any, budget: int, depth: int) -> None:
             open_nodes.add(id(each))
             children = each.value if isinstance(each, yaml.SequenceNode) else [n for pair in each.value for n in pair]
             for child in children:
-                total += size(child, level + 1)
+                total += compute_size(child, level + 1)
                 if total > budget:
                     raise DocumentError(f"more than {budget:,} nodes, aliases included", each.start_mark.line + 1)
             open_nodes.discard(id(each))
         sizes[id(each)] = total
         return total
 
-    size(node, 0)
+    compute_size(node, 0)
 
 
 _DOTTED = re.compile(r"(?m)^[ \t]*\[{0,2}[^=\n\"'#\[\]]*")
@@ -129,7 +129,7 @@ def load_toml(text: str) -> dict[str, Any]:
     else:
         import tomli as tomllib  # pyright: ignore[reportMissingImports]
 
-    depth = limits().depth
+    depth = get_limits().depth
     for match in _DOTTED.finditer(text):
         if match[0].count(".") > depth:
             raise DocumentError(f"a key of more than {depth} parts", text.count("\n", 0, match.start()) + 1)
@@ -143,7 +143,7 @@ def load_toml(text: str) -> dict[str, Any]:
     except (tomllib.TOMLDecodeError, ValueError) as error:
         line = re.search(r"at line (\d+)", str(error))
         last = text.rstrip("\n").count("\n") + 1 if "at end of document" in str(error) else 0
-        raise DocumentError(_clause(error), int(line[1]) if line else last) from None
+        raise DocumentError(_format_error(error), int(line[1]) if line else last) from None
     except RecursionError:
         raise DocumentError("nested too deeply") from None
 
@@ -157,8 +157,8 @@ def load_json(data: bytes | str) -> Any:
     except RecursionError:
         raise DocumentError("nested too deeply") from None
     except ValueError as error:  # wrong UTF-8, integers of thousands of digits
-        raise DocumentError(_clause(error)) from None
+        raise DocumentError(_format_error(error)) from None
 
 
-def _clause(error: object) -> str:
+def _format_error(error: object) -> str:
     return " ".join(str(error).split())[:200] or type(error).__name__

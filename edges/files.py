@@ -16,7 +16,7 @@ import stat
 from collections.abc import Iterable, Iterator
 from typing import IO
 
-from .limits import size_text
+from .limits import format_size
 
 _CHUNK = 1 << 20
 _READ = os.O_RDONLY | os.O_CLOEXEC | os.O_NOCTTY | os.O_NONBLOCK
@@ -43,24 +43,24 @@ def open_regular(path: Path, *, follow: bool = True) -> int:
     try:
         mode = (os.stat if follow else os.lstat)(path).st_mode
     except ValueError:
-        raise _no_name(path) from None
+        raise _make_name_error(path) from None
     if not stat.S_ISREG(mode):
-        raise _not_regular(path)
+        raise _make_not_regular_error(path)
     descriptor = os.open(path, _READ if follow else _READ | os.O_NOFOLLOW)
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise _not_regular(path)
+            raise _make_not_regular_error(path)
     except BaseException:
         os.close(descriptor)
         raise
     return descriptor
 
 
-def _no_name(path: Path) -> OSError:
+def _make_name_error(path: Path) -> OSError:
     return OSError(errno.EINVAL, "is no name that a file can have", os.fspath(path))
 
 
-def _not_regular(path: Path) -> OSError:
+def _make_not_regular_error(path: Path) -> OSError:
     kind = errno.EISDIR if os.path.isdir(path) else errno.EINVAL
     return OSError(kind, "is a folder" if kind == errno.EISDIR else NOT_REGULAR, os.fspath(path))
 
@@ -82,7 +82,7 @@ def read_with_status(path: Path, limit: int, *, follow: bool = True) -> tuple[by
 def _read(descriptor: int, path: Path, limit: int) -> bytes:
     size = os.fstat(descriptor).st_size
     if size > limit:
-        raise too_large(path, limit)
+        raise make_size_error(path, limit)
     data = os.read(descriptor, size + 1)
     if len(data) == size and size:
         return data
@@ -91,15 +91,15 @@ def _read(descriptor: int, path: Path, limit: int) -> bytes:
     total = len(data)
     while parts[-1]:
         if total > limit:
-            raise too_large(path, limit)
+            raise make_size_error(path, limit)
         parts.append(os.read(descriptor, _CHUNK))
         total += len(parts[-1])
     return b"".join(parts)
 
 
-def too_large(path: Path, limit: int) -> OSError:
+def make_size_error(path: Path, limit: int) -> OSError:
     """The error for a file that holds more than a limit of bytes."""
-    return OSError(errno.EFBIG, f"larger than {size_text(limit)}", os.fspath(path))
+    return OSError(errno.EFBIG, f"larger than {format_size(limit)}", os.fspath(path))
 
 
 def read_start(path: Path, size: int) -> bytes:
@@ -137,13 +137,13 @@ def write_file(path: Path, data: bytes, *, beneath: Path | None = None, instead_
     Raises OSError.
     """
     target = os.fspath(path)
-    if beneath is None and (stream := _stream(target)) is not None:
+    if beneath is None and (stream := _find_descriptor(target)) is not None:
         if stream != _NOWHERE:
             _write_all(stream, data)
         return
-    with _opened(target, beneath, make=instead_of is None) as (folder, name):
-        mode = _mode(folder, name, target)
-        with _temporary(folder, name, mode) as file:
+    with _open_folder(target, beneath, make=instead_of is None) as (folder, name):
+        mode = _read_mode(folder, name, target)
+        with _open_temporary(folder, name, mode) as file:
             file.write(data)
             if instead_of is not None:
                 file.flush()
@@ -151,15 +151,15 @@ def write_file(path: Path, data: bytes, *, beneath: Path | None = None, instead_
 
 
 @contextlib.contextmanager
-def writing(path: Path) -> Iterator[IO[bytes]]:
+def open_for_replacing(path: Path) -> Iterator[IO[bytes]]:
     """A file written piece by piece, which takes the place of the old one when the block ends, and goes when it fails.
 
     Refuses what write_file() refuses. Raises OSError.
     """
     target = os.fspath(path)
-    with _opened(target, None) as (folder, name):
-        mode = _mode(folder, name, target)
-        with _temporary(folder, name, mode) as file:
+    with _open_folder(target, None) as (folder, name):
+        mode = _read_mode(folder, name, target)
+        with _open_temporary(folder, name, mode) as file:
             yield file
 
 
@@ -167,11 +167,11 @@ def check_writable_path(path: Path, *, beneath: Path | None = None) -> None:
     """Raises OSError where write_file() would refuse the path, so that long work is not begun for nothing. Nothing is
     written or made."""
     target = os.fspath(path)
-    if beneath is None and (stream := _stream(target)) is not None:
+    if beneath is None and (stream := _find_descriptor(target)) is not None:
         if stream != _NOWHERE:
             os.fstat(stream)
         return
-    place, parts = _way(target, beneath)
+    place, parts = _split_target(target, beneath)
     for part in parts[:-1]:
         place = os.path.join(place, part)
         if beneath is not None and os.path.islink(place):
@@ -188,7 +188,7 @@ def check_writable_path(path: Path, *, beneath: Path | None = None) -> None:
             raise OSError(errno.EACCES, os.strerror(errno.EACCES), target) from None
 
 
-def outermost(path: Path, folders: Iterable[Path]) -> str | None:
+def find_outermost(path: Path, folders: Iterable[Path]) -> str | None:
     """The first folder on the way to a path, as the path is written, that is one of some folders; None when it lies in
     none of them. What lies below belongs to whoever made that folder, links included: see write_file(beneath=)."""
     known = set()
@@ -211,20 +211,20 @@ def outermost(path: Path, folders: Iterable[Path]) -> str | None:
 
 def append_file(path: Path, data: bytes) -> None:
     """Adds to the end of a file, which is made when it is missing. Refuses links and all but regular files."""
-    if _stream(os.fspath(path)) is not None:
+    if _find_descriptor(os.fspath(path)) is not None:
         write_file(path, data)
         return
     flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
     descriptor = os.open(path, flags, 0o666)
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise _not_regular(path)
+            raise _make_not_regular_error(path)
         _write_all(descriptor, data)
     finally:
         os.close(descriptor)
 
 
-def _stream(target: str) -> int | None:
+def _find_descriptor(target: str) -> int | None:
     """The open descriptor that a path names, _NOWHERE for /dev/null, None for the path of a file."""
     if target == os.devnull:
         return _NOWHERE
@@ -255,15 +255,15 @@ def _refuse_unless_regular(status: os.stat_result, target: str) -> None:
         raise OSError(errno.EACCES, "is read-only", target)
 
 
-def _way(target: str, beneath: Path | None) -> tuple[str, list[str]]:
+def _split_target(target: str, beneath: Path | None) -> tuple[str, list[str]]:
     """(folder to begin at, the folders from there to a file and its name). Raises OSError for a path that is refused
     as it is written."""
     try:
         os.fsencode(target)
     except ValueError:
-        raise _no_name(target) from None
+        raise _make_name_error(target) from None
     if "\0" in target:
-        raise _no_name(target)
+        raise _make_name_error(target)
     if target.endswith((os.sep, os.sep + ".")) or target in ("", "."):
         raise OSError(errno.EISDIR, "is a folder", target)
     if beneath is None:
@@ -280,10 +280,10 @@ def _way(target: str, beneath: Path | None) -> tuple[str, list[str]]:
 
 
 @contextlib.contextmanager
-def _opened(target: str, beneath: Path | None, *, make: bool = True) -> Iterator[tuple[int, str]]:
+def _open_folder(target: str, beneath: Path | None, *, make: bool = True) -> Iterator[tuple[int, str]]:
     """(descriptor of the folder that holds a file, the file's name). make: also folders that are missing. Raises
     OSError."""
-    start, (*folders, name) = _way(target, beneath)
+    start, (*folders, name) = _split_target(target, beneath)
     if beneath is None:
         start, folders = os.path.join(start, *folders), []
         _refuse_git(os.path.realpath(start), target)
@@ -322,7 +322,7 @@ def _is_link(name: str, folder: int) -> bool:
         return False
 
 
-def _mode(folder: int, name: str, target: str) -> int | None:
+def _read_mode(folder: int, name: str, target: str) -> int | None:
     """The permissions that a file has; None when there is none. Raises OSError where it is no regular file."""
     try:
         status = os.stat(name, dir_fd=folder, follow_symlinks=False)
@@ -346,7 +346,7 @@ def _check_unchanged(folder: int, name: str, content: bytes, target: str) -> Non
 
 
 @contextlib.contextmanager
-def _temporary(folder: int, name: str, mode: int | None) -> Iterator[IO[bytes]]:
+def _open_temporary(folder: int, name: str, mode: int | None) -> Iterator[IO[bytes]]:
     """A new file beside another, whose name it gets at the end."""
     # Names end at 255 bytes. What others may not read is not readable while it is written either.
     temporary = b"." + os.fsencode(name)[:100] + b"." + secrets.token_hex(6).encode() + b".part"

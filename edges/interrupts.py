@@ -42,7 +42,7 @@ def install() -> None:
     for number in _SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _handle)
-    sys.unraisablehook = _unraisable
+    sys.unraisablehook = _filter_unraisable
     # What is registered first runs last.
     atexit.register(_ignore)
 
@@ -55,7 +55,7 @@ def _ignore() -> None:
             signal.signal(number, signal.SIG_IGN)
 
 
-def interruptible(work: Callable[[], int], explain: Callable[[], None]) -> int:
+def run_interruptible(work: Callable[[], int], explain: Callable[[], None]) -> int:
     """Runs work, in which a signal raises KeyboardInterrupt; gives its result, or STATUS when it was interrupted.
 
     explain: says so to the user.
@@ -114,7 +114,7 @@ def _handle(number: int, frame: FrameType | None) -> None:
     exit_now()
 
 
-def _unraisable(error: sys.UnraisableHookArgs) -> None:
+def _filter_unraisable(error: sys.UnraisableHookArgs) -> None:
     """What is raised where nobody can catch it (destructors, callbacks): an interrupt ends the program there and then,
     anything else is of no use to the reader."""
     if os.getpid() == _State.process and issubclass(error.exc_type, KeyboardInterrupt):

@@ -79,25 +79,25 @@ def parse(text: str) -> Limits:
 
 
 @cache
-def limits() -> Limits:
+def get_limits() -> Limits:
     """The limits of this run. Raises LimitError."""
-    return of_environment(os.environ)
+    return read_limits(os.environ)
 
 
-def of_environment(environment: Mapping[str, str]) -> Limits:
+def read_limits(environment: Mapping[str, str]) -> Limits:
     """The limits that an environment asks for. Raises LimitError."""
     return parse(environment.get(VARIABLE, ""))
 
 
 @cache
-def limits_stamp() -> str:
+def format_limits() -> str:
     """What the user's limits add to the key of anything that is remembered; empty with the usual ones."""
-    usual, asked = Limits(), limits()
+    usual, asked = Limits(), get_limits()
     changed = ((field.name, getattr(asked, field.name)) for field in fields(Limits) if field.name not in _OF_THE_RUN)
     return "".join(f" {name}={value}" for name, value in changed if value != getattr(usual, name))
 
 
-def size_text(size: int) -> str:
+def format_size(size: int) -> str:
     """`8 MB`, `1.5 MB`, `900 bytes`."""
     for unit, name in ((GB, "GB"), (MB, "MB"), (KB, "KB")):
         if size >= unit:

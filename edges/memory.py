@@ -11,7 +11,7 @@ Method = TypeVar("Method", bound=Callable[..., Any])
 
 
 class Kept:
-    """The descriptor that cached_method() makes of a method."""
+    """The descriptor that cache_method() makes of a method."""
 
     def __init__(self, method: Callable[..., Any]):
         self.__func__ = method
@@ -30,16 +30,16 @@ class Kept:
 
 if TYPE_CHECKING:
 
-    def cached_method(method: Method) -> Method:
+    def cache_method(method: Method) -> Method:
         """Runs a method once for the same arguments of one object, as functools.cached_property does for none.
 
         The arguments have to be hashable. The answers live as long as the object, which cannot be pickled with them."""
         return method
 else:
-    cached_method = Kept
+    cache_method = Kept
 
 
-def kept_with(function: Method) -> Method:
+def cache_in_derived(function: Method) -> Method:
     """Runs a function once for the same arguments. The first has to have a dictionary `derived`, in which the answers
     are kept for as long as it lives; the others have to be hashable. What a generator yields is kept as a tuple."""
 

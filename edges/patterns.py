@@ -40,7 +40,7 @@ class PatternError(ValueError):
 
 
 @lru_cache(maxsize=256)
-def _compiled(pattern: str) -> tuple[list[_State], int]:
+def _compile_pattern(pattern: str) -> tuple[list[_State], int]:
     """(states, the first). State 0 is the end. Raises PatternError."""
     if len(pattern) > _LONGEST:
         raise PatternError(f"longer than {_LONGEST:,} characters")
@@ -99,14 +99,14 @@ def _build_one(states: list[_State], kind: Any, argument: Any, after: int) -> in
     raise PatternError(f"{str(kind).lower()} is not matched")
 
 
-def cost_of(pattern: str, text: str) -> int:
+def compute_cost(pattern: str, text: str) -> int:
     """How many steps matching a text may take. Raises PatternError."""
-    return len(_compiled(pattern)[0]) * (len(text) + 1)
+    return len(_compile_pattern(pattern)[0]) * (len(text) + 1)
 
 
 def matches(pattern: str, text: str) -> bool:
     """Whether re.match() would find the pattern at the beginning of a text. Raises PatternError."""
-    states, first = _compiled(pattern)
+    states, first = _compile_pattern(pattern)
     left = _STEPS_AT_MOST
     current = {first}
     for at in range(len(text) + 1):

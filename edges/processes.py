@@ -25,7 +25,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 from .console import DEBUG
-from .limits import limits, size_text
+from .limits import format_size, get_limits
 
 _Result = TypeVar("_Result")
 _LENGTH = struct.Struct("<Q")
@@ -45,7 +45,7 @@ class Died(NamedTuple):
     timed: bool = False
 
 
-def cores() -> int:
+def count_cores() -> int:
     """How many processes may run at once on this machine."""
     if hasattr(os, "sched_getaffinity"):
         return max(1, len(os.sched_getaffinity(0)))
@@ -68,7 +68,7 @@ class Workers:
     def __init__(self, task: Callable[..., Any], jobs: int, *what: Any):
         self._task, self._what = task, what
         # Whoever asks for 100,000 is not served by as many processes.
-        self._jobs = max(1, min(jobs, max(64, 4 * cores())))
+        self._jobs = max(1, min(jobs, max(64, 4 * count_cores())))
         self._workers: list[_Worker] = []
         self._selector = selectors.DefaultSelector()
 
@@ -108,7 +108,7 @@ class Workers:
                     return  # it ended while it took the thing: finished() says so
                 self._end(worker)  # killed while it had nothing to do
 
-    def finished(self) -> list[tuple[Any, Any]]:
+    def wait_for_finished(self) -> list[tuple[Any, Any]]:
         """Waits until at least one thing is done: (thing, result or Died) of all that are. What a task raises is raised
         here."""
         done = []
@@ -170,7 +170,7 @@ class Workers:
         if ended_by == signal.SIGPROF:
             return Died("needed too much time", part, fresh, timed=True)
         if os.WIFEXITED(status) and os.WEXITSTATUS(status) == _OUT_OF_MEMORY:
-            return Died(f"needed more than {size_text(limits().memory)} of memory", part, fresh)
+            return Died(f"needed more than {format_size(get_limits().memory)} of memory", part, fresh)
         return Died("crashed", part, fresh)
 
     def _end(self, worker: _Worker, kill: bool = True) -> int:
@@ -227,7 +227,7 @@ def begin_part(part: int, size: int) -> None:
     processor time that a part of so many bytes may take is measured from here."""
     if _SHARED:
         _SHARED[0][:] = _PLACE.pack(part)
-        signal.setitimer(signal.ITIMER_PROF, seconds_for(size))
+        signal.setitimer(signal.ITIMER_PROF, compute_seconds(size))
 
 
 def allow_memory(size: int) -> None:
@@ -241,16 +241,16 @@ def allow_memory(size: int) -> None:
                 resource.setrlimit(resource.RLIMIT_AS, (now + size if most < 0 else min(now + size, most), most))
 
 
-def seconds_for(size: int) -> float:
+def compute_seconds(size: int) -> float:
     """Seconds of processor time that extracting from so many bytes may take."""
-    budget = limits()
+    budget = get_limits()
     return budget.seconds * (1 + size / (1 << 20))
 
 
 _SHARED: list[mmap.mmap] = []
 
 
-def forked(
+def run_forked(
     task: Callable[..., _Result], things: Iterable[Any], jobs: int, *what: Any
 ) -> Iterator[tuple[Any, _Result | Died]]:
     """(thing, task(*what, thing)) for each of the things as they come to an end, in forked processes; Died for those
@@ -269,14 +269,14 @@ def forked(
                 if not again:
                     return
                 workers.give(again.pop(), fresh=True)
-            for thing, result in workers.finished():
+            for thing, result in workers.wait_for_finished():
                 if isinstance(result, Died) and not (result.fresh or result.timed):
                     again.append(thing)
                 else:
                     yield thing, result
 
 
-def forked_rows(
+def run_forked_rows(
     task: Callable[..., Sequence[Any]], chunks: Sequence[Sequence[Any]], jobs: int, *what: Any
 ) -> Iterator[tuple[Sequence[Any], Sequence[Any]]]:
     """(chunk, task(*what, chunk)) for each of the chunks as they come to an end, in forked processes where that is
@@ -285,16 +285,16 @@ def forked_rows(
     if not may_fork():
         yield from ((chunk, task(*what, chunk)) for chunk in chunks)
         return
-    for number, rows in forked(_at, range(len(chunks)), jobs, task, chunks, what):
+    for number, rows in run_forked(_run_chunk, range(len(chunks)), jobs, task, chunks, what):
         chunk = chunks[number]
         if isinstance(rows, Died):
             alone = [[item] for item in chunk]
-            found = dict(forked(_at, range(len(alone)), 1, task, alone, what))
+            found = dict(run_forked(_run_chunk, range(len(alone)), 1, task, alone, what))
             rows = [None if isinstance(row := found[at], Died) else row[0] for at in range(len(alone))]
         yield chunk, rows
 
 
-def _at(task: Callable[..., Any], chunks: Sequence[Any], what: Sequence[Any], number: int) -> Any:
+def _run_chunk(task: Callable[..., Any], chunks: Sequence[Any], what: Sequence[Any], number: int) -> Any:
     return task(*what, chunks[number])
 
 
@@ -319,7 +319,7 @@ def _serve(
             except MemoryError:
                 os._exit(_OUT_OF_MEMORY)
             except BaseException as error:
-                answer = _packed_error(error)
+                answer = _pickle_error(error)
             signal.setitimer(signal.ITIMER_PROF, 0)
             shared[:] = _PLACE.pack(_NOWHERE)
             _write(results, _LENGTH.pack(len(answer)))
@@ -331,7 +331,7 @@ def _serve(
         os._exit(1)
 
 
-def _packed_error(error: BaseException) -> bytes:
+def _pickle_error(error: BaseException) -> bytes:
     try:
         packed = pickle.dumps((False, error))
         pickle.loads(packed)
@@ -360,7 +360,7 @@ def _limit_memory() -> None:
     except (OSError, ValueError):
         return
     _, most = resource.getrlimit(resource.RLIMIT_AS)
-    wanted = size + limits().memory
+    wanted = size + get_limits().memory
     with contextlib.suppress(OSError, ValueError):
         resource.setrlimit(resource.RLIMIT_AS, (wanted if most < 0 else min(wanted, most), most))
     with contextlib.suppress(OSError, ValueError):
@@ -381,11 +381,11 @@ def _write(descriptor: int, data: bytes) -> None:
 
 def _receive(descriptor: int) -> bytes | bytearray | None:
     """One message; None when the other side ended."""
-    head = _exactly(descriptor, _LENGTH.size)
-    return None if head is None else _exactly(descriptor, _LENGTH.unpack(head)[0])
+    head = _read_exactly(descriptor, _LENGTH.size)
+    return None if head is None else _read_exactly(descriptor, _LENGTH.unpack(head)[0])
 
 
-def _exactly(descriptor: int, size: int) -> bytes | bytearray | None:
+def _read_exactly(descriptor: int, size: int) -> bytes | bytearray | None:
     data = bytearray(size)
     view = memoryview(data)
     have = 0

@@ -21,7 +21,7 @@ class Reach:
         self._bits: dict[str, int] = {}
         self._masks: dict[str, tuple[int, int]] = {}
 
-    def bit(self, name: str) -> int:
+    def assign_bit(self, name: str) -> int:
         """The bit that stands for a name."""
         known = self._bits.get(name)
         if known is None:
@@ -29,14 +29,14 @@ class Reach:
             self._names.append(name)
         return known
 
-    def bits(self, names: Iterable[str]) -> int:
+    def combine_bits(self, names: Iterable[str]) -> int:
         """The bits of several names."""
         found, known = 0, self._bits
         for name in names:
-            found |= known.get(name) or self.bit(name)
+            found |= known.get(name) or self.assign_bit(name)
         return found
 
-    def names(self, mask: int) -> Iterator[str]:
+    def list_names(self, mask: int) -> Iterator[str]:
         """The names whose bits a mask has."""
         for place, byte in enumerate(mask.to_bytes(-(-mask.bit_length() // 8), "little")):
             while byte:
@@ -44,7 +44,7 @@ class Reach:
                 yield self._names[8 * place + lowest.bit_length() - 1]
                 byte ^= lowest
 
-    def masks(self, names: Iterable[str]) -> tuple[int, int]:
+    def collect_masks(self, names: Iterable[str]) -> tuple[int, int]:
         """The names that some lead to over any number of steps, themselves included, and those that come along."""
         reached = along = 0
         for name in names:
@@ -53,11 +53,11 @@ class Reach:
             along |= beside
         return reached, along
 
-    def known(self, names: Iterable[str]) -> tuple[int, int]:
+    def collect_known_masks(self, names: Iterable[str]) -> tuple[int, int]:
         """The same as far as it is known without looking further."""
         reached = along = 0
         for name in names:
-            leads, beside = self._masks.get(name) or (self.bit(name), 0)
+            leads, beside = self._masks.get(name) or (self.assign_bit(name), 0)
             reached |= leads
             along |= beside
         return reached, along
@@ -75,7 +75,7 @@ class Reach:
                 order[waiting] = low[waiting] = len(order)
                 component.append(waiting)
                 leads, along = self._look(waiting)
-                path.append(_Step(waiting, iter(leads), self.bit(waiting), self.bits(along)))
+                path.append(_Step(waiting, iter(leads), self.assign_bit(waiting), self.combine_bits(along)))
                 waiting = None
             step = path[-1]
             for to in step.leads:

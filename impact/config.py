@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from ..edges import files
 from ..edges.console import UserError
 from ..edges.documents import DocumentError, load_toml
-from ..edges.limits import limits
+from ..edges.limits import get_limits
 from .tree.paths import VERSION_CONTROL
 
 
@@ -65,7 +65,7 @@ def load(folder: Path, file: Path | None = None, *, follow_links: bool = False) 
             "--config, or follow links with --follow-links"
         )
     try:
-        data = files.read_file(path, limits().settings)
+        data = files.read_file(path, get_limits().settings)
     except (FileNotFoundError, NotADirectoryError):
         if file is not None:
             raise ConfigError(f"{file}: there is no such file; give an existing configuration with --config") from None
@@ -104,16 +104,16 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
     for key in tables:
         if key not in _TABLES:
             raise ConfigError(
-                f"{path}: unknown table `{key}`{_near(key, _TABLES)}; known are {', '.join(sorted(_TABLES))}"
+                f"{path}: unknown table `{key}`{_hint(key, _TABLES)}; known are {', '.join(sorted(_TABLES))}"
             )
-    workspace, check = _table(path, tables, "workspace"), _table(path, tables, "check")
-    targets = _table(path, tables, "targets")
+    workspace, check = _read_table(path, tables, "workspace"), _read_table(path, tables, "check")
+    targets = _read_table(path, tables, "targets")
     for name, target in targets.items():
         if not isinstance(target, dict) or not isinstance(target.get("distro", target.get("file")), str):
             raise ConfigError(f'{path}: [targets.{name}] needs a `distro` (such as "humble") or a `file`')
-    _known(path, "workspace", workspace, {"underlays", "repos", "rosdep_sources", "index", "private", "installed"})
-    _known(path, "check", check, {"targets", "select", "ignore", "severity", "fail_on"})
-    fail_on = _string(path, check, "fail_on")
+    _check_keys(path, "workspace", workspace, {"underlays", "repos", "rosdep_sources", "index", "private", "installed"})
+    _check_keys(path, "check", check, {"targets", "select", "ignore", "severity", "fail_on"})
+    fail_on = _parse_string(path, check, "fail_on")
     if fail_on not in ("", *_FAIL_ON):
         raise ConfigError(
             f"{path}: [check] `fail_on` is `{fail_on}`; choose {', '.join(_FAIL_ON[:-1])} or {_FAIL_ON[-1]}"
@@ -121,33 +121,33 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
     return Config(
         path=path,
         targets=targets,
-        default_targets=_strings(path, check, "targets") or tuple(targets),
-        select=_strings(path, check, "select"),
-        ignore=_strings(path, check, "ignore"),
-        severity=_severities(path, "check", check),
+        default_targets=_read_list(path, check, "targets") or tuple(targets),
+        select=_read_list(path, check, "select"),
+        ignore=_read_list(path, check, "ignore"),
+        severity=_read_severity(path, "check", check),
         fail_on=fail_on,
-        paths=tuple(_path_setting(path, pattern, entry) for pattern, entry in _table(path, tables, "paths").items()),
-        underlays=_strings(path, workspace, "underlays"),
-        repos=_strings(path, workspace, "repos"),
-        rosdep_sources=_strings(path, workspace, "rosdep_sources"),
-        index=_string(path, workspace, "index"),
-        private=_strings(path, workspace, "private"),
-        installed=_strings(path, workspace, "installed"),
+        paths=tuple(_read_entry(path, pattern, entry) for pattern, entry in _read_table(path, tables, "paths").items()),
+        underlays=_read_list(path, workspace, "underlays"),
+        repos=_read_list(path, workspace, "repos"),
+        rosdep_sources=_read_list(path, workspace, "rosdep_sources"),
+        index=_parse_string(path, workspace, "index"),
+        private=_read_list(path, workspace, "private"),
+        installed=_read_list(path, workspace, "installed"),
         trusted=trusted,
     )
 
 
-def _path_setting(path: Path, pattern: str, entry: Any) -> PathSetting:
+def _read_entry(path: Path, pattern: str, entry: Any) -> PathSetting:
     name = f'paths."{pattern}"'
     if not isinstance(entry, dict):
         raise ConfigError(f'{path}: [{name}] must be a table, such as ignore = ["unused-dependency"]')
-    _known(path, name, entry, {"ignore", "select", "severity"})
+    _check_keys(path, name, entry, {"ignore", "select", "severity"})
     return PathSetting(
-        pattern, _strings(path, entry, "ignore"), _strings(path, entry, "select"), _severities(path, name, entry)
+        pattern, _read_list(path, entry, "ignore"), _read_list(path, entry, "select"), _read_severity(path, name, entry)
     )
 
 
-def _severities(path: Path, name: str, table: dict[str, Any]) -> dict[str, str]:
+def _read_severity(path: Path, name: str, table: dict[str, Any]) -> dict[str, str]:
     value = table.get("severity", {})
     if not isinstance(value, dict) or not all(isinstance(each, str) for each in value.values()):
         raise ConfigError(f'{path}: [{name}] `severity` must be a table, such as {{ unused-dependency = "warning" }}')
@@ -160,34 +160,34 @@ def _has_null(value: Any) -> bool:
     return "\0" in value if isinstance(value, str) else isinstance(value, list) and any(map(_has_null, value))
 
 
-def _table(path: Path, data: dict[str, Any], name: str) -> dict[str, Any]:
+def _read_table(path: Path, data: dict[str, Any], name: str) -> dict[str, Any]:
     value = data.get(name, {})
     if not isinstance(value, dict):
         raise ConfigError(f"{path}: `{name}` must be a table, such as [{name}]")
     return value
 
 
-def _known(path: Path, name: str, table: dict[str, Any], keys: set[str]) -> None:
+def _check_keys(path: Path, name: str, table: dict[str, Any], keys: set[str]) -> None:
     for key in table:
         if key not in keys:
-            raise ConfigError(f"{path}: [{name}] has no `{key}`{_near(key, keys)}; known are {', '.join(sorted(keys))}")
+            raise ConfigError(f"{path}: [{name}] has no `{key}`{_hint(key, keys)}; known are {', '.join(sorted(keys))}")
 
 
-def _near(key: str, keys: set[str]) -> str:
+def _hint(key: str, keys: set[str]) -> str:
     from difflib import get_close_matches
 
     close = get_close_matches(key, sorted(keys), 1)
     return f", did you mean `{close[0]}`" if close else ""
 
 
-def _string(path: Path, table: dict[str, Any], key: str) -> str:
+def _parse_string(path: Path, table: dict[str, Any], key: str) -> str:
     value = table.get(key, "")
     if not isinstance(value, str):
         raise ConfigError(f"{path}: `{key}` must be a string")
     return value
 
 
-def _strings(path: Path, table: dict[str, Any], key: str) -> tuple[str, ...]:
+def _read_list(path: Path, table: dict[str, Any], key: str) -> tuple[str, ...]:
     value = table.get(key, [])
     if isinstance(value, str):
         value = [value]

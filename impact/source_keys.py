@@ -21,7 +21,7 @@ from functools import cache, partial
 import msgspec
 
 from ..edges import files, limits
-from ..edges.limits import limits_stamp
+from ..edges.limits import format_limits
 from ..edges.reach import Reach
 from .cache import cache_folder
 
@@ -54,40 +54,40 @@ class _Keys(msgspec.Struct, frozen=True, array_like=True):
     keys: dict[str, str]
 
 
-def source_key(*modules: str) -> str:
+def compute_source_key(*modules: str) -> str:
     """Changes whenever the code behind one of these modules does. modules: their `__name__`s.
 
     Raises KeyError for a name that no module has."""
-    keys = _keys()
+    keys = _load_keys()
     names = (module.removeprefix(_PROJECT) for module in modules)
-    return _digest(keys[f"{name}.__init__" if f"{name}.__init__" in keys else name] for name in names)
+    return _hash_parts(keys[f"{name}.__init__" if f"{name}.__init__" in keys else name] for name in names)
 
 
 @cache
-def code_stamp() -> str:
+def compute_code_stamp() -> str:
     """Changes whenever any module of the checker does, and with the user's limits."""
-    keys = {module: key for module, key in _keys().items() if not module.startswith("databuild.")}
-    return _digest(f"{module} {key}" for module, key in keys.items()) + limits_stamp()
+    keys = {module: key for module, key in _load_keys().items() if not module.startswith("databuild.")}
+    return _hash_parts(f"{module} {key}" for module, key in keys.items()) + format_limits()
 
 
-def keys_of(sources: Mapping[str, bytes], version: Callable[[str], str]) -> dict[str, str]:
+def compute_keys(sources: Mapping[str, bytes], version: Callable[[str], str]) -> dict[str, str]:
     """The key of every module. sources: by module, `impact.facts.__init__` for a folder itself. version: gives that of
     a library by the name that is imported."""
     tables = [name for name in sources if "/" in name]
-    imports = {module: _imports(module, source, sources, tables) for module, source in sources.items()}
+    imports = {module: _find_imports(module, source, sources, tables) for module, source in sources.items()}
     own = {module: hashlib.sha1(source).hexdigest() for module, source in sources.items()}
     own.update((name, version(name)) for name in set().union(*imports.values()) - sources.keys())
     python = "{}.{}".format(*sys.version_info)
     reach = Reach(lambda name: (imports.get(name, ()), ()))
 
     @cache
-    def key(reached: int) -> str:
-        return _digest((python, *(f"{name} {own[name]}" for name in sorted(reach.names(reached)))))
+    def compute_key(reached: int) -> str:
+        return _hash_parts((python, *(f"{name} {own[name]}" for name in sorted(reach.list_names(reached)))))
 
-    return {module: key(reach.masks((module,))[0]) for module in sorted(sources)}
+    return {module: compute_key(reach.collect_masks((module,))[0]) for module in sorted(sources)}
 
 
-def _imports(module: str, source: bytes, sources: Mapping[str, bytes], tables: Iterable[str]) -> set[str]:
+def _find_imports(module: str, source: bytes, sources: Mapping[str, bytes], tables: Iterable[str]) -> set[str]:
     """The modules and libraries that a source imports. What cannot be read so may import everything. tables: those of
     the sources that are no modules."""
     if b"\0" in source:  # compiled, without its text
@@ -115,10 +115,10 @@ def _imports(module: str, source: bytes, sources: Mapping[str, bytes], tables: I
 
 
 @cache
-def _keys() -> Mapping[str, str]:
+def _load_keys() -> Mapping[str, str]:
     libraries = [path for path in sys.path if path.endswith("-packages")]
     try:
-        state = _state(libraries)
+        state = _compute_state(libraries)
     except OSError:  # installed as something else than files: what is made now is never read back
         return defaultdict(partial(secrets.token_hex, 10), {"": secrets.token_hex(10)})
     about = f"{_ROOTS} {libraries}".encode("utf-8", "surrogateescape")
@@ -130,9 +130,9 @@ def _keys() -> Mapping[str, str]:
             known = msgspec.msgpack.decode(packed, type=_Keys)
             if known.state == state:
                 return known.keys
-    sources = {name: files.read_file(path, _LARGEST) for name, path, _ in _sources()}
-    keys = keys_of(sources, _version)
-    if _state(libraries) == state:  # else a file changed while all were read
+    sources = {name: files.read_file(path, _LARGEST) for name, path, _ in _list_sources()}
+    keys = compute_keys(sources, _find_version)
+    if _compute_state(libraries) == state:  # else a file changed while all were read
         with contextlib.suppress(OSError, UnicodeEncodeError):
             os.makedirs(cache_folder(), exist_ok=True)
             packed = msgspec.msgpack.encode(_Keys(state, keys))
@@ -140,7 +140,7 @@ def _keys() -> Mapping[str, str]:
     return keys
 
 
-def _sources() -> Iterator[tuple[str, str, os.stat_result]]:
+def _list_sources() -> Iterator[tuple[str, str, os.stat_result]]:
     """Module, path and status of each source file. A table is called by folder and name, `impact.model.flow/x.toml`.
 
     Raises OSError where the project is installed as anything but files."""
@@ -157,7 +157,7 @@ def _sources() -> Iterator[tuple[str, str, os.stat_result]]:
                         waiting.append((f"{package}.{entry.name}", entry.path))
 
 
-def _state(libraries: Iterable[str]) -> bytes:
+def _compute_state(libraries: Iterable[str]) -> bytes:
     """What tells a state of the source, and of the folders that libraries are installed in, without reading it. A
     folder changes whenever something is installed there, removed or replaced."""
     digest = hashlib.sha1(sys.version.encode())
@@ -167,7 +167,7 @@ def _state(libraries: Iterable[str]) -> bytes:
         row = f"{path} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}\n"
         digest.update(row.encode("utf-8", "surrogateescape"))
 
-    for _, path, status in _sources():
+    for _, path, status in _list_sources():
         add(path, status)
     for folder in libraries:
         with contextlib.suppress(OSError):
@@ -175,7 +175,7 @@ def _state(libraries: Iterable[str]) -> bytes:
     return digest.digest()
 
 
-def _version(library: str) -> str:
+def _find_version(library: str) -> str:
     """The version of a library by the name that is imported; where it goes by another name, where and since when it is
     installed; empty where it is not."""
     from importlib.metadata import PackageNotFoundError, version
@@ -194,5 +194,5 @@ def _version(library: str) -> str:
     return f"{place} {status.st_size} {status.st_mtime_ns}" if status is not None else ""
 
 
-def _digest(parts: Iterable[str]) -> str:
+def _hash_parts(parts: Iterable[str]) -> str:
     return hashlib.sha1("\n".join(parts).encode()).hexdigest()[:20]

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from rosimpact.impact.conditions import Environment
 from rosimpact.impact.conditions.manifest import evaluate
 from rosimpact.impact.targets import snapshot as snapshots
-from rosimpact.impact.targets.distro.distro import TargetError, version_key
-from rosimpact.impact.targets.distro.known import KnownDistro, day_of, end_of_day, known_distros
+from rosimpact.impact.targets.distro.distro import TargetError, make_version_key
+from rosimpact.impact.targets.distro.known import KnownDistro, end_of_day, format_day, list_known_distros
 from rosimpact.impact.targets.snapshot import Snapshot
-from rosimpact.impact.targets.version import parts
+from rosimpact.impact.targets.version import parse
 
 ABSENT = -1
 """Stands in a table of versions where a package is not released."""
@@ -151,17 +151,17 @@ class History:
     """
 
     def __init__(self, distro: str, data: Snapshot | None = None):
-        self._data = data or snapshots.default()
-        known = {one.name: one for one in known_distros(self._data)}
+        self._data = data or snapshots.load_snapshot()
+        known = {one.name: one for one in list_known_distros(self._data)}
         if distro not in known:
             raise TargetError(f"unknown distro `{distro}`; known are {', '.join(known)}")
         self.known: KnownDistro = known[distro]
         self.distro = distro
         self.begin = self.known.released
         self.end = min(self.known.end_of_life or self._data.date, self._data.date)
-        (self._id,) = self._data.row("SELECT id FROM distro WHERE name = ?", (distro,)) or (None,)
+        (self._id,) = self._data.query_row("SELECT id FROM distro WHERE name = ?", (distro,)) or (None,)
         self.syncs: tuple[tuple[str, int], ...] = tuple(
-            self._data.rows("SELECT day, cut FROM sync WHERE distro = ? ORDER BY day", (self._id,))
+            self._data.fetch("SELECT day, cut FROM sync WHERE distro = ? ORDER BY day", (self._id,))
         )
         self._steps, self.repository_of, self._lives = self._read()
         self.packages = tuple(sorted(self._steps))
@@ -169,12 +169,12 @@ class History:
         self._sync_days = [day for day, _ in self.syncs]
 
     def _read(self):
-        names = dict(self._data.rows("SELECT id, name FROM repository"))
-        sets = {key: tuple(text.split(" ")) for key, text in self._data.rows("SELECT id, names FROM packages")}
+        names = dict(self._data.fetch("SELECT id, name FROM repository"))
+        sets = {key: tuple(text.split(" ")) for key, text in self._data.fetch("SELECT id, names FROM packages")}
         events: dict[int, list[tuple[int, int, str | None, tuple[str, ...]]]] = {}
         lives: list[tuple[str, int, int | None]] = []
         standing: dict[int, tuple[int, str]] = {}
-        for repository, ts, version, key in self._data.rows(
+        for repository, ts, version, key in self._data.fetch(
             "SELECT repository, ts, version, packages FROM release WHERE distro = ? ORDER BY ts, repository",
             (self._id,),
         ):
@@ -254,7 +254,7 @@ class History:
     def sync_of(self, ts: int) -> str:
         """The first day on which a commit of this moment was available; empty when it has not been yet."""
         if not self.syncs or ts <= self._first_commit_by_sync():
-            return day_of(ts)
+            return format_day(ts)
         return next((day for day, cut in self.syncs if cut >= ts), "")
 
     def _first_commit_by_sync(self) -> int:
@@ -300,12 +300,12 @@ class History:
             return _names_that_come_along(entries, here)
 
         found: dict[str, list[tuple[list[int], tuple[str, ...]]]] = {}
-        for package, version, entries in self._data.rows(
+        for package, version, entries in self._data.fetch(
             "SELECT p.name, m.version, s.entries FROM manifest m JOIN package p ON p.id = m.package"
             " JOIN distro d ON d.id = m.distro LEFT JOIN dependencies s ON s.id = m.dependencies WHERE d.name = ?",
             (self.borrows or self.distro,),
         ):
-            found.setdefault(package, []).append((version_key(version), come_along(entries or "")))
+            found.setdefault(package, []).append((make_version_key(version), come_along(entries or "")))
         for rows in found.values():
             rows.sort(key=lambda row: row[0])
         return found
@@ -320,7 +320,7 @@ class History:
         for package, version in versions.items():
             rows = self._manifests.get(package)
             if rows:
-                place = bisect.bisect_right(rows, version_key(version), key=lambda row: row[0])
+                place = bisect.bisect_right(rows, make_version_key(version), key=lambda row: row[0])
                 pairs.extend((package, name) for name in rows[max(place - 1, 0)][1])
         return Graph(sorted(versions), pairs)
 
@@ -414,7 +414,7 @@ def distros(ros: int | None = None, long_term: bool = False) -> list[str]:
     long-term support."""
     return [
         one.name
-        for one in known_distros()
+        for one in list_known_distros()
         if one.status != "rolling" and ros in (None, one.ros) and (one.lts or not long_term)
     ]
 
@@ -452,11 +452,11 @@ def behind(older: History, newer: History, day: str) -> list[Behind]:
     old, new = older.versions(day), newer.versions(day)
     found = []
     for package in sorted(old.keys() & new.keys()):
-        if parts(new[package]) > parts(old[package]):
+        if parse(new[package]) > parse(old[package]):
             since = next(
                 ts
                 for ts, version in newer._steps[package]
-                if version is not None and parts(version) > parts(old[package])
+                if version is not None and parse(version) > parse(old[package])
             )
             start = max(newer.sync_of(since) or day, newer.begin)
             found.append(Behind(package, old[package], new[package], max(0, _days_between(start, day))))
@@ -465,7 +465,7 @@ def behind(older: History, newer: History, day: str) -> list[Behind]:
 
 def kind_of_step(old: str, new: str) -> str:
     """`major`, `minor` or `patch`: the first number of a version that moved; `back` when it went down."""
-    left, right = parts(old), parts(new)
+    left, right = parse(old), parse(new)
     if right <= left:
         return "back"
     for name, one, other in zip(("major", "minor"), left, right, strict=False):

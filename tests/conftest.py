@@ -88,7 +88,7 @@ def pytest_xdist_auto_num_workers() -> int:
     have started, and leave their core without work for a seventh of the time."""
     from rosimpact.edges import processes
 
-    return processes.cores() + 1
+    return processes.count_cores() + 1
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -241,4 +241,4 @@ def one_process(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch)
         from rosimpact.edges import processes
 
         monkeypatch.setattr(processes, "may_fork", lambda: False)
-        monkeypatch.setattr(processes, "cores", lambda: 1)
+        monkeypatch.setattr(processes, "count_cores", lambda: 1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rosimpact.impact.model.launch.result import Launched, LaunchParameter, Remap, ShareLine, Started
-from rosimpact.impact.model.launch.text import known
+from rosimpact.impact.model.launch.text import wrap
 
 _HERE = ShareLine("", "the command line", 0)
 
@@ -26,12 +26,12 @@ def rosrun(package: str, executable: str, arguments: Iterable[str] = ()) -> Laun
         elif old == "__ns":
             namespace = f"/{new.strip('/')}"
         elif old.startswith("_") and not old.startswith("__"):
-            private.append(LaunchParameter(old[1:], new, known(new), _HERE))
+            private.append(LaunchParameter(old[1:], new, wrap(new), _HERE))
         elif not old.startswith("__"):
-            remaps.append(Remap(known(old), known(new), _HERE))
+            remaps.append(Remap(wrap(old), wrap(new), _HERE))
     started = Started(
-        "node", 1, _HERE, (), (), (), (), package=known(package), executable=known(executable), name=known(name),
-        namespace=known(namespace), remaps=tuple(remaps), settings=tuple(private), arguments=tuple(map(known, words)),
+        "node", 1, _HERE, (), (), (), (), package=wrap(package), executable=wrap(executable), name=wrap(name),
+        namespace=wrap(namespace), remaps=tuple(remaps), settings=tuple(private), arguments=tuple(map(wrap, words)),
     )  # fmt: skip
     full = f"{namespace.rstrip('/')}/{name or executable}"
     server = {f"{full}/{setting.name}": setting._replace(name=f"{full}/{setting.name}") for setting in private}

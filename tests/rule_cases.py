@@ -13,8 +13,8 @@ from typing import NamedTuple
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.report import Report
 from rosimpact.impact.analysis.session import Options
-from rosimpact.impact.rules.rule import Finding, all_rules
-from rosimpact.impact.tree.paths import IGNORE_MARKERS, PathProblem, TreeEntry, Walked, blob_id, inside
+from rosimpact.impact.rules.rule import Finding, load_rules
+from rosimpact.impact.tree.paths import IGNORE_MARKERS, PathProblem, TreeEntry, Walked, compute_blob_id, normalize_path
 
 HERE = Path(__file__).parent / "rules"
 Files = Mapping[str, str]
@@ -214,7 +214,7 @@ class MemoryTree(Walked):
                 found.append(TreeEntry(path, len(data)))
 
     def read(self, path: str, limit: int = 0) -> bytes:
-        data = self._data.get(inside(path) or "")
+        data = self._data.get(normalize_path(path) or "")
         if data is None:
             raise FileNotFoundError(2, "No such file or directory", path)
         if limit and len(data) > limit:
@@ -223,28 +223,28 @@ class MemoryTree(Walked):
 
     def read_with_id(self, path: str, limit: int = 0) -> tuple[bytes, str]:
         data = self.read(path, limit)
-        return data, blob_id(data)
+        return data, compute_blob_id(data)
 
-    def content_id(self, path: str) -> str:
-        return blob_id(self.read(path))
+    def find_content_id(self, path: str) -> str:
+        return compute_blob_id(self.read(path))
 
-    def known_id(self, path: str) -> str | None:
-        return self.content_id(path)
+    def find_known_id(self, path: str) -> str | None:
+        return self.find_content_id(path)
 
     def exists(self, path: str) -> bool:
-        clean = inside(path)
+        clean = normalize_path(path)
         return clean in self._data or clean in self._folders
 
     def is_dir(self, path: str) -> bool:
-        return inside(path) in self._folders
+        return normalize_path(path) in self._folders
 
-    def memory_key(self) -> bytes | None:
+    def make_memory_key(self) -> bytes | None:
         return None
 
     def recall(self, memory: bytes) -> None:
         del memory
 
-    def memory(self) -> bytes | None:
+    def make_memory(self) -> bytes | None:
         return None
 
 
@@ -322,4 +322,4 @@ def update_findings(case: Case, lines: Sequence[str]) -> None:
 
 def rules_that_compare() -> set[str]:
     """Names of the rules that need a base."""
-    return {name for name, rule in all_rules().items() if rule.has_base}
+    return {name for name, rule in load_rules().items() if rule.has_base}

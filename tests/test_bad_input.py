@@ -442,7 +442,7 @@ def test_a_rule_that_fails_is_named_and_the_others_are_heard(say, ws, monkeypatc
 
     # What was remembered of such a package knows nothing of the failure: a package of its own.
     write(ws, {"src/bad/CMakeLists.txt": CMAKE + "find_package(judged_by_a_rule_that_fails)\n"})
-    rules = registry.all_rules()
+    rules = registry.load_rules()
     monkeypatch.setitem(registry._RULES, "removed-header", rules["removed-header"]._replace(run=fails))
     said = say("check", ws, "--target", "jazzy", "--target", "humble", "--format", "json")
     report = json.loads(said.out)

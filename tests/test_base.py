@@ -9,7 +9,7 @@ from pathlib import Path
 import pygit2
 import pytest
 from rosimpact.impact.analysis.check import check, compare
-from rosimpact.impact.analysis.revision_compare import BaseError, base_tree, read_pinned
+from rosimpact.impact.analysis.revision_compare import BaseError, open_base_tree, read_pinned
 from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.tree import GitTree, TreeError, WorkingTree
 
@@ -284,7 +284,7 @@ def test_base_tree_of_a_revision_is_a_revision(tmp_path):
     first = commit(tmp_path)
     package(tmp_path / "a", WRONG)
     commit(tmp_path)
-    tree, notes = base_tree(GitTree(tmp_path), [first])
+    tree, notes = open_base_tree(GitTree(tmp_path), [first])
     assert isinstance(tree, GitTree) and tree.commit == first and notes == []
 
 
@@ -292,7 +292,7 @@ def test_a_named_folder_that_is_no_repository(tmp_path):
     package(tmp_path / "a")
     commit(tmp_path)
     with pytest.raises(Exception, match=r"`b` is no git repository.*`\.`"):
-        base_tree(WorkingTree(tmp_path), ["b=HEAD"])
+        open_base_tree(WorkingTree(tmp_path), ["b=HEAD"])
 
 
 # -- the exit status --------------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 from rosimpact.edges.version import __version__
-from rosimpact.impact.rules.rule import all_rules
+from rosimpact.impact.rules.rule import load_rules
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = [ROOT / "examples/ros1_ws", ROOT / "examples/ros2_ws"]
@@ -195,7 +195,7 @@ def curable(ws, monkeypatch):
 
     # Content of its own: what the shipped rules said of the same files is remembered, and must not be mixed with this.
     (ws / "a/CMakeLists.txt").write_text(CMAKE.format(ERROR + "# curable\n"))
-    rule = all_rules()["undeclared-package"]
+    rule = load_rules()["undeclared-package"]
     rule = rule._replace(run=lacks, texts={"": Text("not declared", "declare it")})
     monkeypatch.setitem(registry._RULES, "undeclared-package", rule)
     return ws
@@ -363,7 +363,7 @@ def test_findings_known_to_the_baseline_are_not_fixed(say, curable, tmp_path):
 # -- the other commands ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("rule", sorted(all_rules()))
+@pytest.mark.parametrize("rule", sorted(load_rules()))
 def test_explain(say, rule):
     said = say("explain", rule)
     assert said.status == 0 and said.out.startswith(f"{rule}: ")
@@ -371,7 +371,7 @@ def test_explain(say, rule):
 
 def test_explain_lists_the_rules_and_knows_no_others(say):
     listed = say("explain").out
-    assert all(f"  {rule} " in listed for rule in all_rules())
+    assert all(f"  {rule} " in listed for rule in load_rules())
     said = say("explain", "removed-haeder")
     assert said.status == 2 and "did you mean `removed-header`" in said.err
 

@@ -13,11 +13,11 @@ from rosimpact.impact.analysis.findings import (
     add_fingerprints,
     apply_settings,
     choose_rules,
-    fails,
     format_baseline,
-    glob_matches,
+    has_failures,
     lower_repeats,
     mark_new,
+    matches_glob,
     merge_diagnostics,
     prune_baseline,
     read_baseline,
@@ -28,7 +28,7 @@ from rosimpact.impact.analysis.findings import (
 from rosimpact.impact.config import PathSetting
 from rosimpact.impact.facts.place import Allow
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Diagnostic, Edit, Finding, Rule, groups
+from rosimpact.impact.rules.rule import Diagnostic, Edit, Finding, Rule, group_rules
 from rosimpact.impact.rules.severity import Doubt, Together
 from rosimpact.impact.rules.text import Text
 from rosimpact.impact.targets.evidence_record import Evidence
@@ -194,7 +194,7 @@ def test_repeats_are_notes():
         for line, (rule, package, together, doubts, _) in enumerate(REPEATS)
     ]
     lowered = lower_repeats(diagnostics, RULES)
-    assert [RULES[name].severity_of(diagnostic) for name, diagnostic in lowered] == [row[-1] for row in REPEATS]
+    assert [RULES[name].compute_severity(diagnostic) for name, diagnostic in lowered] == [row[-1] for row in REPEATS]
     found = merged(*((name, "jazzy", diagnostic) for name, diagnostic in lowered))
     assert [each.line for each in found if each.repeated] == [4, 7, 8, 10, 16, 17]
 
@@ -327,7 +327,7 @@ def test_a_rule_that_was_split_keeps_its_fingerprints():
 
 
 def test_groups_by_name():
-    listed = {name: [rule.name for rule in members] for name, members in groups(SPLIT).items()}
+    listed = {name: [rule.name for rule in members] for name, members in group_rules(SPLIT).items()}
     assert listed == {"lost-header": ["lost-c-header"], "lost-name": ["lost-name", "lost-macro", "lost-type"]}
 
 
@@ -364,12 +364,12 @@ GLOBS = [
 
 @pytest.mark.parametrize(("glob", "path", "expected"), GLOBS)
 def test_globs(glob, path, expected):
-    assert glob_matches(glob, path) is expected
+    assert matches_glob(glob, path) is expected
 
 
 @given(st.text("ab/*?[]!.-^\\&", max_size=12), st.text("ab/.", max_size=8))
 def test_any_glob_can_be_asked(glob, path):
-    assert glob_matches(glob, path) in (True, False)
+    assert matches_glob(glob, path) in (True, False)
 
 
 # (settings, severities of [removed-header in src/v, unused-dependency in src/v, removed-header in src/w])
@@ -495,7 +495,7 @@ def test_what_is_no_baseline_is_refused_with_advice(text):
     ],
 )
 def test_fail_on(severity, new, fail_on, expected):
-    assert fails([finding(severity=severity)._replace(new=new)], fail_on) is expected
+    assert has_failures([finding(severity=severity)._replace(new=new)], fail_on) is expected
 
 
 def test_counts_of_a_baseline_have_a_limit():
@@ -556,9 +556,9 @@ def _by_trying(glob: str, path: str) -> bool:
 def test_a_glob_matches_what_trying_all_ways_matches(glob, path):
     odd = glob.startswith("./") or glob.endswith("/") or "***" in glob or "[z-a]" in glob
     hypothesis.assume(not odd)
-    assert glob_matches(glob, path) is _by_trying(glob, path)
+    assert matches_glob(glob, path) is _by_trying(glob, path)
 
 
 def test_no_glob_is_slow():
-    assert not glob_matches("**/*a" * 400 + "b", "a/" * 400)
-    assert glob_matches("**/*a" * 400, "a/" * 400 + "a")
+    assert not matches_glob("**/*a" * 400 + "b", "a/" * 400)
+    assert matches_glob("**/*a" * 400, "a/" * 400 + "a")

@@ -12,14 +12,14 @@ from hypothesis import strategies as st
 from rosimpact.impact.analysis.fix import (
     Applied,
     apply,
+    collect,
+    compute_offset,
     declare_dependency,
-    fixes,
     insert_lines,
     make_fixes,
-    offset_of,
+    make_unified_diff,
     remove_dependency,
     replace_text,
-    unified_diff,
     write,
 )
 from rosimpact.impact.rules.fix_actions import Declare, Insert, Remove, Replace
@@ -228,13 +228,13 @@ def test_bytes_outside_the_edits_stay(data, asked):
     ],
 )
 def test_offset_of(data, line, column, offset):
-    assert offset_of(data, line, column) == offset
+    assert compute_offset(data, line, column) == offset
 
 
 @pytest.mark.parametrize(("line", "column"), [(3, 1), (1, 4), (0, 1), (1, 0), (-1, 1)])
 def test_a_place_outside_the_file_is_an_error(line, column):
     with pytest.raises(ValueError, match=r"there is no (line|column)"):
-        offset_of(b"ab\ncd", line, column)
+        compute_offset(b"ab\ncd", line, column)
 
 
 def test_replace_text_only_where_it_stands():
@@ -260,13 +260,13 @@ def test_replace_text_only_where_it_stands():
 )
 def test_git_applies_the_diff(tmp_path, path, old, new):
     (tmp_path / path).write_bytes(old)
-    patch = unified_diff(path, old, new).encode("utf-8", "surrogateescape")
+    patch = make_unified_diff(path, old, new).encode("utf-8", "surrogateescape")
     subprocess.run(["git", "apply", "--whitespace=nowarn"], input=patch, cwd=tmp_path, check=True)
     assert (tmp_path / path).read_bytes() == new
 
 
 def test_no_change_no_diff():
-    assert unified_diff("a", b"x", b"x") == ""
+    assert make_unified_diff("a", b"x", b"x") == ""
 
 
 def test_write_keeps_the_mode(tmp_path):
@@ -314,7 +314,7 @@ def test_a_failed_write_leaves_the_file(tmp_path, monkeypatch):
 def test_fixes_are_taken_once():
     fix = (edit(0, 0, "x"),)
     finding = Finding("r", "error", "p", "f", 1, 1, "s", ("t",), "m", fix=fix)
-    assert fixes([finding, finding, finding._replace(fix=())]) == [fix]
+    assert collect([finding, finding, finding._replace(fix=())]) == [fix]
 
 
 def wish(*fix):
@@ -349,7 +349,7 @@ def test_what_rules_propose_becomes_edits(proposed, before, after, kept):
     files = {"package.xml": manifest(before)}
     findings = make_fixes([wish(*fix) for fix in proposed], files.get)
     assert sum(bool(finding.fix) for finding in findings) == kept
-    outcome = apply(fixes(findings), files.get)
+    outcome = apply(collect(findings), files.get)
     assert outcome.refused == []
     result = outcome.files.get("package.xml", files["package.xml"])
     assert result == manifest(after)

@@ -12,7 +12,7 @@ from rosimpact.edges import processes
 from rosimpact.impact import tree as tree_module
 from rosimpact.impact.facts import extract as gather_module
 from rosimpact.impact.facts import kinds
-from rosimpact.impact.facts.extract import gather
+from rosimpact.impact.facts.extract import extract_all
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.facts.usage import UsageTable
 from rosimpact.impact.tree import GitTree, PathProblem, WorkingTree
@@ -56,54 +56,54 @@ def small_chunks(monkeypatch):
 @pytest.fixture
 def short_time(monkeypatch):
     """A fifth of a second of processor time for a file."""
-    monkeypatch.setattr(processes, "seconds_for", lambda size: 0.2)
+    monkeypatch.setattr(processes, "compute_seconds", lambda size: 0.2)
 
 
 def test_facts_by_path(tmp_path):
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(write(tmp_path / "ws", FILES)), store)
+        gathered = extract_all(WorkingTree(write(tmp_path / "ws", FILES)), store)
         assert list(gathered.kinds) == sorted(FILES.keys() - {"p/mesh.stl"})
-        assert gathered.facts("p/package.xml").facts.name == "p"
-        assert gathered.facts("p/src/node.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
-        assert gathered.facts("p/msg/A.msg").facts.sections[0].fields[0].name == "a"
-        assert gathered.paths("cpp", "msg") == ["p/msg/A.msg", "p/src/node.cpp", "p/src/same.cpp"]
+        assert gathered.get_facts("p/package.xml").facts.name == "p"
+        assert gathered.get_facts("p/src/node.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
+        assert gathered.get_facts("p/msg/A.msg").facts.sections[0].fields[0].name == "a"
+        assert gathered.list_paths("cpp", "msg") == ["p/msg/A.msg", "p/src/node.cpp", "p/src/same.cpp"]
         assert gathered.problems == []
         with pytest.raises(KeyError):
-            gathered.facts("p/mesh.stl")
+            gathered.get_facts("p/mesh.stl")
 
 
 def test_equal_contents_are_parsed_once_and_shared(tmp_path):
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(write(tmp_path / "ws", FILES)), store)
+        gathered = extract_all(WorkingTree(write(tmp_path / "ws", FILES)), store)
         assert gathered.extracted == 4
-        assert gathered.facts("p/src/node.cpp") is gathered.facts("p/src/same.cpp")
+        assert gathered.get_facts("p/src/node.cpp") is gathered.get_facts("p/src/same.cpp")
 
 
 def test_a_second_run_reads_and_parses_nothing(tmp_path, monkeypatch):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        first = gather(WorkingTree(tmp_path / "ws"), store)
+        first = extract_all(WorkingTree(tmp_path / "ws"), store)
     monkeypatch.setattr(kinds, "extract", None)
     tree = WorkingTree(tmp_path / "ws")
     monkeypatch.setattr(tree, "read_with_id", None)
     monkeypatch.setattr(tree, "read", None)
     with Store(tmp_path / "cache") as store:
-        second = gather(tree, store)
+        second = extract_all(tree, store)
         second.preload(["p/package.xml", "p/mesh.stl", "nowhere"])
         assert second.extracted == 0 and second.ids == first.ids and second.kinds == first.kinds
-        assert second.facts("p/package.xml") == first.facts("p/package.xml")
+        assert second.get_facts("p/package.xml") == first.get_facts("p/package.xml")
 
 
 def test_only_what_changed_is_parsed(tmp_path):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        gather(WorkingTree(tmp_path / "ws"), store)
+        extract_all(WorkingTree(tmp_path / "ws"), store)
     write(tmp_path / "ws", {"p/src/node.cpp": "#include <new.h>\n", "p/src/more.cpp": "#include <more.h>\n"})
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
         assert gathered.extracted == 2
-        assert gathered.facts("p/src/node.cpp").facts.includes[0].path == "new.h"
-        assert gathered.facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
+        assert gathered.get_facts("p/src/node.cpp").facts.includes[0].path == "new.h"
+        assert gathered.get_facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
 
 
 def test_a_commit_and_a_directory_share_their_facts(tmp_path):
@@ -112,24 +112,24 @@ def test_a_commit_and_a_directory_share_their_facts(tmp_path):
     who = pygit2.Signature("t", "t@example.org", 1_600_000_000, 0)
     repo.create_commit("HEAD", who, who, "all", repo.index.write_tree(), [])
     with Store(tmp_path / "cache") as store:
-        assert gather(WorkingTree(tmp_path / "ws"), store).extracted == 4
-        gathered = gather(GitTree(tmp_path / "ws"), store)
+        assert extract_all(WorkingTree(tmp_path / "ws"), store).extracted == 4
+        gathered = extract_all(GitTree(tmp_path / "ws"), store)
         assert gathered.extracted == 0
-        assert gathered.facts("p/package.xml").facts.name == "p"
+        assert gathered.get_facts("p/package.xml").facts.name == "p"
 
 
 def test_a_new_version_of_an_extractor_parses_its_files_again(tmp_path, monkeypatch):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        gather(WorkingTree(tmp_path / "ws"), store)
-    version_of = kinds.version_of
-    monkeypatch.setattr(kinds, "version_of", lambda kind: version_of(kind) + (".next" if kind == "cpp" else ""))
-    gather_module._version.cache_clear()
+        extract_all(WorkingTree(tmp_path / "ws"), store)
+    version_of = kinds.make_version
+    monkeypatch.setattr(kinds, "make_version", lambda kind: version_of(kind) + (".next" if kind == "cpp" else ""))
+    gather_module._find_version.cache_clear()
     try:
         with Store(tmp_path / "cache") as store:
-            assert gather(WorkingTree(tmp_path / "ws"), store).extracted == 1
+            assert extract_all(WorkingTree(tmp_path / "ws"), store).extracted == 1
     finally:
-        gather_module._version.cache_clear()
+        gather_module._find_version.cache_clear()
 
 
 @pytest.mark.parametrize("forks", [True, False])
@@ -137,21 +137,21 @@ def test_processes_find_what_one_process_finds(tmp_path, monkeypatch, small_chun
     write(tmp_path / "ws", sources(30) | FILES)
     monkeypatch.setattr(processes, "may_fork", lambda: forks)
     with Store(tmp_path / "one") as one, Store(tmp_path / "two") as two:
-        alone = gather(WorkingTree(tmp_path / "ws"), one, jobs=1)
-        together = gather(WorkingTree(tmp_path / "ws"), two, jobs=2)
+        alone = extract_all(WorkingTree(tmp_path / "ws"), one, jobs=1)
+        together = extract_all(WorkingTree(tmp_path / "ws"), two, jobs=2)
         assert together.kinds == alone.kinds and together.ids == alone.ids
         assert together.extracted == alone.extracted == 34
         for path in alone.kinds:
-            assert together.facts(path) == alone.facts(path)
+            assert together.get_facts(path) == alone.get_facts(path)
 
 
 def test_a_scheduler_chosen_through_joblib_is_used(tmp_path, small_chunks, monkeypatch):
     import joblib
 
     write(tmp_path / "ws", sources(30))
-    monkeypatch.setattr(gather_module, "_in_workers", None)
+    monkeypatch.setattr(gather_module, "_extract_in_workers", None)
     with Store(tmp_path / "cache") as store, joblib.parallel_config(backend="threading", n_jobs=2):
-        assert gather(WorkingTree(tmp_path / "ws"), store, jobs=2).extracted == 30
+        assert extract_all(WorkingTree(tmp_path / "ws"), store, jobs=2).extracted == 30
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
@@ -161,7 +161,9 @@ def test_progress_rises_to_the_end(tmp_path, small_chunks, jobs):
     files["src/broken.cpp"] = "version https://git-lfs.github.com/spec/v1\noid sha256:0\n"
     write(tmp_path / "ws", files)
     with Store(tmp_path / "cache") as store:
-        gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs, progress=lambda done, total: seen.append((done, total)))
+        extract_all(
+            WorkingTree(tmp_path / "ws"), store, jobs=jobs, progress=lambda done, total: seen.append((done, total))
+        )
     total = sum(len(text) for text in files.values())
     assert seen == sorted(seen) and len(seen) > 3
     assert seen[-1] == (total, total)
@@ -177,7 +179,7 @@ def test_a_large_file_is_not_read(tmp_path, monkeypatch):
         tree, "read_with_id", lambda path, limit: pytest.fail(path) if "generated" in path else read(path, limit)
     )
     with Store(tmp_path / "cache") as store:
-        gathered = gather(tree, store)
+        gathered = extract_all(tree, store)
     assert "p/src/generated.hpp" not in gathered.kinds
     assert [problem.path for problem in gathered.problems] == ["p/src/generated.hpp"]
     assert "larger than 8 MB" in gathered.problems[0].message
@@ -189,7 +191,7 @@ def test_a_git_lfs_pointer_is_no_source(tmp_path):
     write(tmp_path / "ws", {**FILES, "p/src/data.cpp": pointer})
     for _ in ("cold", "warm"):
         with Store(tmp_path / "cache") as store:
-            gathered = gather(WorkingTree(tmp_path / "ws"), store)
+            gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
         assert "p/src/data.cpp" not in gathered.kinds and "p/src/data.cpp" not in gathered.ids
         assert [problem.path for problem in gathered.problems] == ["p/src/data.cpp"]
         assert "git lfs pull" in gathered.problems[0].message
@@ -214,9 +216,9 @@ def test_a_file_that_cannot_be_read(tmp_path, monkeypatch, error, message):
 
     monkeypatch.setattr(tree, "read_with_id", refuse)
     with Store(tmp_path / "cache") as store:
-        gathered = gather(tree, store)
+        gathered = extract_all(tree, store)
         assert gathered.problems == [PathProblem("p/src/node.cpp", message)]
-        assert gathered.facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
+        assert gathered.get_facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
         assert "p/src/node.cpp" not in gathered.kinds
 
 
@@ -274,17 +276,17 @@ def test_a_file_that_its_extractor_fails_on(tmp_path, monkeypatch, small_chunks,
     write(tmp_path / "ws", files)
     monkeypatch.setattr(kinds, "extract", failing(how))
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
         poisoned = ["src/copy.cpp", "src/f5.cpp", "src/f9.cpp"]
         assert [problem.path for problem in gathered.problems] == poisoned
         assert all(message in problem.message for problem in gathered.problems)
         assert sorted(gathered.kinds) == sorted(files.keys() - set(poisoned)) == sorted(gathered.ids)
         assert gathered.extracted == 23
-        assert gathered.facts("src/f6.cpp").facts.includes[0].path == "a6.h"
+        assert gathered.get_facts("src/f6.cpp").facts.includes[0].path == "a6.h"
 
 
 def second_look(path):
-    return kinds.FLOW.get(kinds.kind_of(path) or "")
+    return kinds.FLOW.get(kinds.find_kind(path) or "")
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
@@ -295,23 +297,23 @@ def test_two_looks_at_a_file_take_one_visit(tmp_path, monkeypatch, small_chunks,
     read_with_id = tree.read_with_id
     monkeypatch.setattr(tree, "read_with_id", lambda path, limit: read.append(path) or read_with_id(path, limit))
     with Store(tmp_path / "cache") as store:
-        gathered = gather(tree, store, jobs=jobs, second=second_look)
+        gathered = extract_all(tree, store, jobs=jobs, second=second_look)
         second = gathered.second
         assert len(read) == len(set(read)) == 15
         assert gathered.extracted == 4 + 10 + 1 + 10
         assert gathered.kinds["p/src/node.cpp"] == "cpp" and second.kinds["p/src/node.cpp"] == "flow_cpp"
         assert "p/package.xml" in gathered.kinds and "p/package.xml" not in second.kinds
-        assert gathered.facts("src/f1.cpp").facts.includes[0].path == "a1.h"
-        assert second.facts("src/f1.cpp").facts.functions[0].name == "f1"
-        assert second.facts("p/src/node.cpp") is second.facts("p/src/same.cpp")
+        assert gathered.get_facts("src/f1.cpp").facts.includes[0].path == "a1.h"
+        assert second.get_facts("src/f1.cpp").facts.functions[0].name == "f1"
+        assert second.get_facts("p/src/node.cpp") is second.get_facts("p/src/same.cpp")
 
 
 def test_only_the_look_that_is_new_is_taken(tmp_path):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        gather(WorkingTree(tmp_path / "ws"), store)
-        first = gather(WorkingTree(tmp_path / "ws"), store, second=second_look)
-        again = gather(WorkingTree(tmp_path / "ws"), store, second=second_look)
+        extract_all(WorkingTree(tmp_path / "ws"), store)
+        first = extract_all(WorkingTree(tmp_path / "ws"), store, second=second_look)
+        again = extract_all(WorkingTree(tmp_path / "ws"), store, second=second_look)
         assert (first.extracted, again.extracted) == (1, 0)
         assert first.second.kinds == again.second.kinds and first.second.ids == again.second.ids
 
@@ -319,7 +321,7 @@ def test_only_the_look_that_is_new_is_taken(tmp_path):
 def test_a_second_look_alone(tmp_path):
     with Store(tmp_path / "cache") as store:
         tree = WorkingTree(write(tmp_path / "ws", FILES))
-        gathered = gather(tree, store, kind_of=lambda path: None, second=second_look)
+        gathered = extract_all(tree, store, kind_of=lambda path: None, second=second_look)
         assert not gathered.kinds and sorted(gathered.second.kinds) == ["p/src/node.cpp", "p/src/same.cpp"]
 
 
@@ -335,7 +337,7 @@ def test_a_look_that_fails_leaves_the_other(tmp_path, monkeypatch, small_chunks,
     write(tmp_path / "ws", files)
     monkeypatch.setattr(kinds, "extract", lambda kind, data: (fail if kind == "flow_cpp" else extract)(kind, data))
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs, second=second_look)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs, second=second_look)
         assert gathered.problems == [] and sorted(gathered.kinds) == sorted(files)
         assert [problem.path for problem in gathered.second.problems] == ["src/f5.cpp"]
         assert message in gathered.second.problems[0].message
@@ -345,7 +347,7 @@ def test_a_look_that_fails_leaves_the_other(tmp_path, monkeypatch, small_chunks,
 def test_what_cannot_be_read_is_named_once(tmp_path):
     write(tmp_path / "ws", {"a.cpp": "version https://git-lfs.github.com/spec/v1\n"})
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store, second=second_look)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, second=second_look)
         assert [problem.path for problem in gathered.problems] == ["a.cpp"]
         assert not gathered.second.problems and not gathered.kinds and not gathered.second.kinds
 
@@ -353,30 +355,30 @@ def test_what_cannot_be_read_is_named_once(tmp_path):
 def test_facts_that_the_store_lost_are_made_again(tmp_path):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
         store.close()
         for file in (tmp_path / "cache").iterdir():
             file.unlink()
-        assert gathered.facts("p/package.xml").facts.name == "p"
+        assert gathered.get_facts("p/package.xml").facts.name == "p"
 
 
 def test_stored_facts_of_another_shape_are_made_again(tmp_path):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store)
-        row = gather_module._key(gathered.ids["p/package.xml"], "manifest")
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
+        row = gather_module._make_key(gathered.ids["p/package.xml"], "manifest")
         for data in (b"-\x93\x01\x02\x03", b"z rubbish", b""):
             store.put([(row, data)])
             gathered.forget(["p/package.xml"])
-            assert gathered.facts("p/package.xml").facts.name == "p"
+            assert gathered.get_facts("p/package.xml").facts.name == "p"
 
 
 def test_without_a_cache_folder(tmp_path, small_chunks):
     write(tmp_path / "ws", sources(20))
     write(tmp_path, {"file": ""})
     with Store(tmp_path / "file/cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=2)
-        assert gathered.facts("src/f3.cpp").facts.includes[0].path == "a3.h"
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=2)
+        assert gathered.get_facts("src/f3.cpp").facts.includes[0].path == "a3.h"
         assert len(store.notes) == 1
 
 
@@ -389,9 +391,9 @@ def test_interrupted_and_resumed(tmp_path, small_chunks, jobs):
             raise KeyboardInterrupt
 
     with Store(tmp_path / "cache") as store, pytest.raises(KeyboardInterrupt):
-        gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs, progress=interrupt)
+        extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs, progress=interrupt)
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
         assert 10 <= gathered.extracted <= 40, "what was parsed stays parsed"
         assert len(gathered.kinds) == 60
 
@@ -434,9 +436,9 @@ def test_killed_and_resumed(tmp_path, how):
     assert "finished" not in output
     assert errors.count("Traceback") <= (1 if how == signal.SIGINT else 0), errors
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
         assert 0 < gathered.extracted < 100, "what was parsed stays parsed"
-        assert gathered.facts("src/f99.cpp").facts.includes[0].path == "a99.h"
+        assert gathered.get_facts("src/f99.cpp").facts.includes[0].path == "a99.h"
         assert store.notes == []
 
 
@@ -448,28 +450,28 @@ def test_runs_at_once(tmp_path):
         output, _ = process.communicate(timeout=60)
         assert output.endswith("finished\n")
     with Store(tmp_path / "cache") as store:
-        assert gather(WorkingTree(tmp_path / "ws"), store).extracted == 0
+        assert extract_all(WorkingTree(tmp_path / "ws"), store).extracted == 0
 
 
 def test_a_file_edited_while_it_is_read(tmp_path, monkeypatch):
     """The id under which facts are stored is that of the bytes they were made from."""
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        gather(WorkingTree(tmp_path / "ws"), store)
+        extract_all(WorkingTree(tmp_path / "ws"), store)
     (tmp_path / "ws/p/src/same.cpp").write_text("#include <first.h>\n")
     tree = WorkingTree(tmp_path / "ws")
-    tree.entries()
+    tree.list_entries()
     (tmp_path / "ws/p/src/same.cpp").write_text("#include <second.h>\n")
     with Store(tmp_path / "cache") as store:
-        gathered = gather(tree, store)
-        assert gathered.facts("p/src/same.cpp").facts.includes[0].path == "second.h"
-        assert gathered.ids["p/src/same.cpp"] == tree_module.blob_id(b"#include <second.h>\n")
+        gathered = extract_all(tree, store)
+        assert gathered.get_facts("p/src/same.cpp").facts.includes[0].path == "second.h"
+        assert gathered.ids["p/src/same.cpp"] == tree_module.compute_blob_id(b"#include <second.h>\n")
 
 
 def test_an_empty_tree(tmp_path):
     with Store(tmp_path / "cache") as store:
         (tmp_path / "ws").mkdir()
-        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
         assert (gathered.kinds, gathered.ids, gathered.problems, gathered.extracted) == ({}, {}, [], 0)
 
 
@@ -488,7 +490,7 @@ def test_memory_that_another_file_took_is_not_held_against_a_file(tmp_path, monk
     files = {"src/a.cpp": "// POISON " + "x" * 1000, "src/b.cpp": "// innocent"}
     write(tmp_path / "ws", files)
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store, jobs=1)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=1)
     assert gathered.problems == []
     assert sorted(gathered.kinds) == sorted(files)
 
@@ -500,7 +502,7 @@ def test_other_facts_are_made_once_and_when_asked_for(tmp_path, monkeypatch):
     monkeypatch.setattr(kinds, "extract", lambda kind, data: taken.append(kind) or extract(kind, data))
     for _ in range(2):
         with Store(tmp_path / "cache") as store:
-            gathered = gather(WorkingTree(tmp_path / "ws"), store)
+            gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
             found = gathered.look(["a.launch", "b.launch", "nothing.launch"], "flow_launch_xml")
             assert sorted(found) == ["a.launch", "b.launch"]
             assert [action.kind for action in found["b.launch"].actions] == ["node"]
@@ -514,7 +516,7 @@ def test_searches_are_kept_by_what_they_look_for(tmp_path, monkeypatch):
     search = kinds.search
     monkeypatch.setattr(kinds, "search", lambda *given: taken.append(given[3]) or search(*given))
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
         for words in (["changed"], ["other"], ["changed"]):
             (found,) = gathered.look(["a.cpp"], "searched_cpp", UsageTable({}, words)).values()
             assert [word.text for word in found.words] == words
@@ -524,7 +526,7 @@ def test_searches_are_kept_by_what_they_look_for(tmp_path, monkeypatch):
 def test_what_can_no_longer_be_read_is_left_out(tmp_path):
     write(tmp_path / "ws", {"a.launch": LAUNCH, "b.launch": "<launch/>"})
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
         (tmp_path / "ws/a.launch").unlink()
         assert list(gathered.look(["a.launch", "b.launch"], "flow_launch_xml")) == ["b.launch"]
 
@@ -532,10 +534,10 @@ def test_what_can_no_longer_be_read_is_left_out(tmp_path):
 def test_what_was_written_to_meanwhile_is_not_kept_under_its_old_content(tmp_path):
     write(tmp_path / "ws", {"a.launch": LAUNCH})
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
         (tmp_path / "ws/a.launch").write_text("<launch/>")
         assert gathered.look(["a.launch"], "flow_launch_xml")["a.launch"].actions == ()
     write(tmp_path / "ws", {"a.launch": LAUNCH})
     with Store(tmp_path / "cache") as store:
-        gathered = gather(WorkingTree(tmp_path / "ws"), store)
+        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
         assert len(gathered.look(["a.launch"], "flow_launch_xml")["a.launch"].actions) == 1

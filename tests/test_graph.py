@@ -154,7 +154,7 @@ def test_beside_a_base(ws):
 
 def test_an_unchanged_workspace_is_not_joined_again(ws, monkeypatch):
     first = run(ws)
-    monkeypatch.setattr("rosimpact.impact.model.flow.workspace.joined", lambda *_: pytest.fail("joined again"))
+    monkeypatch.setattr("rosimpact.impact.model.flow.workspace.join_code", lambda *_: pytest.fail("joined again"))
     assert run(ws) == first
 
 

@@ -3,9 +3,9 @@
 import pytest
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
-from rosimpact.impact.conditions import Environment, all_hold
+from rosimpact.impact.conditions import Environment, evaluate_all
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.targets.providers.version_macros import version_test
+from rosimpact.impact.targets.providers.version_macros import make_version_test
 
 MANIFEST = """<package format="3">
   <name>winch</name><version>1.0.0</version><description>d</description>
@@ -94,12 +94,12 @@ TESTS = [
 
 @pytest.mark.parametrize(("package", "library", "version", "oldest", "below", "at", "text"), TESTS)
 def test_version_macros_hold_from_their_version_on(package, library, version, oldest, below, at, text):
-    test = version_test(package, library, version, ros=1 if package == "roscpp" else 2, oldest=oldest)
+    test = make_version_test(package, library, version, ros=1 if package == "roscpp" else 2, oldest=oldest)
     assert test is not None and test.text == text
     name = {"rclcpp_action": "rclcpp"}.get(package, package)
     for there, expected in ((below, False), (at, True)):
         environment = Environment(versions={name: there}.get)
-        assert all_hold((Condition("cpp", test.text),), environment) is expected
+        assert evaluate_all((Condition("cpp", test.text),), environment) is expected
 
 
 @pytest.mark.parametrize(
@@ -112,4 +112,4 @@ def test_version_macros_hold_from_their_version_on(package, library, version, ol
     ],
 )
 def test_where_no_macro_tells_nothing_is_made_up(package, library, version, oldest, ros):
-    assert version_test(package, library, version, ros=ros, oldest=oldest) is None
+    assert make_version_test(package, library, version, ros=ros, oldest=oldest) is None

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from rosimpact.impact.report.json import schema
+from rosimpact.impact.report.json import render_schema
 
 MANIFEST = """<package format="3"><name>bell</name><version>1.0.0</version><description>x</description>
 <maintainer email="a@b.org">a</maintainer><license>MIT</license><exec_depend>rclpy</exec_depend>
@@ -130,7 +130,7 @@ def test_check_says_it_after_the_findings(ws: Path, say):
 
 def test_check_says_it_to_machines(ws: Path, say):
     document = json.loads(say("check", ws, "--base", "HEAD", "-t", "jazzy", "-f", "json").out)
-    jsonschema.validate(document, json.loads(schema()))
+    jsonschema.validate(document, json.loads(render_schema()))
     (change,) = document["impact"]["changes"]
     assert (change["topics"], change["reaches"], change["reached"]) == (["/bell"], ["bell/hear"], 1)
     said = say("check", ws, "--base", "HEAD", "-t", "jazzy", "-f", "markdown").out
@@ -150,7 +150,7 @@ def test_what_fails_there_does_not_take_the_findings_along(ws: Path, say, monkey
     def fails(*_):
         raise RuntimeError("broken")
 
-    monkeypatch.setattr("rosimpact.impact.analysis.downstream.impact_of", fails)
+    monkeypatch.setattr("rosimpact.impact.analysis.downstream.compute_impact", fails)
     said = say("check", ws, "--base", "HEAD", "-t", "jazzy")
     assert said.status == 2
     assert "impact failed" in said.text

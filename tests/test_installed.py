@@ -14,7 +14,7 @@ import pytest
 from rosimpact.edges.limits import Limits
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.install_space import read_installed
-from rosimpact.impact.targets.machine.loader import own_machine
+from rosimpact.impact.targets.machine.loader import detect_machine
 
 MANIFEST = """\
 <?xml version="1.0"?>
@@ -177,7 +177,7 @@ def test_a_sourced_target_is_this_machine(tmp_path, made_elf, say, monkeypatch):
         pytest.skip("not on Debian: its name stands in the test's rosimpact.toml")
     ws = workspace(tmp_path, "winch")
     put(ws, "rosimpact.toml", f'[targets.jazzy]\ndistro = "jazzy"\nplatform = "debian {codename[1]}"\n'.encode())
-    put(ws / "install", "winch/lib/winch/run", made_elf(own_machine(), ["libropes.so.7", "libc.so.6"]))
+    put(ws / "install", "winch/lib/winch/run", made_elf(detect_machine(), ["libropes.so.7", "libc.so.6"]))
     arguments = ("check", ws, "--install", ws / "install", "--config", ws / "rosimpact.toml", "--target", "jazzy",
                  "--select", "stale-binary", "--format", "json")  # fmt: skip
     alone = json.loads(say(*arguments).out)
@@ -191,14 +191,14 @@ def test_a_sourced_target_is_this_machine(tmp_path, made_elf, say, monkeypatch):
 @pytest.mark.parametrize("format", ["text", "json", "sarif", "github", "markdown", "html"])
 def test_every_format_takes_a_finding_on_this_machine(tmp_path, made_elf, say, format):
     ws = workspace(tmp_path, "winch")
-    put(ws / "install", "winch/lib/winch/run", made_elf(own_machine(), ["libropes.so.7"]))
+    put(ws / "install", "winch/lib/winch/run", made_elf(detect_machine(), ["libropes.so.7"]))
     said = say("check", ws, "--install", ws / "install", "--target", "jazzy", "--format", format)
     assert said.status == 1 and "libropes.so.7" in said.out and "failed" not in said.err
 
 
 def test_what_lies_beside_the_prefix_of_one_package_is_there(tmp_path, made_elf, check):
     ws = workspace(tmp_path, "winch")
-    machine = own_machine()
+    machine = detect_machine()
     put(ws / "install", "winch/share/winch/package.xml")
     put(ws / "install", "crane/lib/libcrane.so.1", made_elf(machine, soname="libcrane.so.1"))
     put(ws / "install", "winch/lib/winch/run", made_elf(machine, ["libcrane.so.1", "libhook.so.1"]))
@@ -412,7 +412,7 @@ def test_what_is_no_built_file_is_checked_around(tmp_path, made_elf, say):
 
 
 def test_a_tree_of_more_files_or_folders_than_its_limits(tmp_path, made_elf, monkeypatch):
-    monkeypatch.setattr("rosimpact.impact.model.install_space.limits", lambda: Limits(entries=20, depth=5))
+    monkeypatch.setattr("rosimpact.impact.model.install_space.get_limits", lambda: Limits(entries=20, depth=5))
     put(tmp_path, "a/liba.so", made_elf("EM_X86_64", []))
     put(tmp_path, "b/" + "deep/" * 9 + "libb.so", made_elf("EM_X86_64", []))
     for n in range(30):

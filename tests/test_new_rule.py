@@ -30,14 +30,14 @@ def test_a_new_rule_finds_what_its_cases_expect(checkout, say, cache, monkeypatc
     module, cases = checkout / "impact/rules/packages/bad_name.py", checkout / "tests/rules/packages/bad_name.md"
     assert (said.status, said.err) == (0, "")
     assert said.out.splitlines()[:2] == [str(module), str(cases)]
-    registry.all_rules()
+    registry.load_rules()
     monkeypatch.setattr(registry, "_RULES", dict(registry._RULES))
     spec = importlib.util.spec_from_file_location("rosimpact.impact.rules.packages.bad_name", module)
     assert spec and spec.loader
     loaded = importlib.util.module_from_spec(spec)
     monkeypatch.setitem(sys.modules, spec.name, loaded)
     spec.loader.exec_module(loaded)
-    rule = registry.all_rules()["bad-name"]
+    rule = registry.load_rules()["bad-name"]
     assert (rule.family, rule.preview) == ("packages", True)
     assert rule.documentation.startswith("bad-name: ")
     silent, speaking = rule_cases.read_cases(cases)

@@ -17,7 +17,7 @@ from rosimpact.impact.analysis.session import Options, open_workspace
 from rosimpact.impact.model import tracked_names as watch
 from rosimpact.impact.model.view import TargetView
 from rosimpact.impact.model.workspace import Package, Workspace
-from rosimpact.impact.rules.rule import all_rules
+from rosimpact.impact.rules.rule import load_rules
 
 MANIFEST = """<package format="3"><name>{name}</name><version>1.0.0</version><description>d</description>
 <maintainer email="a@b.org">a</maintainer><license>MIT</license><buildtool_depend>ament_cmake</buildtool_depend>
@@ -220,7 +220,7 @@ def test_rules_run_only_when_a_digest_changed(ws, run, monkeypatch, edit, anew):
 
 def test_names_to_look_out_for_are_gathered_once(ws, run, monkeypatch):
     first = run(ws, "kept")
-    monkeypatch.setattr(watch, "watched", _refuse)
+    monkeypatch.setattr(watch, "load_watched", _refuse)
     assert run(ws, "kept") == first
 
 
@@ -242,7 +242,7 @@ CASES = [case for case in rule_cases.find_cases() if case.findings]
 def test_rules_per_target_see_nothing_but_digests(case, cache, monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
-    rules = [rule for rule in all_rules().values() if rule.scope == "target"]
+    rules = [rule for rule in load_rules().values() if rule.scope == "target"]
     options, tree = Options(targets=("jazzy", "noetic"), cache=cache), rule_cases.MemoryTree(case.files)
     with open_workspace("case", options, tree=tree) as opened:
         for view in opened.views:
@@ -268,10 +268,10 @@ def test_a_package_says_nothing_that_its_digest_does_not(ws, run, cache, tmp_pat
 def test_what_is_asked_of_names_that_grow_is_answered_anew(ws, run, cache, tmp_path):
     with open_workspace(ws, Options(targets=("jazzy",), cache=tmp_path / "facts")) as opened:
         (view,) = opened.views
-        providers, names = view.header("angles/angles.h"), {"rclcpp"}
-        assert not view.answered(providers, names)
+        providers, names = view.find_header("angles/angles.h"), {"rclcpp"}
+        assert not view.is_met(providers, names)
         names.add("angles")
-        assert view.answered(providers, names)
-        assert view.answered(providers, frozenset({"angles"})) and not view.answered(providers, frozenset({"rclpy"}))
+        assert view.is_met(providers, names)
+        assert view.is_met(providers, frozenset({"angles"})) and not view.is_met(providers, frozenset({"rclpy"}))
         with pytest.raises(TypeError):
-            view.declared(opened.workspace.packages["arm"])["angles"] = {"build"}  # type: ignore[index]
+            view.collect_declared(opened.workspace.packages["arm"])["angles"] = {"build"}  # type: ignore[index]

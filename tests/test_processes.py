@@ -11,9 +11,9 @@ from rosimpact.impact.analysis import run_rules as judge
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.model import workspace
-from rosimpact.impact.rules.rule import all_rules
+from rosimpact.impact.rules.rule import load_rules
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.providers.providers import default_providers
+from rosimpact.impact.targets.providers.providers import load_providers
 
 needs_fork = pytest.mark.skipif(not processes.may_fork(), reason="processes are forked on Linux only")
 
@@ -89,7 +89,7 @@ def test_processes_report_what_one_reports(tmp_path, at_once):
 @needs_fork
 def test_a_rule_that_fails_on_one_package_is_named_once(tmp_path, at_once, monkeypatch):
     ws = ring(tmp_path / "ws", 9)
-    rule = all_rules()["unresolvable-key"]
+    rule = load_rules()["unresolvable-key"]
 
     def run(view):
         for package in view:
@@ -97,8 +97,8 @@ def test_a_rule_that_fails_on_one_package_is_named_once(tmp_path, at_once, monke
                 raise RuntimeError("no such luck")
             yield from ()
 
-    rules = {**all_rules(), "unresolvable-key": rule._replace(run=run)}
-    monkeypatch.setattr("rosimpact.impact.rules.rule.all_rules", lambda: rules)
+    rules = {**load_rules(), "unresolvable-key": rule._replace(run=run)}
+    monkeypatch.setattr("rosimpact.impact.rules.rule.load_rules", lambda: rules)
     report = check(ws, Options(("humble", "jazzy"), jobs=2, cache=tmp_path / "cache"))
     assert report.failure.count("the rule unresolvable-key failed on humble, jazzy: RuntimeError") == 1
     assert any(finding.rule == "undeclared-package" for finding in report.findings)
@@ -120,12 +120,12 @@ def _raises(number):
 
 @needs_fork
 def test_every_result_comes_with_its_task():
-    assert dict(processes.forked(_doubled, range(20), 3, 2)) == {n: 2 * n for n in range(20)}
+    assert dict(processes.run_forked(_doubled, range(20), 3, 2)) == {n: 2 * n for n in range(20)}
 
 
 @needs_fork
 def test_a_task_that_ends_its_process_comes_without_result():
-    found = dict(processes.forked(_dies, range(8), 2, os.getpid()))
+    found = dict(processes.run_forked(_dies, range(8), 2, os.getpid()))
     assert found.pop(3) == processes.Died("crashed")
     assert found == {number: number for number in range(8) if number != 3}
 
@@ -140,7 +140,7 @@ def _dies_the_first_time(folder, number):
 
 @needs_fork
 def test_a_task_is_tried_again_in_a_new_process(tmp_path):
-    found = dict(processes.forked(_dies_the_first_time, range(6), 1, tmp_path))
+    found = dict(processes.run_forked(_dies_the_first_time, range(6), 1, tmp_path))
     assert found == {number: number for number in range(6)}
 
 
@@ -156,13 +156,13 @@ class _Odd(Exception):
 @needs_fork
 def test_an_error_that_cannot_be_copied_is_told_in_words():
     with pytest.raises(RuntimeError, match="_Odd: 0 2"):
-        dict(processes.forked(_cannot_be_copied, [0], 1))
+        dict(processes.run_forked(_cannot_be_copied, [0], 1))
 
 
 @needs_fork
 def test_a_message_may_be_larger_than_a_pipe():
     things = [bytes([n]) * 3_000_000 for n in range(4)]
-    assert dict(processes.forked(_doubled, things, 2, 2)) == {thing: 2 * thing for thing in things}
+    assert dict(processes.run_forked(_doubled, things, 2, 2)) == {thing: 2 * thing for thing in things}
 
 
 def children():
@@ -173,16 +173,16 @@ def children():
 @pytest.mark.parametrize("size", [1, 1_000_000])
 def test_processes_that_end_before_they_take_a_thing_are_no_endless_row(monkeypatch, size):
     monkeypatch.setattr(processes, "_limit_memory", lambda: os._exit(1))
-    assert [result for _, result in processes.forked(len, [b"x" * size], 1)] == [processes.Died("crashed")]
+    assert [result for _, result in processes.run_forked(len, [b"x" * size], 1)] == [processes.Died("crashed")]
 
 
 @needs_fork
 def test_no_process_and_no_descriptor_is_left():
     before, born_before = sorted(os.listdir("/proc/self/fd")), children()
-    for _ in processes.forked(_doubled, range(20), 3, 2):
+    for _ in processes.run_forked(_doubled, range(20), 3, 2):
         break
     with pytest.raises(KeyError):
-        dict(processes.forked(_raises, range(3), 2))
+        dict(processes.run_forked(_raises, range(3), 2))
     assert sorted(os.listdir("/proc/self/fd")) == before
     assert children() == born_before
 
@@ -215,14 +215,14 @@ def test_steps_are_taken_while_others_work(tmp_path):
         return "done"
 
     with processes.meanwhile(steps()):
-        assert dict(processes.forked(wait_for_gate, [1, 2], 2)) == {1: "done", 2: "done"}
+        assert dict(processes.run_forked(wait_for_gate, [1, 2], 2)) == {1: "done", 2: "done"}
     assert taken == [0, 1, 2] and not processes._MEANWHILE
 
 
 @needs_fork
 def test_steps_are_not_taken_by_the_others():
     with processes.meanwhile(iter(range(5))):
-        assert dict(processes.forked(_tell_steps_left, [1], 1)) == {1: 0}
+        assert dict(processes.run_forked(_tell_steps_left, [1], 1)) == {1: 0}
 
 
 @needs_fork
@@ -235,7 +235,7 @@ def test_a_step_that_fails_ends_the_steps_and_nothing_else():
         yield
 
     with processes.meanwhile(iter([])), processes.meanwhile(steps()):
-        assert dict(processes.forked(_slowly, [1, 2], 1)) == {1: 1, 2: 2}
+        assert dict(processes.run_forked(_slowly, [1, 2], 1)) == {1: 1, 2: 2}
     assert taken == ["failing"]
 
 
@@ -247,13 +247,13 @@ def test_an_interrupt_in_a_step_leaves_no_process():
 
     born_before = children()
     with pytest.raises(KeyboardInterrupt), processes.meanwhile(steps()):
-        list(processes.forked(_endless, [1, 2], 2))
+        list(processes.run_forked(_endless, [1, 2], 2))
     assert children() == born_before and not processes._MEANWHILE
 
 
 def test_what_a_task_raises_is_raised_here():
     with pytest.raises(KeyError):
-        dict(processes.forked(_raises, range(3), 2))
+        dict(processes.run_forked(_raises, range(3), 2))
 
 
 @needs_fork
@@ -344,7 +344,7 @@ def test_a_rule_that_comes_to_no_end_costs_its_package_alone(tmp_path, monkeypat
         here = "link_1" in packages[task[1] : task[1] + size]
         return part(opened, endless if here else rules, packages, size, task)
 
-    endless = [rule._replace(run=_endless) for rule in all_rules().values()]
+    endless = [rule._replace(run=_endless) for rule in load_rules().values()]
     monkeypatch.setattr(judge, "_run_part", of_link_1)
     monkeypatch.setattr(judge, "_estimate_bytes", lambda workspace, packages: -900_000)
     monkeypatch.setattr(judge, "_PACKAGE_BYTES", 0)
@@ -367,17 +367,21 @@ def test_a_message_flow_that_comes_to_no_end_costs_its_rules_alone(tmp_path, mon
 
 
 def _answers(target, providers, header):
-    return [p.name for p in providers.header(header)], target.version("rclcpp"), target.resolve("eigen") is not None
+    return (
+        [p.name for p in providers.find_header(header)],
+        target.find_version("rclcpp"),
+        target.resolve("eigen") is not None,
+    )
 
 
 @needs_fork
 def test_the_shipped_data_is_read_by_many_processes_at_once():
     headers = [f"{name}/{name}.hpp" for name in ("rclcpp", "tf2", "pluginlib", "nav2_util", "angles", "cv_bridge")] * 20
-    target, providers = DistroTarget("jazzy"), default_providers()
+    target, providers = DistroTarget("jazzy"), load_providers()
     expected = {header: _answers(target, providers, header) for header in sorted(set(headers))}
     fresh = type(providers)()
-    fresh.header("ros/ros.h")  # opened here before the others are forked
-    for header, answer in processes.forked(_answers, headers, 4, DistroTarget("jazzy"), fresh):
+    fresh.find_header("ros/ros.h")  # opened here before the others are forked
+    for header, answer in processes.run_forked(_answers, headers, 4, DistroTarget("jazzy"), fresh):
         assert answer == expected[header]
 
 
@@ -388,4 +392,4 @@ def test_no_number_of_jobs_brings_the_machine_down():
         while workers.free and given < 1000:
             workers.give(given)
             given += 1
-    assert given == max(64, 4 * processes.cores())
+    assert given == max(64, 4 * processes.count_cores())

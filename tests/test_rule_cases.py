@@ -137,7 +137,7 @@ def test_details_that_a_case_leaves_out_are_not_compared():
 def test_a_tree_of_texts_answers_as_a_folder_does(tmp_path):
     files = {"a/package.xml": "<package/>\n", "a/src/a.cpp": "", "b/COLCON_IGNORE": "", "b/c/d.cpp": "int d;\n"}
     memory, folder = rule_cases.MemoryTree(files), WorkingTree(rule_cases.write_files(tmp_path, files))
-    assert memory.entries() == folder.entries()
+    assert memory.list_entries() == folder.list_entries()
     assert memory.skipped == folder.skipped
     for path in (*files, "a", "a/src", "a/no", "../a", ""):
         assert memory.exists(path) == folder.exists(path), path

@@ -272,7 +272,7 @@ def test_what_runs_out_is_no_fault_of_rosimpact(capfd, error, words):
     said = capfd.readouterr().err
     assert words in said and "fault" not in said and len(said.splitlines()) == 1
     if not isinstance(error, OSError):
-        assert words in console.unforeseen(error), "the same where a rule or an extractor fails"
+        assert words in console.describe_unforeseen(error), "the same where a rule or an extractor fails"
 
 
 def test_a_start_that_fails_is_one_line():
@@ -287,9 +287,9 @@ def test_limits_that_cannot_be_read_are_named(say, ws, monkeypatch):
     from rosimpact.edges import limits
 
     monkeypatch.setenv("ROSIMPACT_LIMITS", "cpp=much")
-    limits.limits.cache_clear()
+    limits.get_limits.cache_clear()
     try:
         said = say("check", ws, "-t", "jazzy")
     finally:
-        limits.limits.cache_clear()
+        limits.get_limits.cache_clear()
     assert said.status == 2 and "ROSIMPACT_LIMITS" in said.err and "cpp=32MB" in said.err

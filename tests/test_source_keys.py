@@ -6,7 +6,7 @@ import pytest
 from rosimpact.databuild.extract import cpp, parameters, python
 from rosimpact.impact import source_keys
 from rosimpact.impact.facts import kinds
-from rosimpact.impact.source_keys import keys_of, source_key
+from rosimpact.impact.source_keys import compute_keys, compute_source_key
 
 SOURCES = {
     "impact.facts.__init__": b"",
@@ -47,18 +47,18 @@ def changed(before, after):
 
 @pytest.mark.parametrize(("module", "expected"), CHANGES)
 def test_a_change_reaches_the_modules_that_import_it(module, expected):
-    before = keys_of(SOURCES, lambda library: "1")
-    after = keys_of({**SOURCES, module: SOURCES[module] + b"# changed\n"}, lambda library: "1")
+    before = compute_keys(SOURCES, lambda library: "1")
+    after = compute_keys({**SOURCES, module: SOURCES[module] + b"# changed\n"}, lambda library: "1")
     assert changed(before, after) == expected | {"compiled"}  # what it imports cannot be seen
 
 
 def test_a_library_reaches_the_modules_that_import_it():
-    before, after = keys_of(SOURCES, lambda library: "1"), keys_of(SOURCES, lambda library: "2")
+    before, after = compute_keys(SOURCES, lambda library: "1"), compute_keys(SOURCES, lambda library: "2")
     assert changed(before, after) == {"place", "cpp", "python", "late", "compiled"}
 
 
 def sources():
-    return {name: open(path, "rb").read() for name, path, _ in source_keys._sources()}
+    return {name: open(path, "rb").read() for name, path, _ in source_keys._list_sources()}
 
 
 PARAMETERS = set(map(parameters.kind_of, parameters.LIMITS))
@@ -78,14 +78,14 @@ KINDS = (*kinds.EXTRACTORS, cpp.__name__, python.__name__, *PARAMETERS)
 @pytest.mark.parametrize(("module", "expected"), EXTRACTORS)
 def test_one_line_of_an_extractor_changes_its_key_alone(monkeypatch, module, expected):
     found = sources()
-    before = {kind: kinds.version_of(kind) for kind in KINDS}
+    before = {kind: kinds.make_version(kind) for kind in KINDS}
     found[module] += b"_ADDED = 1\n"
-    keys = keys_of(found, lambda library: "")
-    unchanged = keys_of(sources(), lambda library: "")
-    monkeypatch.setattr(source_keys, "_keys", lambda: keys)
-    after = {kind: kinds.version_of(kind) for kind in KINDS}
-    monkeypatch.setattr(source_keys, "_keys", lambda: unchanged)
-    again = {kind: kinds.version_of(kind) for kind in KINDS}
+    keys = compute_keys(found, lambda library: "")
+    unchanged = compute_keys(sources(), lambda library: "")
+    monkeypatch.setattr(source_keys, "_load_keys", lambda: keys)
+    after = {kind: kinds.make_version(kind) for kind in KINDS}
+    monkeypatch.setattr(source_keys, "_load_keys", lambda: unchanged)
+    again = {kind: kinds.make_version(kind) for kind in KINDS}
     assert {kind for kind in after if after[kind] != again[kind]} == expected
     assert len(set(before.values())) == len(before)
 
@@ -95,17 +95,17 @@ def anew(monkeypatch, tmp_path):
     """Works out the keys again, with a cache folder of its own."""
     monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path))
     monkeypatch.setattr(source_keys, "cache_folder", lambda: tmp_path)
-    yield source_keys._keys.__wrapped__
+    yield source_keys._load_keys.__wrapped__
     assert not [name for name in os.listdir(tmp_path) if not name.startswith("code-")]
 
 
 def test_keys_are_remembered_until_a_file_changes(anew, monkeypatch, tmp_path):
     first = anew()
     worked_out = []
-    monkeypatch.setattr(source_keys, "keys_of", lambda *found: worked_out.append(found) or {"impact.memo": "new"})
+    monkeypatch.setattr(source_keys, "compute_keys", lambda *found: worked_out.append(found) or {"impact.memo": "new"})
     assert anew() == first and not worked_out
-    state = source_keys._state
-    monkeypatch.setattr(source_keys, "_state", lambda libraries: state(libraries)[:-1])
+    state = source_keys._compute_state
+    monkeypatch.setattr(source_keys, "_compute_state", lambda libraries: state(libraries)[:-1])
     assert anew() == {"impact.memo": "new"} and len(worked_out) == 1
 
 
@@ -130,11 +130,11 @@ def test_what_cannot_be_looked_at_is_never_read_back(anew, monkeypatch):
     def fails():
         raise NotADirectoryError(20, "Not a directory")
 
-    monkeypatch.setattr(source_keys, "_sources", fails)
+    monkeypatch.setattr(source_keys, "_list_sources", fails)
     one, other = anew(), anew()
     assert one["impact.memo"] == one["impact.memo"] != other["impact.memo"]
 
 
 def test_a_module_that_is_not_there_has_no_key():
     with pytest.raises(KeyError):
-        source_key("rosimpact.impact.nothing")
+        compute_source_key("rosimpact.impact.nothing")

@@ -86,14 +86,14 @@ def test_a_line_fits_eighty_columns(repos, tmp_path):
     from rosimpact.databuild.surface.compare import RepositorySurfaces, compare_states
     from rosimpact.impact.facts.store import Store
     from rosimpact.impact.report.style import PLAIN
-    from rosimpact.impact.report.surface import SurfaceDifference, VersionSource, diff_text, show_text
+    from rosimpact.impact.report.surface import SurfaceDifference, VersionSource, render_diff_text, show_text
 
     clone = Clone(repos / "ros2+rclcpp")
     with Store(tmp_path / "other") as store:
-        old, new = (RepositorySurfaces(clone.surfaces(tag, store, 1)) for tag in ("16.0.0", "28.1.0"))
+        old, new = (RepositorySurfaces(clone.read_surfaces(tag, store, 1)) for tag in ("16.0.0", "28.1.0"))
     source = VersionSource("16.0.0", "16.0.0", "ros2/rclcpp", "16.0.0")
     style = PLAIN._replace(width=80)
-    told = diff_text(SurfaceDifference(source, source, compare_states(old, new)), style, True)
+    told = render_diff_text(SurfaceDifference(source, source, compare_states(old, new)), style, True)
     shown = show_text(old.surfaces["rclcpp"], source, style, True)
     assert [line for line in (told + shown).splitlines() if len(line) > 80] == []
     assert "and_one_more" in told and "and_one_more" in shown
@@ -112,7 +112,7 @@ def test_diff_of_a_clone_as_json(repos):
 
 def test_diff_as_markdown_says_what_is_approximate(repos):
     result = run("diff", "rclcpp", "humble", "28.1.0", "--repos", repos, "--format", "markdown")
-    version = DistroTarget("humble").version("rclcpp")
+    version = DistroTarget("humble").find_version("rclcpp")
     assert f"`humble` of ros2/rclcpp: {version} is not there." in result.stdout
     assert "| removed field | `rclcpp::Node::rate` | `int rclcpp::Node::rate` |  |" in result.stdout
 
@@ -135,7 +135,7 @@ def test_show(repos):
 def test_without_clones_what_is_shipped_answers():
     result = run("diff", "rclcpp", "humble", "jazzy", "--all")
     assert result.exit_code == 0, result.stderr
-    old, new = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
+    old, new = (DistroTarget(distro).find_version("rclcpp") for distro in ("humble", "jazzy"))
     assert result.stdout.startswith(f"package rclcpp {old} (humble) → {new} (jazzy)\n  humble: ")
     assert " of the shipped surfaces" in result.stdout.splitlines()[1]
     # Deprecated in Galactic for the one of rcpputils, and gone after Humble.
@@ -181,7 +181,7 @@ def test_build(repos, tmp_path):
     assert result.exit_code == 0, result.stderr
     assert result.stdout.startswith(f"{file}: 1 package, 1 version, ")
     assert result.stdout.endswith("; 1 with a branch for a missing tag, 0 without a clone\n")
-    assert Surfaces(file).history("rclcpp", 2).names()["rclcpp::Node"]
+    assert Surfaces(file).find_history("rclcpp", 2).index_names()["rclcpp::Node"]
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,9 @@ from rosimpact.impact.tree import (
     PathProblem,
     TreeError,
     WorkingTree,
-    at_merge_bases,
-    blob_id,
-    inside,
+    compute_blob_id,
+    normalize_path,
+    open_merge_bases,
     shown,
 )
 from rosimpact.impact.tree import working as tree_module
@@ -48,7 +48,7 @@ def commit(root, message="change", parents=None):
 
 
 def paths(tree):
-    return [entry.path for entry in tree.entries()]
+    return [entry.path for entry in tree.list_entries()]
 
 
 def age(root, seconds=100):
@@ -109,9 +109,9 @@ def test_what_is_listed(tmp_path, files, listed):
     revision = commit(tmp_path)
     git = GitTree(tmp_path, revision)
     assert paths(git) == listed
-    assert git.entries() == working.entries()
+    assert git.list_entries() == working.list_entries()
     for path in listed:
-        assert git.content_id(path) == working.content_id(path)
+        assert git.find_content_id(path) == working.find_content_id(path)
         assert git.read(path) == working.read(path)
     assert sorted(git.aliases.items()) == sorted(working.aliases.items())
     assert [p.path for p in git.problems] == [p.path for p in working.problems]
@@ -134,14 +134,14 @@ PROBLEMS = {
 @pytest.mark.parametrize(("files", "path", "message"), PROBLEMS.values(), ids=PROBLEMS)
 def test_problems_are_named(tmp_path, files, path, message):
     tree = WorkingTree(write(tmp_path, files))
-    tree.entries()
+    tree.list_entries()
     assert [p.path for p in tree.problems] == [path]
     assert message in tree.problems[0].message
 
 
 def test_what_is_skipped_is_told(tmp_path):
     tree = WorkingTree(write(tmp_path, {"a/COLCON_IGNORE": "", "b/x": "", "l1": "->b", "l2": "->b"}))
-    tree.entries()
+    tree.list_entries()
     assert [problem.path for problem in tree.skipped if "COLCON_IGNORE" in problem.message] == ["a"]
     assert len(tree.skipped) == 2 and tree.skipped[1].path in ("l1", "l2")
 
@@ -265,7 +265,7 @@ def test_exists_knows_skipped_folders_and_stays_inside(tmp_path, path, exists, i
     write(tmp_path, {"p/x.h": "", "p/third_party/COLCON_IGNORE": "", "p/third_party/y.h": "", "link": "->p"})
     git = GitTree(tmp_path, commit(tmp_path))
     for tree in (WorkingTree(tmp_path), git, JoinedTree({"": git})):
-        tree.entries()
+        tree.list_entries()
         assert (tree.exists(path), tree.is_dir(path)) == (exists, is_dir), tree
 
 
@@ -277,26 +277,26 @@ def test_reading_outside_of_the_tree_fails(tmp_path, path):
         with pytest.raises(OSError):
             tree.read(path)
         with pytest.raises(OSError):
-            tree.content_id(path)
+            tree.find_content_id(path)
 
 
 def test_ids_are_gits(tmp_path):
     write(tmp_path, {"a": "hello\n"})
     expected = subprocess.run(["git", "hash-object", tmp_path / "a"], capture_output=True, text=True, check=True)
-    assert WorkingTree(tmp_path).content_id("a") == expected.stdout.strip() == blob_id(b"hello\n")
+    assert WorkingTree(tmp_path).find_content_id("a") == expected.stdout.strip() == compute_blob_id(b"hello\n")
 
 
 def test_remembered_ids_are_not_read_again(tmp_path, later, monkeypatch):
     write(tmp_path, {"a": "1", "b": "2", "c\udcff": "3"})
     first = WorkingTree(tmp_path)
-    ids = {path: first.content_id(path) for path in paths(first)}
-    memory = first.memory()
+    ids = {path: first.find_content_id(path) for path in paths(first)}
+    memory = first.make_memory()
     second = WorkingTree(tmp_path)
-    second.entries()
+    second.list_entries()
     second.recall(memory)
     monkeypatch.setattr(second, "read_with_id", None)
-    assert {path: second.content_id(path) for path in paths(second)} == ids
-    assert second.memory() is None, "nothing new, nothing to write"
+    assert {path: second.find_content_id(path) for path in paths(second)} == ids
+    assert second.make_memory() is None, "nothing new, nothing to write"
 
 
 CHANGES = {
@@ -312,32 +312,32 @@ def test_a_changed_file_is_read_again(tmp_path, later, change):
     write(tmp_path, {"a": "1"})
     os.utime(tmp_path / "a", ns=(1, 1))
     first = WorkingTree(tmp_path)
-    first.entries()
-    assert first.content_id("a") == blob_id(b"1")
-    memory = first.memory()
+    first.list_entries()
+    assert first.find_content_id("a") == compute_blob_id(b"1")
+    memory = first.make_memory()
     time.sleep(0.02)  # the clock of the file system must have moved on
     change(tmp_path / "a")
     second = WorkingTree(tmp_path)
-    second.entries()
+    second.list_entries()
     second.recall(memory)
-    assert second.content_id("a") == blob_id((tmp_path / "a").read_bytes())
+    assert second.find_content_id("a") == compute_blob_id((tmp_path / "a").read_bytes())
 
 
 def test_a_file_changed_just_now_is_not_remembered(tmp_path):
     write(tmp_path, {"new": "1", "old": "1"})
     tree = WorkingTree(tmp_path)
-    tree.entries()
-    tree.content_id("new")
-    assert tree.memory() is None, "its time stamp may not tell of the next change"
+    tree.list_entries()
+    tree.find_content_id("new")
+    assert tree.make_memory() is None, "its time stamp may not tell of the next change"
 
 
 def test_a_file_with_a_time_stamp_in_the_future_is_not_remembered(tmp_path, later):
     write(tmp_path, {"a": "1"})
     os.utime(tmp_path / "a", (time.time() + 10_000,) * 2)
     tree = WorkingTree(tmp_path)
-    tree.entries()
-    tree.content_id("a")
-    assert tree.memory() is None
+    tree.list_entries()
+    tree.find_content_id("a")
+    assert tree.make_memory() is None
 
 
 @pytest.mark.parametrize(
@@ -347,23 +347,23 @@ def test_a_file_with_a_time_stamp_in_the_future_is_not_remembered(tmp_path, late
 )
 def test_a_damaged_memory_is_dropped(tmp_path, memory):
     tree = WorkingTree(write(tmp_path, {"a": "1"}))
-    tree.entries()
+    tree.list_entries()
     tree.recall(memory)
-    assert tree.content_id("a") == blob_id(b"1")
+    assert tree.find_content_id("a") == compute_blob_id(b"1")
 
 
 def test_forgotten_files_leave_the_memory(tmp_path, later):
     write(tmp_path, {f"f{i}": str(i) for i in range(300)})
     first = WorkingTree(tmp_path)
     for path in paths(first):
-        first.content_id(path)
-    full = first.memory()
+        first.find_content_id(path)
+    full = first.make_memory()
     for i in range(290):
         os.remove(tmp_path / f"f{i}")
     second = WorkingTree(tmp_path)
-    second.entries()
+    second.list_entries()
     second.recall(full)
-    assert len(second.memory()) < len(full) / 10
+    assert len(second.make_memory()) < len(full) / 10
 
 
 def test_revisions(tmp_path):
@@ -381,7 +381,7 @@ def test_revisions(tmp_path):
         assert paths(GitTree(tmp_path, revision)) == expected, revision
     assert GitTree(tmp_path, "v1").label == f"v1 ({first[:10]})"
     assert GitTree(tmp_path, first).label == first[:10]
-    assert GitTree(tmp_path, "main").at("v1").commit == first
+    assert GitTree(tmp_path, "main").open_revision("v1").commit == first
 
 
 def test_a_bare_repository_and_a_folder_in_a_repository(tmp_path):
@@ -445,10 +445,10 @@ def test_a_submodule_of_a_revision(tmp_path):
 
 def test_an_object_that_is_missing(tmp_path):
     commit(write(tmp_path, {"a": "1", "b": "2"}))
-    oid = blob_id(b"1")
+    oid = compute_blob_id(b"1")
     os.remove(tmp_path / ".git/objects" / oid[:2] / oid[2:])
     tree = GitTree(tmp_path)
-    assert [(entry.path, entry.size) for entry in tree.entries()] == [("a", 0), ("b", 1)]
+    assert [(entry.path, entry.size) for entry in tree.list_entries()] == [("a", 0), ("b", 1)]
     with pytest.raises(OSError, match="missing"):
         tree.read("a")
 
@@ -461,7 +461,7 @@ def test_trees_joined(tmp_path):
     (tmp_path / "src/repo/a").write_text("new")
     joined = JoinedTree({"": WorkingTree(tmp_path), "src/repo": GitTree(tmp_path / "src/repo", old)})
     assert paths(joined) == ["src/own/x", "src/repo/a", "src/repo/d/y", "src/repo/link/y", "top"]
-    assert joined.read("src/repo/a") == b"old" and joined.content_id("src/repo/a") == blob_id(b"old")
+    assert joined.read("src/repo/a") == b"old" and joined.find_content_id("src/repo/a") == compute_blob_id(b"old")
     assert not joined.exists("src/repo/b") and joined.is_dir("src") and joined.exists("top")
     assert joined.aliases == {"src/repo/link": "src/repo/d"}
     assert [p.path for p in joined.skipped] == ["src/repo/skipped"]
@@ -491,7 +491,7 @@ def team(tmp_path):
     ],
 )
 def test_a_workspace_at_its_merge_bases(team, revisions, default, listed):
-    assert paths(at_merge_bases(WorkingTree(team), revisions, default)) == listed
+    assert paths(open_merge_bases(WorkingTree(team), revisions, default)) == listed
 
 
 @pytest.mark.parametrize(
@@ -504,17 +504,17 @@ def test_a_workspace_at_its_merge_bases(team, revisions, default, listed):
 )
 def test_no_merge_bases(team, revisions, default, message):
     with pytest.raises(TreeError, match=message):
-        at_merge_bases(WorkingTree(team), revisions, default)
+        open_merge_bases(WorkingTree(team), revisions, default)
 
 
 def test_merge_bases_of_other_trees(team):
-    assert paths(at_merge_bases(GitTree(team / "src/one"), {}, "upstream")) == ["old"]
-    assert paths(at_merge_bases(WorkingTree(team / "src/one"), {}, "upstream")) == ["old"]
+    assert paths(open_merge_bases(GitTree(team / "src/one"), {}, "upstream")) == ["old"]
+    assert paths(open_merge_bases(WorkingTree(team / "src/one"), {}, "upstream")) == ["old"]
     commit(write(team / "large", {"ws/a": ""}))
     write(team / "large", {"ws/b": ""})
-    assert paths(at_merge_bases(WorkingTree(team / "large/ws"), {}, "HEAD")) == ["a"]
+    assert paths(open_merge_bases(WorkingTree(team / "large/ws"), {}, "HEAD")) == ["a"]
     with pytest.raises(TreeError, match="no git repository"):
-        at_merge_bases(WorkingTree(write(team.parent / "plain", {"a": ""})), {}, "HEAD")
+        open_merge_bases(WorkingTree(write(team.parent / "plain", {"a": ""})), {}, "HEAD")
 
 
 @pytest.mark.parametrize(
@@ -533,7 +533,7 @@ def test_paths_as_they_are_printed(path, text):
     ],
 )  # fmt: skip
 def test_inside(path, expected):
-    assert inside(path) == expected
+    assert normalize_path(path) == expected
 
 
 # what a link leads to, words of the problem that names it
@@ -580,7 +580,7 @@ def test_a_root_that_is_a_link_is_read(tmp_path):
 def test_a_file_that_became_a_link_out_of_the_tree_is_not_read(tmp_path):
     write(tmp_path, {"secret": "key", "ws/a": "1"})
     tree = WorkingTree(tmp_path / "ws")
-    tree.entries()
+    tree.list_entries()
     os.remove(tmp_path / "ws/a")
     os.symlink("../secret", tmp_path / "ws/a")
     with pytest.raises(OSError, match="outside"):
@@ -598,7 +598,7 @@ def test_files_over_a_limit_are_not_read(tmp_path):
 @pytest.mark.parametrize("spoil", [lambda data: data[: len(data) // 2], lambda data: b"", lambda data: b"x" * 99])
 def test_a_damaged_object_costs_its_file_alone(tmp_path, spoil):
     commit(write(tmp_path, {"a": "0123456789abcdefghij", "b": "2"}))
-    oid = blob_id(b"0123456789abcdefghij")
+    oid = compute_blob_id(b"0123456789abcdefghij")
     place = tmp_path / ".git/objects" / oid[:2] / oid[2:]
     place.chmod(0o644)
     place.write_bytes(spoil(place.read_bytes()))
@@ -631,7 +631,7 @@ def test_a_folder_that_stands_everywhere_is_cut_off(tmp_path):
     who = pygit2.Signature("t", "t@example.org", 1_600_000_000, 0)
     repo.create_commit("HEAD", who, who, "many", item, [])
     tree = GitTree(tmp_path)
-    assert len(tree.entries()) <= 100_000
+    assert len(tree.list_entries()) <= 100_000
     assert all("the same folder stands at more than" in problem.message for problem in tree.problems)
 
 
@@ -654,7 +654,7 @@ def test_paths_have_so_many_characters_in_all(tmp_path, monkeypatch, kind, entri
         place.write_text(name)
     commit(tmp_path)
     for module in (paths, working):
-        monkeypatch.setattr(module, "limits", lambda: Limits(entries=entries))
+        monkeypatch.setattr(module, "get_limits", lambda: Limits(entries=entries))
     tree = kind(tmp_path)
-    tree.entries()
+    tree.list_entries()
     assert any("characters in all" in problem.message for problem in tree.problems) is told

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from rosimpact.impact.analysis.why import NameOffer, WhyAnswer, answers, as_text
+from rosimpact.impact.analysis.why import NameOffer, WhyAnswer, find_answers, render_text
 
 EXAMPLE = Path(__file__).parents[1] / "examples/ros2_ws"
 
@@ -31,39 +31,41 @@ def _cache(cache, monkeypatch):
     ],
 )
 def test_who_provides_a_name(name, kind, what, provider):
-    found = answers(name, EXAMPLE, ("jazzy",))
+    found = find_answers(name, EXAMPLE, ("jazzy",))
     offers = [offer for answer in found if answer.as_what == kind for offer in answer.offers]
     assert (what, provider) in {(offer.kind, offer.name) for offer in offers}
 
 
 def test_one_answer_for_each_target():
-    found = answers("cv_bridge", EXAMPLE, ("humble", "jazzy"))
+    found = find_answers("cv_bridge", EXAMPLE, ("humble", "jazzy"))
     versions = {answer.target: answer.offers[0].version for answer in found if answer.as_what == "package"}
     assert versions["humble"].startswith("3.") and versions["jazzy"].startswith("4.")
     assert {answer.offers[0].since[:4] for answer in found if answer.as_what == "package"} == {"2022", "2024"}
 
 
 def test_a_package_that_is_gone_says_where_it_was_last():
-    (offer,) = answers("turtlesim", EXAMPLE, ("jazzy",))[0].offers
+    (offer,) = find_answers("turtlesim", EXAMPLE, ("jazzy",))[0].offers
     assert offer.kind == "package"
-    found = answers("actionlib", EXAMPLE, ("jazzy",))
+    found = find_answers("actionlib", EXAMPLE, ("jazzy",))
     assert all(offer.kind == "absent" for answer in found for offer in answer.offers)
 
 
 def test_a_name_that_nobody_knows():
-    (answer,) = answers("nobody_has_this", EXAMPLE, ("jazzy",))
+    (answer,) = find_answers("nobody_has_this", EXAMPLE, ("jazzy",))
     assert answer.offers == () and answer.used == ()
 
 
 def test_uses_and_whether_they_are_safe():
-    (answer, *_) = answers("cv_bridge", EXAMPLE, ("jazzy",))
+    (answer, *_) = find_answers("cv_bridge", EXAMPLE, ("jazzy",))
     assert "src/porter_vision/package.xml:12" in answer.used and answer.undeclared == ()
-    undeclared = answers("teleop_twist_joy", EXAMPLE, ("jazzy",)) + answers("v4l2_camera", EXAMPLE, ("jazzy",))
+    undeclared = find_answers("teleop_twist_joy", EXAMPLE, ("jazzy",)) + find_answers(
+        "v4l2_camera", EXAMPLE, ("jazzy",)
+    )
     assert any("porter_bringup" in answer.undeclared for answer in undeclared)
 
 
 def test_a_package_is_not_safe_whose_change_breaks_a_use():
-    (answer, *_) = answers("message_filters", EXAMPLE, ("rolling",))
+    (answer, *_) = find_answers("message_filters", EXAMPLE, ("rolling",))
     places = {line.split(": ")[0] for line in answer.findings if "[changed-signature]" in line}
     assert places == {"src/porter_vision/src/marker_node.cpp:35", "src/porter_vision/src/marker_node.cpp:36"}
 
@@ -106,7 +108,7 @@ PACKAGE = NameOffer("package", "cv_bridge", "4.1.0", "2024-04-19", "")
     ],
 )
 def test_answers_as_text(found, expected):
-    assert as_text("x", found) == expected
+    assert render_text("x", found) == expected
 
 
 def test_what_is_recognised_as_a_workspace(tmp_path, monkeypatch):

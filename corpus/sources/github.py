@@ -17,9 +17,9 @@ from email.utils import parsedate_to_datetime
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlencode, urlsplit
 
-from ..polite import Client, Refused, ServiceAnswer, service_address
+from ..polite import Client, Refused, ServiceAnswer, normalize_address
 from ..report import CorpusError, Report
-from ..store import AskedReport, GatheredReport, Page, digest_of
+from ..store import AskedReport, GatheredReport, Page, hash_bytes
 from .in_order import Part, read_in_order
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class GitHub:
 
     def __init__(self, client: Client, api: str = API, token: str = ""):
         self.client = client
-        self.api = service_address(api, API)
+        self.api = normalize_address(api, API)
         self._token = token
         self._parser: Github | None = None
 
@@ -64,7 +64,7 @@ class GitHub:
     def parser(self) -> Github:
         """PyGithub over our client."""
         if self._parser is None:
-            self._parser = _pygithub(self)
+            self._parser = _make_pygithub(self)
         return self._parser
 
     @property
@@ -73,7 +73,7 @@ class GitHub:
         own = getattr(self.parser, "requester", None)  # public since PyGithub 2.3
         return own if own is not None else self.parser._Github__requester  # type: ignore[attr-defined]
 
-    def headers(self, etag: str = "") -> dict[str, str]:
+    def make_headers(self, etag: str = "") -> dict[str, str]:
         headers = {"Accept": "application/vnd.github+json", "X-GitHub-Api-Version": "2022-11-28"}
         if self._token:
             headers["Authorization"] = f"Bearer {self._token}"
@@ -85,7 +85,7 @@ class GitHub:
     def has_token(self) -> bool:
         return bool(self._token)
 
-    def quota(self) -> Quota | None:
+    def fetch_quota(self) -> Quota | None:
         """What is left of the main quota; None where the server has none, or does not tell."""
         from github import GithubException
 
@@ -96,13 +96,13 @@ class GitHub:
         core: Any = getattr(found, "resources", found)  # `resources` came with PyGithub 2.7
         return Quota(core.core.remaining, core.core.limit)
 
-    def gathered(self, raw: dict[str, Any], *, etag: str = "", asked: str = "") -> GatheredReport:
+    def parse_report(self, raw: dict[str, Any], *, etag: str = "", asked: str = "") -> GatheredReport:
         """What one object of an answer holds. Raises CorpusError when it is no issue."""
         from github.Issue import Issue
 
         try:
             issue: Issue = self.parser.create_from_raw_data(Issue, raw)
-            return _gathered(issue, raw, etag, asked)
+            return _make_report(issue, raw, etag, asked)
         except CorpusError:
             raise
         except Exception as error:  # PyGithub raises what it likes when a field is of another type
@@ -119,12 +119,12 @@ class GitHub:
                 raise CorpusError(f"{id}: is no issue's id; write owner/name#12")
             url = f"{self.api}/repos/{found[1]}/issues/{found[2]}"
             answer, raw = self.client.get_json(
-                url, headers=self.headers(etag), lane="core", accept=(301, 304, 404, 410, 451)
+                url, headers=self.make_headers(etag), lane="core", accept=(301, 304, 404, 410, 451)
             )
             if answer.status == 304:
                 yield AskedReport(id, "same")
             elif answer.status == 200 and isinstance(raw, dict):
-                yield AskedReport(id, "here", self.gathered(raw, etag=answer.headers.get("etag", ""), asked=id))
+                yield AskedReport(id, "here", self.parse_report(raw, etag=answer.headers.get("etag", ""), asked=id))
             else:
                 yield AskedReport(id, "gone")
 
@@ -142,7 +142,7 @@ class Listed:
         where = "" if server.api == API else f" at {urlsplit(server.api).netloc}"
         self.name = f"github:{repository.lower()}{where} {'+'.join(kinds)}{f' since {since}' if since else ''}"
 
-    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
         """From a state (None: from the start) to the end of the list. State: the time from which to ask, and the ETag
         of the last answer, so that asking when nothing is new costs nothing."""
         state = state or {}
@@ -151,7 +151,7 @@ class Listed:
         etags = [etag]  # for the first request alone
         done, total = 0, None
         steps = read_in_order(
-            lambda since, place: self._part(since, place, etags.pop() if etags else ""),
+            lambda since, place: self._fetch(since, place, etags.pop() if etags else ""),
             start,
             lambda row: str(row.get("updated_at") or ""),
             lambda row: str(row.get("number")),
@@ -164,20 +164,20 @@ class Listed:
                 yield Page([], {"since": start, "etag": etag}, finished=True, done=done, of=total)
                 return
             done += len(step.fresh)
-            total = done if step.finished else done + _left(answer.links, len(step.part.rows))
+            total = done if step.finished else done + _count_left(answer.links, len(step.part.rows))
             # An ETag is of one page: that it is the same says that nothing is new only where that page has room.
             kept = answer.headers.get("etag", "") if step.whole and len(step.part.rows) < PER_PAGE else ""
             state = {"since": step.since, "etag": kept} if kept else {"since": step.since}
-            reports = list(self._reports(step.fresh))
+            reports = list(self._parse_reports(step.fresh))
             yield Page(
-                reports, state, finished=step.finished, done=done, of=total, moved=self._moved(step.part.rows)
+                reports, state, finished=step.finished, done=done, of=total, moved=self._find_move(step.part.rows)
             )
 
-    def _part(self, since: str, place: str | None, etag: str) -> Part:
+    def _fetch(self, since: str, place: str | None, etag: str) -> Part:
         """A page of what was updated since a time; place: the address of a further one. Raises CorpusError."""
         client = self._server.client
         answer, rows = client.get_json(
-            place or self._address(since), headers=self._server.headers(etag), lane="core",
+            place or self._make_address(since), headers=self._server.make_headers(etag), lane="core",
             accept=(304,) if etag else (),
         )  # fmt: skip
         if answer.status == 304:
@@ -185,22 +185,22 @@ class Listed:
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
             raise CorpusError(f"{client.service}: answered with no list; check --api")
         onward = answer.links.get("next")
-        return Part(rows, self._server_own(onward) if onward else None, _is_over(since, answer), answer)
+        return Part(rows, self._check_address(onward) if onward else None, _is_over(since, answer), answer)
 
-    def _moved(self, rows: list[dict[str, Any]]) -> tuple[str, str] | None:
+    def _find_move(self, rows: list[dict[str, Any]]) -> tuple[str, str] | None:
         """(old, new) name of the repository, where it is no longer the one that was asked for."""
         place = _PAGE.match(str(rows[0].get("html_url") or "")) if rows else None
         if place is None or place[1].lower() == self._repository.lower():
             return None
         return self._repository, place[1]
 
-    def _address(self, since: str) -> str:
+    def _make_address(self, since: str) -> str:
         asked = {"state": "all", "sort": "updated", "direction": "asc", "per_page": PER_PAGE}
         if since:
             asked["since"] = since
         return f"{self._server.api}/repos/{self._repository}/issues?{urlencode(asked)}"
 
-    def _server_own(self, url: str) -> str:
+    def _check_address(self, url: str) -> str:
         """An address of a Link header, which must be the server's own: the token goes there."""
         mine, theirs = urlsplit(self._server.api), urlsplit(url)
         if (mine.scheme, mine.netloc) != (theirs.scheme, theirs.netloc):
@@ -209,12 +209,12 @@ class Listed:
             )
         return url
 
-    def _reports(self, rows: list[dict[str, Any]]) -> Iterator[GatheredReport]:
+    def _parse_reports(self, rows: list[dict[str, Any]]) -> Iterator[GatheredReport]:
         for row in rows:
             kind = "pull" if row.get("pull_request") else "issue"
             if kind not in self._kinds or (self._since and str(row.get("created_at") or "")[:10] < self._since):
                 continue
-            yield self._server.gathered(row, asked=f"{self._repository}#{row.get('number')}")
+            yield self._server.parse_report(row, asked=f"{self._repository}#{row.get('number')}")
 
 
 class Searched:
@@ -228,12 +228,12 @@ class Searched:
         where = "" if server.api == API else f" at {urlsplit(server.api).netloc}"
         self.name = f"github search{where} {self._query}{f' since {since}' if since else ''}"
 
-    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
         """From a state (None: from the start) to the end. State: the moment of creation from which to search."""
         since = str((state or {}).get("created") or self._since)
         total, done = None, 0
         for step in read_in_order(
-            self._part, since, lambda row: str(row.get("created_at") or ""), lambda row: str(row.get("url")),
+            self._fetch, since, lambda row: str(row.get("created_at") or ""), lambda row: str(row.get("url")),
             lambda: None, self._server.client.service,
         ):  # fmt: skip
             count: int = step.part.about
@@ -241,10 +241,10 @@ class Searched:
             done += len(step.fresh)
             newest = max([step.since, *(str(row.get("created_at") or "") for row in step.part.rows)])
             state = {"created": newest if step.finished else step.since}
-            reports = [self._server.gathered(row) for row in step.fresh]
+            reports = [self._server.parse_report(row) for row in step.fresh]
             yield Page(reports, state, finished=step.finished, done=done, of=max(total, done))
 
-    def _part(self, since: str, place: int | None) -> Part:
+    def _fetch(self, since: str, place: int | None) -> Part:
         """A page of what was posted since a moment; place: the number of a further one. Raises CorpusError."""
         number = place or 1
         if number > SEARCH_LIMIT // PER_PAGE:
@@ -252,10 +252,10 @@ class Searched:
                 f"{self._server.client.service}: more than {SEARCH_LIMIT} results of one second, {since}; "
                 "narrow the search"
             )
-        count, rows = self._page(f"{self._query} created:>={since}" if since else self._query, number)
+        count, rows = self._fetch_page(f"{self._query} created:>={since}" if since else self._query, number)
         return Part(rows, number + 1 if rows and number * PER_PAGE < count else None, about=count)
 
-    def _page(self, query: str, number: int) -> tuple[int, list[dict[str, Any]]]:
+    def _fetch_page(self, query: str, number: int) -> tuple[int, list[dict[str, Any]]]:
         """(how many there are in all, those of one page). Asks again while the server says that it ran out of time."""
         from github import GithubException
 
@@ -280,12 +280,12 @@ class Searched:
         raise CorpusError(f"{client.service}: the search runs out of time again and again; narrow it")
 
 
-def _gathered(issue: Issue, raw: dict[str, Any], etag: str, asked: str) -> GatheredReport:
+def _make_report(issue: Issue, raw: dict[str, Any], etag: str, asked: str) -> GatheredReport:
     place = _PAGE.match(issue.html_url or issue.url or "")
     if place is None:
         raise CorpusError(f"{issue.html_url}: is no address of an issue; check that --api leads to a GitHub server")
     created = issue.created_at
-    kept = _reduced(raw)
+    kept = _reduce_issue(raw)
     report = Report(
         id=f"{place[1]}#{place[2]}",
         url=issue.html_url,
@@ -297,7 +297,7 @@ def _gathered(issue: Issue, raw: dict[str, Any], etag: str, asked: str) -> Gathe
         tags=tuple(label.name for label in issue.labels),
         author=(raw.get("user") or {}).get("login") or "",
     )
-    return GatheredReport(report, kept, digest_of(kept), etag, asked, "github")
+    return GatheredReport(report, kept, hash_bytes(kept), etag, asked, "github")
 
 
 def _is_over(moment: str, answer: ServiceAnswer) -> bool:
@@ -309,7 +309,7 @@ def _is_over(moment: str, answer: ServiceAnswer) -> bool:
         return True
 
 
-def _reduced(raw: dict[str, Any]) -> bytes:
+def _reduce_issue(raw: dict[str, Any]) -> bytes:
     """An issue as the server gave it, without what identifies people beyond the name and page of its author."""
     kept: dict[str, Any] = {name: raw[name] for name in _KEPT if name in raw}
     kept["labels"] = [label.get("name") for label in raw.get("labels") or () if isinstance(label, dict)]
@@ -322,13 +322,13 @@ def _reduced(raw: dict[str, Any]) -> bytes:
     return json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
 
 
-def _left(links: dict[str, str], size: int) -> int:
+def _count_left(links: dict[str, str], size: int) -> int:
     """How many reports follow a page, by the number of the last page; that one is taken for half full."""
     last = re.search(r"[?&]page=(\d+)", links.get("last", ""))
     return max(0, (int(last[1]) - 1) * size - size // 2) if last else 0
 
 
-def _pygithub(server: GitHub) -> Github:
+def _make_pygithub(server: GitHub) -> Github:
     """PyGithub, its connection replaced by our client. The replacement is of the class, so it is undone at once."""
     import github
     from github import Auth

@@ -60,13 +60,13 @@ def read_in_order(
     """
     known: dict[Hashable, Row] = {}
 
-    def step(part: Part, before: Part | None, finished: bool = False, whole: bool = False) -> Step:
+    def make_step(part: Part, before: Part | None, finished: bool = False, whole: bool = False) -> Step:
         nonlocal known
         fresh = [row for row in part.rows if known.get(name_of(row)) != row]
         known = {name_of(row): row for each in (before, part) if each is not None for row in each.rows}
         return Step(part, fresh, since, finished, whole)
 
-    def newest(part: Part) -> Moment:
+    def find_newest(part: Part) -> Moment:
         return max((moment_of(row) for row in part.rows), default=since)
 
     def order(part: Part) -> list[tuple[Hashable, Moment]]:
@@ -75,16 +75,16 @@ def read_in_order(
     while True:
         first = ask(since, None)
         if first.onward is None:
-            yield step(first, None, finished=True, whole=True)
+            yield make_step(first, None, finished=True, whole=True)
             return
-        if newest(first) > since:
-            since = newest(first)
-            yield step(first, None)
+        if find_newest(first) > since:
+            since = find_newest(first)
+            yield make_step(first, None)
             continue
-        yield step(first, None)
+        yield make_step(first, None)
         place, here = None, first  # the last page of which it is certain that all before it was read, too
         idle = waits = 0
-        while here.onward is not None and newest(here) <= since:
+        while here.onward is not None and find_newest(here) <= since:
             idle += 1
             if idle > _PATIENCE:
                 raise CorpusError(f"{service}: the list changes faster than it can be read; try again later")
@@ -92,20 +92,20 @@ def read_in_order(
                 waits += 1
                 wait()
                 here = ask(since, None)
-                yield step(here, None)
+                yield make_step(here, None)
                 continue
             after = ask(since, here.onward)
-            yield step(after, here)
+            yield make_step(after, here)
             again = ask(since, place)
-            yield step(again, after)
+            yield make_step(again, after)
             if order(again) == order(here):
                 place, here, idle = here.onward, after, 0
             elif again.rows and order(again)[0] in order(here):
                 here = again  # rows moved up by less than a page: what came into this one is read
             else:
                 place, here = None, ask(since, None)
-                yield step(here, None)
-        if newest(here) <= since:
+                yield make_step(here, None)
+        if find_newest(here) <= since:
             yield Step(Part([], about=here.about), [], since, finished=True)
             return
-        since = newest(here)
+        since = find_newest(here)

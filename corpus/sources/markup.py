@@ -21,16 +21,16 @@ _LONGEST = 1_000_000
 _TIGHT = re.compile(r"[ \t]*\n(?:[ \t]*\n)+")
 
 
-def soup(html: str):
+def parse_html(html: str):
     """A parsed page or piece of one; the bare text of one that nests deeper than any post, which would be parsed for
     minutes. What stands beyond a limit of characters is left out."""
     from bs4 import BeautifulSoup
 
     html = html[:_LONGEST]
-    return BeautifulSoup(re.sub(r"<[^<>]*>", " ", html) if _depth(html) > _DEEPEST else html, "html.parser")
+    return BeautifulSoup(re.sub(r"<[^<>]*>", " ", html) if _measure_depth(html) > _DEEPEST else html, "html.parser")
 
 
-def _depth(html: str) -> int:
+def _measure_depth(html: str) -> int:
     """How deep tags nest at most, or more where they overlap."""
     counts: Counter[str] = Counter()
     deepest = depth = 0
@@ -46,11 +46,11 @@ def _depth(html: str) -> int:
     return deepest
 
 
-def markdown(html: str | Tag) -> str:
+def convert_to_markdown(html: str | Tag) -> str:
     """The Markdown of a post's HTML, without blank lines at its ends; its bare text where it nests too deeply."""
-    page = soup(html) if isinstance(html, str) else html
+    page = parse_html(html) if isinstance(html, str) else html
     try:
-        return _tidy(_blocks(page))
+        return _tidy(_render_children(page))
     except RecursionError:
         return _tidy("".join(page.strings))
 
@@ -61,11 +61,11 @@ def _tidy(text: str) -> str:
     return "".join(part if place % 2 else _TIGHT.sub("\n\n", part) for place, part in enumerate(parts)).strip("\n ")
 
 
-def _blocks(element: Tag) -> str:
-    return "".join(_piece(child) for child in element.children)
+def _render_children(element: Tag) -> str:
+    return "".join(_render_node(child) for child in element.children)
 
 
-def _piece(node) -> str:
+def _render_node(node) -> str:
     from bs4.element import NavigableString, PreformattedString, Tag
 
     if isinstance(node, PreformattedString):  # comments, declarations
@@ -76,28 +76,28 @@ def _piece(node) -> str:
         return ""
     name = node.name
     if name == "pre":
-        return _fenced(node.get_text())
+        return _fence_code(node.get_text())
     if name == "code":
-        return _code(node.get_text())
+        return _render_code(node.get_text())
     if name == "br":
         return "\n"
     if name == "hr":
         return "\n\n---\n\n"
     if name == "img":
         return f"![{node.get('alt') or ''}]({node.get('src') or ''})"
-    inner = _blocks(node)
+    inner = _render_children(node)
     if name == "a":
         target = node.get("href")
         text = inner.strip()
         return f"[{text}]({target})" if target and text and text != target else inner
     if name in ("strong", "b"):
-        return _marked(inner, "**")
+        return _mark_text(inner, "**")
     if name in ("em", "i"):
-        return _marked(inner, "*")
+        return _mark_text(inner, "*")
     if name in _HEADINGS:
         return f"\n\n{'#' * int(name[1])} {inner.strip()}\n\n"
     if name == "li":
-        return _item(node, inner)
+        return _render_item(node, inner)
     if name in ("ul", "ol"):
         return f"\n\n{inner.strip(chr(10))}\n\n"
     if name == "blockquote":
@@ -110,7 +110,7 @@ def _piece(node) -> str:
     return inner
 
 
-def _item(node: Tag, inner: str) -> str:
+def _render_item(node: Tag, inner: str) -> str:
     parent = node.parent
     mark = "-"
     if parent is not None and parent.name == "ol":
@@ -119,16 +119,16 @@ def _item(node: Tag, inner: str) -> str:
     return "\n".join([f"{mark} {first}", *(f"   {line}".rstrip() for line in others)]) + "\n"
 
 
-def _fenced(text: str) -> str:
+def _fence_code(text: str) -> str:
     fence = "```"
     while fence in text:
         fence += "`"
     return f"\n\n{fence}\n{text.strip(chr(10))}\n{fence}\n\n"
 
 
-def _code(text: str) -> str:
+def _render_code(text: str) -> str:
     if "\n" in text.strip("\n"):
-        return _fenced(text)
+        return _fence_code(text)
     fence = "`"
     while fence in text:
         fence += "`"
@@ -136,6 +136,6 @@ def _code(text: str) -> str:
     return f"{fence}{room}{text}{room}{fence}" if text else ""
 
 
-def _marked(inner: str, mark: str) -> str:
+def _mark_text(inner: str, mark: str) -> str:
     text = inner.strip()
     return f"{mark}{text}{mark}" if text and "\n\n" not in text else inner

@@ -25,12 +25,12 @@ import msgspec
 
 from ...edges.documents import DocumentError, load_json, load_yaml_as_text
 from ...edges.files import open_regular, read_file
-from ...edges.limits import limits
-from ..polite import Client, Refused, service_address
+from ...edges.limits import get_limits
+from ..polite import Client, Refused, normalize_address
 from ..report import CorpusError, Report
-from ..store import AskedReport, GatheredReport, Page, digest_of
-from .markup import markdown, soup
-from .person import public_name
+from ..store import AskedReport, GatheredReport, Page, hash_bytes
+from .markup import convert_to_markdown, parse_html
+from .person import make_public_name
 
 if TYPE_CHECKING:
     from bs4 import BeautifulSoup, Tag
@@ -88,15 +88,15 @@ class Archive:
         if not place.is_file() and not (place / _FOLDER).is_dir():
             raise CorpusError(f"{place}: holds no `{_FOLDER}`; give a clone of {ARCHIVE}, on its newest commit")
 
-    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
         """State: the number of the last file of a folder that was read. At the end it is forgotten: next time all files
         are looked at, and those that did not change are passed over."""
-        entries: Iterable[tuple[int, Callable[[], bytes]]] = self._entries(int((state or {}).get("after", 0)))
+        entries: Iterable[tuple[int, Callable[[], bytes]]] = self._list_entries(int((state or {}).get("after", 0)))
         total = None
         if self._place.is_dir():
             entries = list(entries)
             total = len(entries)
-        copies = self._mapped()
+        copies = self._read_mapping()
         part: list[tuple[int, bytes]] = []
         count = 0
         for number, read in entries:
@@ -106,33 +106,35 @@ class Archive:
             except CorpusError as error:
                 self.unread.append(str(error))
             if len(part) == _AT_ONCE:
-                yield self._page(part, copies, count, total)
+                yield self._make_page(part, copies, count, total)
                 part, copies = [], ()
         if not count and not state:
             raise CorpusError(
                 f"{self._place}: holds no questions; give a clone of {ARCHIVE}, on a commit that has `{_FOLDER}`, "
                 "with --archive DIR"
             )
-        yield self._page(part, copies, count, count)._replace(state={}, finished=True)
+        yield self._make_page(part, copies, count, count)._replace(state={}, finished=True)
 
     def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[AskedReport]:
         """Asks for `ros-answers:10010` and the like. known: (id, anything)."""
-        wanted = {_number_of(id): id for id, _ in known}
+        wanted = {_parse_number(id): id for id, _ in known}
         if self._place.is_dir():
             files = ((number, self._place / _FOLDER / f"{number}.md") for number in list(wanted))
             found = ((number, lambda file=file: _read(file)) for number, file in files if os.path.lexists(file))
         else:
-            found = self._entries(0)
+            found = self._list_entries(0)
         for number, read in found:
             if number in wanted:
-                yield _asked_for(wanted.pop(number), read(), f"{number}.md")
+                yield _make_answer(wanted.pop(number), read(), f"{number}.md")
         for id in wanted.values():
             yield AskedReport(id, "gone")
 
-    def _page(self, part: list[tuple[int, bytes]], copies: Iterable[tuple[str, str]], count: int, total: int | None):
+    def _make_page(
+        self, part: list[tuple[int, bytes]], copies: Iterable[tuple[str, str]], count: int, total: int | None
+    ):
         reports, pairs = [], list(copies)
         for number, data in part:
-            if self._known(f"ros-answers:{number}") == digest_of(data):
+            if self._known(f"ros-answers:{number}") == hash_bytes(data):
                 continue
             try:
                 found = parse_archived(data, f"{_FOLDER}/{number}.md")
@@ -148,7 +150,7 @@ class Archive:
                 reports.append(gathered)
         return Page(reports, {"after": part[-1][0]} if part else {}, done=count, of=total, copies=tuple(pairs))
 
-    def _entries(self, after: int) -> Iterator[tuple[int, Callable[[], bytes]]]:
+    def _list_entries(self, after: int) -> Iterator[tuple[int, Callable[[], bytes]]]:
         """(number, what reads it) of the files beyond a number; those of a folder in the order of their numbers."""
         if self._place.is_dir():
             files = [(int(name[1]), file) for file in (self._place / _FOLDER).iterdir()
@@ -162,24 +164,24 @@ class Archive:
                 fileobj=file, mode="r|*", tarinfo=_Member
             ) as tar:  # fmt: skip
                 for count, member in enumerate(tar):
-                    if count > limits().entries or tar.offset > _UNPACKED:
+                    if count > get_limits().entries or tar.offset > _UNPACKED:
                         raise tarfile.ReadError("unpacks to too much")
                     tar.members = []  # type: ignore[attr-defined]  # which are kept for whoever looks names up
                     folder, _, name = member.name.rpartition("/")
                     number = _NAME.match(name)
                     if number and folder.endswith(_FOLDER) and member.isreg() and (content := tar.extractfile(member)):
-                        data = content.read(limits().text)
+                        data = content.read(get_limits().text)
                         yield int(number[1]), lambda data=data: data
         except (OSError, EOFError, ValueError, zlib.error, lzma.LZMAError, tarfile.TarError):
             raise CorpusError(f"{self._place}: is damaged; delete it, and it is fetched again") from None
 
-    def _mapped(self) -> tuple[tuple[str, str], ...]:
+    def _read_mapping(self) -> tuple[tuple[str, str], ...]:
         """(copy, original) of the archive's own list of migrated questions, which a clone may hold."""
         file = self._place / _MAP
         if not file.is_file():
             return ()
         try:
-            posts = load_json(read_file(file, limits().capture, follow=False))["Posts"]
+            posts = load_json(read_file(file, get_limits().capture, follow=False))["Posts"]
             found = [(_MIGRATED.match(str(post["NewUrl"])), int(post["OriginalPostID"])) for post in posts]
         except (OSError, ValueError, TypeError, KeyError, OverflowError):
             return ()  # the questions name their copies themselves; the list only adds to them
@@ -197,25 +199,25 @@ class ArchivedFiles:
     def ask(self, known: Iterable[tuple[str, str]]) -> Iterator[AskedReport]:
         """As Archive.ask()."""
         for id, _ in known:
-            number = str(_number_of(id))
-            data = self._file(number)
+            number = str(_parse_number(id))
+            data = self._fetch_file(number)
             if data is None and not self._there:
                 # that one question is missing means something only where others are there
-                self._there = self._file(_SURELY_THERE) is not None
+                self._there = self._fetch_file(_SURELY_THERE) is not None
                 if not self._there:
                     raise CorpusError(
                         f"{self._client.service}: is not at {self._address} any more; clone {ARCHIVE} and give it with "
                         "--archive DIR"
                     )
-            yield AskedReport(id, "gone") if data is None else _asked_for(id, data, f"{number}.md")
+            yield AskedReport(id, "gone") if data is None else _make_answer(id, data, f"{number}.md")
 
-    def _file(self, number: str) -> bytes | None:
+    def _fetch_file(self, number: str) -> bytes | None:
         answer = self._client.get(f"{self._address}/{_FOLDER}/{number}.md", accept=(404, 410))
         self._there = self._there or answer.status == 200
         return answer.body if answer.status == 200 else None
 
 
-def _number_of(id: str) -> int:
+def _parse_number(id: str) -> int:
     """The number in `ros-answers:10010`. Raises CorpusError."""
     number = re.fullmatch(r"ros-answers:([0-9]{1,12})", id)
     if number is None:
@@ -246,7 +248,7 @@ class SavedPages:
         if not folder.is_dir():
             raise CorpusError(f"{folder}: is no folder; give one with saved question pages (*.html)")
 
-    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
         """All of them, the first of several pages of a question alone. State: the last file that was read."""
         after = (state or {}).get("after", "")
         named = sorted(
@@ -284,11 +286,11 @@ class Askbot:
         if is_live_site(api):
             raise CorpusError(GONE)
         self._client = client
-        self._api = re.sub(r"/api/v1\Z", "", service_address(api, "https://answers.example.org"))
+        self._api = re.sub(r"/api/v1\Z", "", normalize_address(api, "https://answers.example.org"))
         self._since = since
         self.name = f"ros-answers api {self._api}{f' since {since}' if since else ''}"
 
-    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
         """All questions, oldest first. State: the page to go on with, and how many questions there were. A page beyond
         the end would be the first one again; a question that was deleted moves the others up by one, so the page before
         is read once more."""
@@ -319,7 +321,7 @@ class Askbot:
             number += 1
 
 
-def _asked_for(id: str, data: bytes, name: str) -> AskedReport:
+def _make_answer(id: str, data: bytes, name: str) -> AskedReport:
     found = parse_archived(data, name)
     return AskedReport(id, "here", found[0]) if found else AskedReport(id, "gone")
 
@@ -336,7 +338,7 @@ def parse_archived(data: bytes, name: str) -> tuple[GatheredReport, str] | None:
         raise CorpusError(f"{name}{at}: is no YAML; mend it, or take the file out") from None
     if not found or not isinstance(head, dict):
         raise CorpusError(f"{name}: has no YAML between lines of `---` at its top; take the file out")
-    head = _snake(head)
+    head = _convert_keys(head)
     url = str(head.get("original_post_url") or "")
     number = str(head.get("original_post_id") or "")
     if not re.fullmatch("[0-9]{1,12}", number):
@@ -349,20 +351,20 @@ def parse_archived(data: bytes, name: str) -> tuple[GatheredReport, str] | None:
         id=f"ros-answers:{number}",
         url=url or f"https://answers.ros.org/question/{number}/",
         source="ros-answers",
-        date=_day(head.get("creation_date")),
+        date=_parse_day(head.get("creation_date")),
         title=str(head.get("title") or ""),
         body=body,
         kind="question",
         tags=tuple(tag.strip() for tag in str(head.get("tags") or "").split(",") if tag.strip()),
-        author=public_name(head.get("owner_display_name")),
+        author=make_public_name(head.get("owner_display_name")),
         licence=LICENCE,
     )
-    kept: dict[str, Any] = _named({key: head[key] for key in _WHOLE if key in head})
-    kept["answers"] = [_post(answer) for answer in head.get("answers") or () if isinstance(answer, dict)]
-    kept["comments"] = [_post(comment) for comment in head.get("comments") or () if isinstance(comment, dict)]
+    kept: dict[str, Any] = _reduce_owner_name({key: head[key] for key in _WHOLE if key in head})
+    kept["answers"] = [_reduce_post(answer) for answer in head.get("answers") or () if isinstance(answer, dict)]
+    kept["comments"] = [_reduce_post(comment) for comment in head.get("comments") or () if isinstance(comment, dict)]
     kept["body_markdown"] = body
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
-    return GatheredReport(report, raw, digest_of(data), origin="archive"), f"robotics-se:{copy[1]}" if copy else ""
+    return GatheredReport(report, raw, hash_bytes(data), origin="archive"), f"robotics-se:{copy[1]}" if copy else ""
 
 
 def parse_item(item: dict[str, Any]) -> GatheredReport:
@@ -375,59 +377,59 @@ def parse_item(item: dict[str, Any]) -> GatheredReport:
     given, listed = item.get("author"), item.get("tags")
     author = given if isinstance(given, dict) else {}
     tags = listed if isinstance(listed, list) else []
-    title, _ = _title(str(item.get("title") or ""))
+    title, _ = _split_title(str(item.get("title") or ""))
     kept = {
         name: item[name]
         for name in ("id", "title", "url", "summary", "text", "tags", "added_at", "last_activity_at", "answer_count",
                      "answer_ids", "accepted_answer_id", "view_count", "score", "closed", "closed_reason")
         if name in item
     }  # fmt: skip
-    kept["author"] = {"username": public_name(author.get("username"))}
+    kept["author"] = {"username": make_public_name(author.get("username"))}
     report = Report(
         id=f"ros-answers:{number}",
         url=str(item.get("url") or ""),
         source="ros-answers",
         date=posted,
         title=title,
-        body=markdown(str(item.get("text") or item.get("summary") or "")),
+        body=convert_to_markdown(str(item.get("text") or item.get("summary") or "")),
         kind="question",
         tags=tuple(str(tag) for tag in tags),
-        author=public_name(author.get("username")),
+        author=make_public_name(author.get("username")),
         licence=LICENCE,
     )
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
-    return GatheredReport(report, raw, digest_of(msgspec.json.encode(report)), origin="askbot")
+    return GatheredReport(report, raw, hash_bytes(msgspec.json.encode(report)), origin="askbot")
 
 
 def parse_page(html: str) -> GatheredReport | None:
     """The question of a saved page, of the theme that answers.ros.org had from 2018 on or of a newer Askbot; None where
     it holds none, or is not the first of a question's pages."""
-    page = soup(html)
+    page = parse_html(html)
     block = page.select_one(".js-question.post, .post.js-question, .js-post.js-question")
     if block is None:
         return None
-    number = _number(page, block)
+    number = _find_number(page, block)
     heading = page.select_one("h1[id^=js-question-title], h1.js-question-title, h1")
-    body = _body(block)
+    body = _find_body(block)
     if not number or heading is None or body is None:
         return None
-    title, closed = _title(_words(heading.select_one(".js-editable-content") or heading))
-    tags = [_words(tag) for tag in page.select("#question-tags .js-tag-name, .js-question-tags .js-tag-name")]
+    title, closed = _split_title(_extract_words(heading.select_one(".js-editable-content") or heading))
+    tags = [_extract_words(tag) for tag in page.select("#question-tags .js-tag-name, .js-question-tags .js-tag-name")]
     card = block.select_one(".js-avatar-box, .user-info a, .user-card a, .js-user-card a")
     links = [card, *block.select(".user-info a, .user-card a, .js-user-info a")]
-    author = next((name for link in links if link is not None and (name := _words(link))), "")
+    author = next((name for link in links if link is not None and (name := _extract_words(link))), "")
     link = page.select_one("link[rel=canonical]")
     url = str(link.get("href") or "") if link is not None else ""
     report = Report(
         id=f"ros-answers:{number}",
         url=url if _QUESTION.search(url) else f"https://answers.ros.org/question/{number}/",
         source="ros-answers",
-        date=_asked(page, block),
+        date=_find_day(page, block),
         title=title,
-        body=markdown(body),
+        body=convert_to_markdown(body),
         kind="question",
         tags=tuple(dict.fromkeys(tag for tag in tags if tag)),
-        author=public_name(author),
+        author=make_public_name(author),
         licence=LICENCE,
     )
     # The page itself shows everybody's pictures and scores: only what the report was read from is kept.
@@ -435,7 +437,7 @@ def parse_page(html: str) -> GatheredReport | None:
         "html": body.decode_contents(),
         "title": title,
         "tags": tags,
-        "author": public_name(author),
+        "author": make_public_name(author),
         "closed": closed,
     }
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
@@ -453,13 +455,13 @@ def fetch_archive(client: Client, file: Path, address: str = TARBALL) -> Path:
 
 def _read(file: Path) -> bytes:
     try:
-        return read_file(file, limits().text, follow=False)
+        return read_file(file, get_limits().text, follow=False)
     except OSError as error:
         why = "is a link, and links are not followed" if error.errno == errno.ELOOP else error.strerror
         raise CorpusError(f"{file}: cannot be read: {why}; check the folder") from None
 
 
-def _snake(mapping: dict) -> dict[str, Any]:
+def _convert_keys(mapping: dict) -> dict[str, Any]:
     """Keys as the newer files have them: `OriginalPostURL` becomes `original_post_url`."""
     return {
         re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", str(key)).lower(): value
@@ -467,34 +469,34 @@ def _snake(mapping: dict) -> dict[str, Any]:
     }
 
 
-def _post(post: dict) -> dict[str, Any]:
-    post = _snake(post)
-    kept = _named({key: post[key] for key in _POST if key in post})
-    comments = [_post(comment) for comment in post.get("comments") or () if isinstance(comment, dict)]
+def _reduce_post(post: dict) -> dict[str, Any]:
+    post = _convert_keys(post)
+    kept = _reduce_owner_name({key: post[key] for key in _POST if key in post})
+    comments = [_reduce_post(comment) for comment in post.get("comments") or () if isinstance(comment, dict)]
     return {**kept, "comments": comments} if comments else kept
 
 
-def _named(post: dict[str, Any]) -> dict[str, Any]:
+def _reduce_owner_name(post: dict[str, Any]) -> dict[str, Any]:
     if "owner_display_name" in post:
-        post["owner_display_name"] = public_name(post["owner_display_name"])
+        post["owner_display_name"] = make_public_name(post["owner_display_name"])
     return post
 
 
-def _day(stamp: object) -> str | None:
+def _parse_day(stamp: object) -> str | None:
     found = re.match(r"\d{4}-\d\d-\d\d", str(stamp or ""))
     return found[0] if found else None
 
 
-def _title(text: str) -> tuple[str, bool]:
+def _split_title(text: str) -> tuple[str, bool]:
     bare = re.sub(r"\s*\[closed\]\s*\Z", "", text)
     return bare.strip(), bare != text
 
 
-def _words(element: Tag) -> str:
+def _extract_words(element: Tag) -> str:
     return " ".join(element.get_text().split())
 
 
-def _number(page: BeautifulSoup, block: Tag) -> str:
+def _find_number(page: BeautifulSoup, block: Tag) -> str:
     """The question's id: of its block, else of the page's own address."""
     for element in (block, *block.select("[id^=post-id-], [id^=js-post-]")):
         found = re.match(r"(?:post-id|js-post)-(\d+)\Z", str(element.get("id") or ""))
@@ -514,7 +516,7 @@ def _number(page: BeautifulSoup, block: Tag) -> str:
     return ""
 
 
-def _body(block: Tag) -> Tag | None:
+def _find_body(block: Tag) -> Tag | None:
     """The element that holds the question's text and nothing else: comments and the author's card stand beside it."""
     for selector in (
         "[id^=js-post-body] .js-editable-content",
@@ -533,7 +535,7 @@ def _body(block: Tag) -> Tag | None:
     return None
 
 
-def _asked(page: BeautifulSoup, block: Tag) -> str | None:
+def _find_day(page: BeautifulSoup, block: Tag) -> str | None:
     """The UTC day of a page. Askbot writes local time with its offset, hours away from UTC's."""
     stamps = block.select(".post-update-info abbr.timeago, .js-post-update-info abbr.js-timeago")
     stamps += page.select(".statsWidget abbr.timeago, .statsWidget abbr.js-timeago, .js-question-stats abbr")
@@ -547,6 +549,6 @@ def _asked(page: BeautifulSoup, block: Tag) -> str | None:
                 return datetime.strptime(text, form).astimezone(timezone.utc).date().isoformat()
             except ValueError:
                 continue
-        if _day(text):
-            return _day(text)
+        if _parse_day(text):
+            return _parse_day(text)
     return None

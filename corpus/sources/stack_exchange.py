@@ -16,12 +16,12 @@ from datetime import datetime, timedelta, timezone
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
-from ..polite import Client, Refused, service_address
+from ..polite import Client, Refused, normalize_address
 from ..report import CorpusError, Report
-from ..store import AskedReport, GatheredReport, Page, digest_of
+from ..store import AskedReport, GatheredReport, Page, hash_bytes
 from .in_order import Part, read_in_order
-from .markup import markdown, soup
-from .person import public_name
+from .markup import convert_to_markdown, parse_html
+from .person import make_public_name
 
 if TYPE_CHECKING:
     from bs4 import Tag
@@ -62,7 +62,7 @@ class StackExchange:
 
     def __init__(self, client: Client, api: str = API, key: str = "", site: str = SITE):
         self.client = client
-        self.api = service_address(api, API)
+        self.api = normalize_address(api, API)
         self.site = site
         self._key = key
 
@@ -76,7 +76,7 @@ class StackExchange:
             if found is None:
                 # the API tells of its limits with status 400 and words of its own
                 try:
-                    found = answer.json()
+                    found = answer.parse_json()
                 except ValueError:
                     found = {}
             if not _is_wrapper(found):
@@ -98,7 +98,7 @@ class StackExchange:
         raise CorpusError(f"{self.client.service}: refuses requests again and again; try tomorrow")
 
     def _hold_until_tomorrow(self) -> None:
-        now = datetime.fromtimestamp(self.client.clock.now(), timezone.utc)
+        now = datetime.fromtimestamp(self.client.clock.get_time(), timezone.utc)
         tomorrow = (now + timedelta(days=1)).replace(hour=0, minute=0, second=0, microsecond=0)
         for lane in ("questions", "ids"):
             self.client.hold(lane, (tomorrow - now).total_seconds(), "the quota of the day is used up")
@@ -115,7 +115,7 @@ class StackExchange:
             there = {str(item.get("question_id")): item for item in found["items"]}
             for number in part:
                 if number in there:
-                    yield AskedReport(ids[number], "here", gathered(there[number]))
+                    yield AskedReport(ids[number], "here", convert(there[number]))
                 else:
                     yield AskedReport(ids[number], "gone")
 
@@ -139,7 +139,7 @@ class Tagged:
         where = "" if server.api == API else f" at {urlsplit(server.api).netloc}"
         self.name = f"stack-exchange:{server.site} {tag}{where}{f' since {since}' if since else ''}"
 
-    def pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
         """From a state (None: from the start) to the end. State: the second of the last question's posting."""
         since = (state or {}).get("since")
         if since is None:
@@ -147,18 +147,18 @@ class Tagged:
             since = int(day.timestamp()) if day else 0
         client, done = self._server.client, 0
         for step in read_in_order(
-            self._part, int(since), _posted, lambda item: str(item.get("question_id")), lambda: None, client.service
+            self._fetch, int(since), _read_date, lambda item: str(item.get("question_id")), lambda: None, client.service
         ):
             done += len(step.fresh)
             # at the end it goes on with the last question, which tells whether anything is new
-            newest = max((_posted(item) for item in step.part.rows), default=step.since)
-            reports = [gathered(item) for item in step.fresh]
+            newest = max((_read_date(item) for item in step.part.rows), default=step.since)
+            reports = [convert(item) for item in step.fresh]
             state = {"since": max(newest, step.since) if step.finished else step.since}
             yield Page(reports, state, finished=step.finished, done=done)
             if step.finished:
                 return
 
-    def _part(self, since: int, place: int | None) -> Part:
+    def _fetch(self, since: int, place: int | None) -> Part:
         """A page of what was posted since a second; place: the number of a further one. Raises CorpusError."""
         page = place or 1
         if page > _LAST_PAGE:
@@ -176,14 +176,14 @@ class Tagged:
         return Part(found["items"], page + 1 if found.get("has_more") and found["items"] else None)
 
 
-def _posted(item: dict[str, Any]) -> int:
+def _read_date(item: dict[str, Any]) -> int:
     try:
         return int(item["creation_date"])
     except (KeyError, TypeError, ValueError):
         raise CorpusError("Stack Exchange: an answer holds something that is no question; check --api") from None
 
 
-def gathered(item: dict[str, Any]) -> GatheredReport:
+def convert(item: dict[str, Any]) -> GatheredReport:
     """A question of the API. Raises CorpusError when it is none."""
     try:
         number = int(item["question_id"])
@@ -191,7 +191,7 @@ def gathered(item: dict[str, Any]) -> GatheredReport:
         body = str(item["body"])
     except (KeyError, TypeError, ValueError, OverflowError, OSError):
         raise CorpusError("Stack Exchange: an answer holds something that is no question; check --api") from None
-    original = original_of(body)
+    original = find_original(body)
     given, listed = item.get("owner"), item.get("tags")
     owner = given if isinstance(given, dict) else {}
     tags = listed if isinstance(listed, list) else []
@@ -201,31 +201,31 @@ def gathered(item: dict[str, Any]) -> GatheredReport:
         source="robotics-se",
         date=original.date or posted,
         title=html.unescape(str(item.get("title") or "")),
-        body=markdown(original.text),
+        body=convert_to_markdown(original.text),
         kind="question",
         tags=tuple(str(tag) for tag in tags),
-        author=public_name(original.name or html.unescape(str(owner.get("display_name") or ""))),
-        licence=licence(item.get("content_license")),
+        author=make_public_name(original.name or html.unescape(str(owner.get("display_name") or ""))),
+        licence=normalize_licence(item.get("content_license")),
         same_as=f"ros-answers:{original.id}" if original.id else "",
     )
     kept = {name: item[name] for name in _KEPT if name in item}
-    kept["owner"] = {name: public_name(owner[name]) for name in ("display_name", "link") if name in owner}
+    kept["owner"] = {name: make_public_name(owner[name]) for name in ("display_name", "link") if name in owner}
     raw = json.dumps(kept, ensure_ascii=False, sort_keys=True).encode()
     # views and votes change all the time, and change no report
     steady = {name: kept[name] for name in ("title", "body", "tags", "owner", "content_license") if name in kept}
-    return GatheredReport(report, raw, digest_of(json.dumps(steady, sort_keys=True).encode()), origin="stack-exchange")
+    return GatheredReport(report, raw, hash_bytes(json.dumps(steady, sort_keys=True).encode()), origin="stack-exchange")
 
 
-def original_of(body: str) -> Original:
+def find_original(body: str) -> Original:
     """What the HTML of a body says of where it was posted first."""
-    page = soup(body)
-    footers = [(block, found) for block in _leaves(page) if (found := _FOOTER.search(_text(block)))]
+    page = parse_html(body)
+    footers = [(block, found) for block in _leaves(page) if (found := _FOOTER.search(_extract_text(block)))]
     if not footers:
         return Original("", "", "", body)
     block, found = footers[-1]
     id = ""
     if found["site"] == "ROS":
-        links = [*page.find_all(_is_logo), *block.find_all("a"), *_heading_link(page)]
+        links = [*page.find_all(_is_logo), *block.find_all("a"), *_find_heading_link(page)]
         ids = [_OLD.match(str(link.get("href") or "")) for link in links]
         id = next((match[1] for match in ids if match), "")
     _cut(block)
@@ -234,7 +234,7 @@ def original_of(body: str) -> Original:
     return Original(id, " ".join(found["name"].split()), found["date"] or "", str(page))
 
 
-def licence(name: object) -> str:
+def normalize_licence(name: object) -> str:
     """`CC BY-SA 4.0` as SPDX names it."""
     return str(name or "").strip().replace(" ", "-")
 
@@ -245,7 +245,7 @@ def _leaves(page: Tag) -> list[Tag]:
     return [block for block in blocks if block.find(["p", "div", "li"]) is None] or [page]
 
 
-def _text(block: Tag) -> str:
+def _extract_text(block: Tag) -> str:
     return " ".join(block.get_text().split())
 
 
@@ -257,7 +257,7 @@ def _is_logo(tag: Tag) -> bool:
     return tag.name == "a" and any("answers logo" in str(i.get("alt") or "").lower() for i in tag.find_all("img"))
 
 
-def _heading_link(page: Tag) -> list[Tag]:
+def _find_heading_link(page: Tag) -> list[Tag]:
     """A link that stands before all text: the logo's, where the image itself was lost."""
     first = page.find("a", href=_OLD)
     if first is None or any(str(text).strip() for text in first.find_all_previous(string=True)):
@@ -269,7 +269,7 @@ def _cut(block: Tag) -> None:
     """Takes out a footer, with the score after it, the rule before it, and the comments that were pasted below."""
     following = [node for node in block.find_next_siblings() if node.name]
     for place, node in enumerate(following):
-        text = _text(node)
+        text = _extract_text(node)
         if _PASTED.match(text):
             for gone in following[place:]:
                 gone.extract()
@@ -280,6 +280,6 @@ def _cut(block: Tag) -> None:
     if before is not None and before.name == "hr":
         before.extract()
     start = re.search(r"(?:<a[^>]*>\s*)?Originally posted", block.decode_contents())
-    rest = soup(block.decode_contents()[: start.start()] if start else "")
+    rest = parse_html(block.decode_contents()[: start.start()] if start else "")
     block.clear()
     block.append(rest)

@@ -12,13 +12,21 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ...impact.facts.cpp.lexical import Scan, includes_of, scan, standing
+from ...impact.facts.cpp.lexical import Scan, find_words, includes_of, scan
 from ...impact.facts.surface import Entity, HeaderSurface
-from .cpp_declarations import ClassHead, Declarator, Head, class_head, declared, head_of, without_deprecation
-from .cpp_directives import HIDDEN, warning_of, without_directives
-from .cpp_enums import enumerators
-from .cpp_macros import DECLARES, expansion
-from .cpp_types import closed, joined, split, tokens_of, type_text
+from .cpp_declarations import (
+    ClassHead,
+    Declarator,
+    Head,
+    parse_class_head,
+    parse_declarators,
+    parse_head,
+    remove_deprecation,
+)
+from .cpp_directives import HIDDEN, blank_directives, find_warning
+from .cpp_enums import list_enumerators
+from .cpp_macros import DECLARES, expand_macro
+from .cpp_types import find_closing, format_type, join_tokens, split, split_tokens
 
 
 class _Scope(NamedTuple):
@@ -86,7 +94,7 @@ class _Reader:
         self.access = ""
         # Where the declaration that is read begins and ends.
         self.span = (0, 0)
-        self.code, macros = without_directives(scanned)
+        self.code, macros = blank_directives(scanned)
         self.entities += macros
 
     def read(self) -> HeaderSurface:
@@ -95,7 +103,7 @@ class _Reader:
         includes = includes_of(scanned)
         instead = ""
         if self.deprecated is None:
-            self.deprecated = warning_of(self.text)
+            self.deprecated = find_warning(self.text)
         if self.deprecated is not None:
             named = _PATH.findall(self.deprecated)
             taken = [include.path for include in includes]
@@ -109,7 +117,7 @@ class _Reader:
     def _walk(self) -> None:
         code = self.code
         marks = [match.start() for match in _MARKS.finditer(code)]
-        partner = _partners(code, marks)
+        partner = _match_braces(code, marks)
         count = len(marks)
         self.scopes = [_Scope("", "", "", False, None, (0, 0), len(code) + 1)]
         accesses: list[str] = []
@@ -133,12 +141,12 @@ class _Reader:
                 if head.count("(") > head.count(")"):
                     continue  # inside a lambda that is a default
                 if head and not head.isspace():
-                    self._statement(start, at)
+                    self._read_statement(start, at)
                 start = at + 1
                 continue
             other = partner[index]
             behind = marks[other] + 1 if other < count else len(code)
-            opened = self._opened(start, at, head)
+            opened = self._read_opening(start, at, head)
             if opened is _INIT:
                 index = other + 1
                 continue
@@ -148,7 +156,7 @@ class _Reader:
                 continue
             if opened.found is None:
                 if opened.kind == "namespace":
-                    self._namespace(opened.tokens, at, (behind, other + 1))
+                    self._open_namespace(opened.tokens, at, (behind, other + 1))
                 else:
                     self.scopes.append(self.scopes[-1]._replace(class_name="", resume=(behind, other + 1)))
             else:
@@ -156,12 +164,12 @@ class _Reader:
                 resume = (behind, other + 1)
                 tail: list[str] = []
                 if other + 1 < count and code[marks[other + 1]] == ";":
-                    tail = tokens_of(code[behind : marks[other + 1]])
-                    if names_variables(tail):
+                    tail = split_tokens(code[behind : marks[other + 1]])
+                    if declares_variables(tail):
                         resume = (marks[other + 1] + 1, other + 2)
                     else:
                         tail = []
-                if not self._type(opened.reading, opened.found, tail, behind - 1, resume):
+                if not self._open_type(opened.reading, opened.found, tail, behind - 1, resume):
                     start, index = resume
                     continue
                 accesses.append(self.access)
@@ -170,9 +178,9 @@ class _Reader:
             index += 1
         rest = code[start:]
         if rest and not rest.isspace():
-            self._statement(start, len(code))
+            self._read_statement(start, len(code))
 
-    def _opened(self, start: int, at: int, head: str) -> _Opened:
+    def _read_opening(self, start: int, at: int, head: str) -> _Opened:
         """What a `{` opens. The function whose body it is, is read."""
         self.span = (start, at)
         stripped = head.rstrip()
@@ -187,30 +195,30 @@ class _Reader:
             return _INIT
         if stripped.count("(") != stripped.count(")"):
             return _INIT if stripped.count("(") > stripped.count(")") else _BODY
-        tokens, deprecated = self._tokens(head)
+        tokens, deprecated = self._read_tokens(head)
         scope = self.scopes[-1]
-        reading = head_of(tokens, scope.class_name)
+        reading = parse_head(tokens, scope.class_name)
         place = reading.place
         if place >= len(tokens):
             if "linkage" in reading.words:
-                self._expanded(reading)
+                self._expand_macros(reading)
                 return _Opened("linkage", tokens, reading)
             if reading.macros and not scope.class_name:
                 # a macro that opens a block
                 return _BODY
-            self._lose(head)
+            self._count_lost(head)
             return _BODY
         word = tokens[place]
         if word == "namespace":
-            self._expanded(reading)
+            self._expand_macros(reading)
             return _Opened("namespace", tokens, reading)
         while word in ("const", "volatile") and place + 1 < len(tokens):
             place += 1
             word = tokens[place]
         if word in ("class", "struct", "union", "enum"):
-            found = class_head(tokens, place)
+            found = parse_class_head(tokens, place)
             if found is not None:
-                self._expanded(reading)
+                self._expand_macros(reading)
                 if deprecated is not None:
                     reading = reading._replace(words=reading.words | {"deprecated:" + deprecated})
                 return _Opened("type", tokens, reading, found)
@@ -219,7 +227,7 @@ class _Reader:
         ):
             return _INIT
         if last not in ")}":
-            behind = tokens[_last_closing(tokens) + 1 :]
+            behind = tokens[_find_last_closing(tokens) + 1 :]
             if not (
                 tokens[-1] in _BODY_WORDS
                 or "->" in behind
@@ -231,11 +239,11 @@ class _Reader:
         self._declare(tokens, reading, deprecated)
         return _BODY
 
-    def _tokens(self, head: str) -> tuple[list[str], str | None]:
+    def _read_tokens(self, head: str) -> tuple[list[str], str | None]:
         start, at = self.span
         if '"' in head or ("=" in head and "'" in self.text[start:at]):
-            head = self._restored(start, at, head)
-        tokens = tokens_of(head.lstrip())
+            head = self._restore_literals(start, at, head)
+        tokens = split_tokens(head.lstrip())
         place = 0
         # sections of a class: `public:`, `public Q_SLOTS:`
         if self.scopes[-1].class_name and ":" in tokens:
@@ -256,8 +264,8 @@ class _Reader:
                 if _is_macro_before_section(tokens, place):
                     behind = place + 1
                     if tokens[behind] == "(":
-                        behind = closed(tokens, behind)
-                    self._macro(word[0], tuple(tokens[place + 2 : behind - 1]))
+                        behind = find_closing(tokens, behind)
+                    self._expand_macro(word[0], tuple(tokens[place + 2 : behind - 1]))
                     place = behind
                     continue
                 break
@@ -269,10 +277,10 @@ class _Reader:
             if place > 1 and tokens[place + 1 : place + 2] == [")"] and tokens[place - 1] == "(":
                 tokens[place - 2 : place + 2] = [tokens[place]]
         if "DEPRECATED" in head or "deprecated" in head:
-            return without_deprecation(tokens)
+            return remove_deprecation(tokens)
         return tokens, None
 
-    def _restored(self, start: int, at: int, head: str) -> str:
+    def _restore_literals(self, start: int, at: int, head: str) -> str:
         """A piece of code with its literals."""
         pieces = list(head)
         text = self.text[start:at]
@@ -286,18 +294,18 @@ class _Reader:
                     pieces[match.start() : match.end()] = match[0]
         return "".join(pieces)
 
-    def _statement(self, start: int, at: int) -> None:
+    def _read_statement(self, start: int, at: int) -> None:
         self.span = (start, at)
         head = self.code[start:at]
-        tokens, deprecated = self._tokens(head)
+        tokens, deprecated = self._read_tokens(head)
         if not tokens:
             return
         first = tokens[0]
         scope = self.scopes[-1]
         if first in ("public", "private", "protected"):
             return
-        reading = head_of(tokens, scope.class_name)
-        self._expanded(reading)
+        reading = parse_head(tokens, scope.class_name)
+        self._expand_macros(reading)
         place = reading.place
         if place >= len(tokens) or "instantiation" in reading.words:
             return
@@ -305,71 +313,71 @@ class _Reader:
             return
         word = tokens[place]
         if word == "using":
-            self._using(tokens[place + 1 :], reading, deprecated)
+            self._read_using(tokens[place + 1 :], reading, deprecated)
         elif word == "namespace":
             if "=" in tokens:
                 cut = tokens.index("=")
-                self._add("namespace alias", tokens[cut - 1], type=joined(tokens[cut + 1 :]).removeprefix("::"))
+                self._add("namespace alias", tokens[cut - 1], type=join_tokens(tokens[cut + 1 :]).removeprefix("::"))
         elif word in ("static_assert", "_Static_assert", "_Pragma", "asm", "return"):
             return
         elif word == "concept":
             self._add("concept", "".join(tokens[place + 1 : place + 2]), template=reading.template)
-        elif word in ("class", "struct", "union", "enum") and (forward := self._forward(tokens, place, reading)):
+        elif word in ("class", "struct", "union", "enum") and (forward := self._find_forward(tokens, place, reading)):
             if not scope.class_name and not reading.specialised and forward.name:
                 self.announced[scope.prefix + forward.name] = None
         else:
             self._declare(tokens, reading, deprecated)
 
-    def _forward(self, tokens: list[str], place: int, reading: Head) -> ClassHead | None:
+    def _find_forward(self, tokens: list[str], place: int, reading: Head) -> ClassHead | None:
         """The type that a statement declares and does not define."""
-        found = class_head(tokens, place) if "typedef" not in reading.words else None
+        found = parse_class_head(tokens, place) if "typedef" not in reading.words else None
         if found is None or "doubtful" in found.traits or not (found.ends or found.kind == "enum"):
             return None
         return found
 
-    def _using(self, rest: list[str], reading: Head, deprecated: str | None) -> None:
+    def _read_using(self, rest: list[str], reading: Head, deprecated: str | None) -> None:
         if not rest:
             return
         if rest[0] == "namespace":
             scope = self.scopes[-1].prefix[:-2]
-            name = joined(rest[1:]).removeprefix("::")
+            name = join_tokens(rest[1:]).removeprefix("::")
             self._add("using namespace", scope, type=name, whole=True)
             return
         if "=" in rest and rest[0] != "enum":
             cut = rest.index("=")
-            type_ = type_text(rest[cut + 1 :])
+            type_ = format_type(rest[cut + 1 :])
             self._add("alias", rest[0], type=type_, template=reading.template, deprecated=deprecated)
             return
         for piece in split(rest):
             words = [word for word in piece if word not in ("typename", "...")]
             if "operator" in words:
                 cut = words.index("operator")
-                name = "operator" + joined(words[cut + 1 :])
+                name = "operator" + join_tokens(words[cut + 1 :])
             else:
                 name = next((word for word in reversed(words) if word.isidentifier()), "")
             if name and "::" in words:
-                self._add("using", name, type=joined(words).removeprefix("::"), deprecated=deprecated)
+                self._add("using", name, type=join_tokens(words).removeprefix("::"), deprecated=deprecated)
 
-    def _expanded(self, reading: Head) -> None:
+    def _expand_macros(self, reading: Head) -> None:
         for name, arguments in reading.macros:
-            self._macro(name, arguments)
+            self._expand_macro(name, arguments)
 
-    def _macro(self, name: str, arguments: tuple[str, ...]) -> None:
+    def _expand_macro(self, name: str, arguments: tuple[str, ...]) -> None:
         if name not in DECLARES:
             if any(mark in name for mark in _HEADER_MACROS) and self.deprecated is None:
                 self.deprecated = "".join(word[1:-1] for word in arguments if word[:1] == '"')
             return
-        for tokens in expansion(name, arguments):
+        for tokens in expand_macro(name, arguments):
             scope = self.scopes[-1]
-            self._declare_macro(tokens, head_of(tokens, scope.class_name), name)
+            self._declare_macro(tokens, parse_head(tokens, scope.class_name), name)
 
     def _declare_macro(self, tokens: list[str], reading: Head, macro: str) -> None:
         place = reading.place
         if tokens[place : place + 1] == ["using"]:
             cut = tokens.index("=")
-            self._add("alias", tokens[place + 1], type=type_text(tokens[cut + 1 :]), macro=macro, at_word=macro)
+            self._add("alias", tokens[place + 1], type=format_type(tokens[cut + 1 :]), macro=macro, at_word=macro)
             return
-        for one in declared(tokens, reading, self.scopes[-1].class_name) or ():
+        for one in parse_declarators(tokens, reading, self.scopes[-1].class_name) or ():
             self._emit(one, reading, None, macro)
 
     def _declare(self, tokens: list[str], reading: Head, deprecated: str | None) -> None:
@@ -381,13 +389,13 @@ class _Reader:
             tokens[place + 1 : place + 2] == ["("]
             and word != scope.class_name
             and (word in DECLARES or any(mark in word for mark in _HEADER_MACROS))
-            and closed(tokens, place + 1) >= len(tokens)
+            and find_closing(tokens, place + 1) >= len(tokens)
         ):
-            self._macro(word, tuple(tokens[place + 2 : -1]))
+            self._expand_macro(word, tuple(tokens[place + 2 : -1]))
             return
-        found = declared(tokens, reading, scope.class_name)
+        found = parse_declarators(tokens, reading, scope.class_name)
         if found is None:
-            self._lose(self.code[slice(*self.span)])
+            self._count_lost(self.code[slice(*self.span)])
             return
         if reading.specialised and not scope.class_name:
             return  # the general template is what is offered
@@ -428,36 +436,36 @@ class _Reader:
             return
         if deprecated is None and not scope.class_name:
             deprecated = scope.deprecated
-        offset = self._offset(at_word or name, *(span or self.span))
+        offset = self._find_offset(at_word or name, *(span or self.span))
         prefix = "" if whole else scope.around if friend else scope.prefix
         self.entities.append(
             Entity(
-                kind, prefix + name, self.scanned.place(offset)[0], traits=_sorted(traits), access=access,
-                deprecated=deprecated, internal=scope.internal, conditions=self.scanned.segment(offset)[2], **more,
+                kind, prefix + name, self.scanned.place(offset)[0], traits=_sort_traits(traits), access=access,
+                deprecated=deprecated, internal=scope.internal, conditions=self.scanned.find_segment(offset)[2], **more,
             )
         )  # fmt: skip
 
-    def _offset(self, word: str, start: int, at: int) -> int:
+    def _find_offset(self, word: str, start: int, at: int) -> int:
         """Where a declaration names what it declares."""
         code = self.code
         word = word.rpartition("::")[2]
         place = code.find(word + "(", start, at)
         if place >= 0 and not (code[place - 1].isalnum() or code[place - 1] == "_"):
             return place
-        place = self._word(word, start, at)
+        place = self._find_word(word, start, at)
         if place > start:
             return place
         head = code[start:at]
         return start + len(head) - len(head.lstrip())
 
-    def _word(self, word: str, start: int, end: int) -> int:
+    def _find_word(self, word: str, start: int, end: int) -> int:
         """Where a word stands by itself; the start when it does not."""
-        return next(standing(word, self.code, start, end), start)
+        return next(find_words(word, self.code, start, end), start)
 
-    def _lose(self, head: str) -> None:
+    def _count_lost(self, head: str) -> None:
         self.lost += len(head.strip())
 
-    def _namespace(self, tokens: list[str], at: int, resume: tuple[int, int]) -> None:
+    def _open_namespace(self, tokens: list[str], at: int, resume: tuple[int, int]) -> None:
         around = self.scopes[-1]
         place = tokens.index("namespace")
         names: list[str] = []
@@ -466,7 +474,7 @@ class _Reader:
         while position < len(tokens):
             token = tokens[position]
             if token == "[" or (token == "(" and position):
-                position = closed(tokens, position)
+                position = find_closing(tokens, position)
                 continue
             if token == "::":
                 inline.append(tokens[position + 1 : position + 2] == ["inline"])
@@ -481,17 +489,17 @@ class _Reader:
         internal = around.internal or any(_INTERNAL.match(name) for name in names)
         self.scopes.append(_Scope(prefix, "", prefix, internal, around.deprecated, resume, at))
 
-    def _type(self, reading: Head, found: ClassHead, tail: list[str], end: int, resume: tuple[int, int]) -> bool:
+    def _open_type(self, reading: Head, found: ClassHead, tail: list[str], end: int, resume: tuple[int, int]) -> bool:
         """Opens a class, or reads an enum; whether there is something to be read inside."""
         scope, at = self.scopes[-1], self.span[1]
         typedef = "typedef" in reading.words
         deprecated = next((word[11:] for word in reading.words if word.startswith("deprecated:")), None)
         if tail and ("DEPRECATED" in " ".join(tail) or "deprecated" in tail):
-            tail, deprecated = without_deprecation(tail)
+            tail, deprecated = remove_deprecation(tail)
         name = found.name
         if "::" in name or (scope.class_name and self.access == "private"):
             return False  # `struct A::Impl {`: nobody else sees it
-        others = declarators(tail)
+        others = list_declarators(tail)
         if not name and typedef:
             name = next((word for word, stars in others if not stars), "")
             others = [(word, stars) for word, stars in others if word != name]
@@ -507,7 +515,7 @@ class _Reader:
             kind = "alias" if typedef else "field" if scope.class_name else "variable"
             self._add(kind, word, reading.traits, span=(end, resume[0]), type=(name or found.kind) + stars)
         if found.kind == "enum":
-            self._enumerators(name, "scoped" in traits, at, end)
+            self._add_enumerators(name, "scoped" in traits, at, end)
             return False
         if reading.specialised and not name:
             return False
@@ -520,31 +528,31 @@ class _Reader:
         self.scopes.append(_Scope(prefix, class_name, scope.around, scope.internal, None, resume, at))
         return True
 
-    def _enumerators(self, name: str, scoped: bool, at: int, end: int) -> None:
+    def _add_enumerators(self, name: str, scoped: bool, at: int, end: int) -> None:
         scope = self.scopes[-1]
         body = self.code[at + 1 : end]
         if "'" in self.text[at:end] or '"' in body:
-            body = self._restored(at + 1, end, body)
+            body = self._restore_literals(at + 1, end, body)
         prefix = scope.prefix + (name + "::" if scoped and name else "")
         position = at + 1
-        for word, value, deprecated in enumerators(body):
-            offset = self._word(word, position, end)
+        for word, value, deprecated in list_enumerators(body):
+            offset = self._find_word(word, position, end)
             position = offset + len(word)
             self.entities.append(
                 Entity(
                     "enumerator", prefix + word, self.scanned.place(offset)[0], scope.prefix + name if name else "",
                     access=self.access if scope.class_name else "", value=value, deprecated=deprecated,
-                    internal=scope.internal, conditions=self.scanned.segment(offset)[2],
+                    internal=scope.internal, conditions=self.scanned.find_segment(offset)[2],
                 )
             )  # fmt: skip
 
 
 @lru_cache(maxsize=4096)
-def _sorted(traits: frozenset[str]) -> tuple[str, ...]:
+def _sort_traits(traits: frozenset[str]) -> tuple[str, ...]:
     return tuple(sorted(traits))
 
 
-def _partners(code: str, marks: list[int]) -> list[int]:
+def _match_braces(code: str, marks: list[int]) -> list[int]:
     """For every opening brace the number of the mark that closes it, the number of marks where none does."""
     partner = [len(marks)] * len(marks)
     opened: list[int] = []
@@ -557,7 +565,7 @@ def _partners(code: str, marks: list[int]) -> list[int]:
     return partner
 
 
-def _last_closing(tokens: Sequence[str]) -> int:
+def _find_last_closing(tokens: Sequence[str]) -> int:
     for place in range(len(tokens) - 1, -1, -1):
         if tokens[place] == ")":
             return place
@@ -570,11 +578,11 @@ def _is_macro_before_section(tokens: Sequence[str], place: int) -> bool:
         return False
     behind = place + 1
     if behind < len(tokens) and tokens[behind] == "(":
-        behind = closed(tokens, behind)
+        behind = find_closing(tokens, behind)
     return behind < len(tokens) and (tokens[behind] in _ACCESS or word in DECLARES)
 
 
-def names_variables(tail: Sequence[str]) -> bool:
+def declares_variables(tail: Sequence[str]) -> bool:
     """Whether what stands behind the closing brace of a class names variables, and is no new declaration."""
     return not tail or (
         len(tail) < 60
@@ -586,7 +594,7 @@ def names_variables(tail: Sequence[str]) -> bool:
     )
 
 
-def declarators(tail: Sequence[str]) -> list[tuple[str, str]]:
+def list_declarators(tail: Sequence[str]) -> list[tuple[str, str]]:
     """Names behind a closing brace, with the pointers and array bounds they have."""
     found = []
     for piece in split(list(tail)):
@@ -596,18 +604,18 @@ def declarators(tail: Sequence[str]) -> list[tuple[str, str]]:
         while place < len(piece):
             word = piece[place]
             if word in ("__attribute__", "__declspec", "alignas"):
-                place = closed(piece, place + 1) if place + 1 < len(piece) else place + 1
+                place = find_closing(piece, place + 1) if place + 1 < len(piece) else place + 1
                 continue
             if word in ("=", ":", "{"):
                 break
             if word == "[":
-                behind = closed(piece, place)
+                behind = find_closing(piece, place)
                 if name and piece[place + 1 : place + 2] != ["["]:
-                    stars += joined(piece[place:behind])
+                    stars += join_tokens(piece[place:behind])
                 place = behind
                 continue
             if word == "(":
-                place = closed(piece, place)
+                place = find_closing(piece, place)
                 continue
             if word.isidentifier() and word not in ("const", "volatile"):
                 name = name if name else word

@@ -13,17 +13,17 @@ from .cpp_types import (
     BUILTIN,
     CAPITALS,
     DEDUCED,
-    argument,
-    arguments_of,
-    behind_aside,
-    closed,
-    closed_angle,
-    joined,
-    named,
-    parameters_text,
+    cut_name,
+    find_closing,
+    find_closing_angle,
+    find_unit_end,
+    format_parameters,
+    format_type,
+    join_tokens,
+    parse_parameters,
+    read_parameter,
+    skip_aside,
     split,
-    type_text,
-    unit_end,
 )
 
 
@@ -78,7 +78,7 @@ _ACCESS = ("public", "protected", "private")
 _GUARDS = re.compile(r"\w*(?:GUARDED_BY|ATTRIBUTE|REQUIRES|EXCLUDES|TSA|NOEXCEPT|ALIGN|LOCKS?)\w*\Z")
 
 
-def without_deprecation(tokens: list[str]) -> tuple[list[str], str | None]:
+def remove_deprecation(tokens: list[str]) -> tuple[list[str], str | None]:
     """Tokens without the attributes and macros that say `deprecated`, and the message they say it with."""
     kept: list[str] = []
     message: str | None = None
@@ -89,21 +89,21 @@ def without_deprecation(tokens: list[str]) -> tuple[list[str], str | None]:
         behind = 0
         if (token == "[" and tokens[place + 1 : place + 2] == ["["]) or (token in ATTRIBUTE_WORDS and place + 1 < end):
             first = place if token == "[" else place + 1
-            behind = closed(tokens, first)
+            behind = find_closing(tokens, first)
             inner = tokens[first:behind]
             if "deprecated" in inner or "__deprecated__" in inner:
-                message = _message(inner) or message or ""
+                message = _join_literals(inner) or message or ""
                 others = [word for word in inner if word == "nodiscard"]
                 if others:
                     kept += ["[", "[", "nodiscard", "]", "]"]
             else:
                 kept += tokens[place:behind]
-        elif "DEPRECATED" in token and _DEPRECATED.match(token) and not _names(tokens, place):
+        elif "DEPRECATED" in token and _DEPRECATED.match(token) and not _is_declared_name(tokens, place):
             behind = place + 1
             if behind < end and tokens[behind] == "(":
-                behind = closed(tokens, behind)
+                behind = find_closing(tokens, behind)
                 inner = tokens[place + 2 : behind - 1]
-                message = _message(inner) or message or ""
+                message = _join_literals(inner) or message or ""
                 if "(" in inner and not any(word[0] == '"' for word in inner):
                     kept += inner  # DEPRECATED(void f(int))
             else:
@@ -116,7 +116,7 @@ def without_deprecation(tokens: list[str]) -> tuple[list[str], str | None]:
     return kept, message
 
 
-def _names(tokens: Sequence[str], place: int) -> bool:
+def _is_declared_name(tokens: Sequence[str], place: int) -> bool:
     """Whether a word in capitals is what is declared, not a macro."""
     behind = tokens[place + 1] if place + 1 < len(tokens) else ""
     before = tokens[place - 1] if place else ""
@@ -125,11 +125,11 @@ def _names(tokens: Sequence[str], place: int) -> bool:
     return before in ("::", "enum", "struct") or (before in BUILTIN and not behind)
 
 
-def _message(tokens: Sequence[str]) -> str:
+def _join_literals(tokens: Sequence[str]) -> str:
     return "".join(token[1:-1] for token in tokens if token[0] == '"')
 
 
-def head_of(tokens: Sequence[str], class_name: str) -> Head:
+def parse_head(tokens: Sequence[str], class_name: str) -> Head:
     """Reads templates, specifiers, attributes and macros before a declaration."""
     place = 0
     end = len(tokens)
@@ -141,12 +141,12 @@ def head_of(tokens: Sequence[str], class_name: str) -> Head:
     while place < end:
         token = tokens[place]
         if token == "(" and not place:
-            place = closed(tokens, place)  # what is left of a macro
+            place = find_closing(tokens, place)  # what is left of a macro
         elif token in TRAITS:
             traits.add(TRAITS[token])
             place += 1
             if place < end and token == "explicit" and tokens[place] == "(":
-                place = closed(tokens, place)
+                place = find_closing(tokens, place)
             elif token == "extern" and place < end and tokens[place][0] == '"':
                 words.add("linkage")
                 place += 1
@@ -157,24 +157,24 @@ def head_of(tokens: Sequence[str], class_name: str) -> Head:
             if tokens[place + 1 : place + 2] != ["<"]:
                 words.add("instantiation")
                 break
-            behind = closed_angle(tokens, place + 1)
+            behind = find_closing_angle(tokens, place + 1)
             if not behind:
                 break
             inner = tokens[place + 2 : behind - 1]
             if inner:
-                template = (template or ()) + template_parameters(inner)
+                template = (template or ()) + parse_template_parameters(inner)
             else:
                 specialised = True
             place = behind
             if place < end and tokens[place] == "requires":
-                place = _behind_requires(tokens, place + 1)
+                place = _skip_requires(tokens, place + 1)
         elif token == "[" and tokens[place + 1 : place + 2] == ["["]:
-            behind = closed(tokens, place)
+            behind = find_closing(tokens, place)
             if "nodiscard" in tokens[place:behind]:
                 traits.add("nodiscard")
             place = behind
         elif token in ATTRIBUTE_WORDS and place + 1 < end:
-            place = closed(tokens, place + 1)
+            place = find_closing(tokens, place + 1)
         elif (
             place + 1 < end
             and tokens[place + 1] == "("
@@ -184,7 +184,7 @@ def head_of(tokens: Sequence[str], class_name: str) -> Head:
             and token.isidentifier()
             and token != "operator"
         ):
-            behind = closed(tokens, place + 1)
+            behind = find_closing(tokens, place + 1)
             if behind < end and not (
                 (tokens[behind].isidentifier() and tokens[behind] not in _AFTER_FUNCTION)
                 or tokens[behind] in ("~", "::", "[", ";")
@@ -209,13 +209,13 @@ def head_of(tokens: Sequence[str], class_name: str) -> Head:
     return Head(place, template, frozenset(traits), frozenset(words), tuple(macros), specialised)
 
 
-def _behind_requires(tokens: Sequence[str], place: int) -> int:
+def _skip_requires(tokens: Sequence[str], place: int) -> int:
     end = len(tokens)
     while place < end:
         if tokens[place] == "!":
             place += 1
             continue
-        place = closed(tokens, place) if tokens[place] == "(" else max(unit_end(tokens, place), place + 1)
+        place = find_closing(tokens, place) if tokens[place] == "(" else max(find_unit_end(tokens, place), place + 1)
         if place < end and tokens[place] in ("&&", "||"):
             place += 1
             continue
@@ -223,7 +223,7 @@ def _behind_requires(tokens: Sequence[str], place: int) -> int:
     return place
 
 
-def template_parameters(tokens: Sequence[str]) -> tuple[TemplateParameter, ...]:
+def parse_template_parameters(tokens: Sequence[str]) -> tuple[TemplateParameter, ...]:
     """What stands between the angle brackets of `template <...>`."""
     found: list[TemplateParameter] = []
     for piece in split(tokens):
@@ -231,30 +231,30 @@ def template_parameters(tokens: Sequence[str]) -> tuple[TemplateParameter, ...]:
             continue
         first = piece[0]
         if first == "template":
-            behind = closed_angle(piece, 1) if len(piece) > 1 else 0
+            behind = find_closing_angle(piece, 1) if len(piece) > 1 else 0
             rest = piece[behind + 1 :] if behind else []
-            found.append(_type_parameter("template", rest))
+            found.append(_parse_type_parameter("template", rest))
         elif (
             first in ("typename", "class") and not (len(piece) > 2 and piece[2] in ("::", "<")) and piece[1:2] != ["::"]
         ):
-            found.append(_type_parameter("type", piece[1:]))
+            found.append(_parse_type_parameter("type", piece[1:]))
         else:
-            value = argument(piece)
+            value = read_parameter(piece)
             found.append(TemplateParameter("value", value.name, value.type, value.default, value.pack))
     return tuple(found)
 
 
-def _type_parameter(kind: str, rest: list[str]) -> TemplateParameter:
+def _parse_type_parameter(kind: str, rest: list[str]) -> TemplateParameter:
     pack = rest[:1] == ["..."]
     rest = rest[1:] if pack else rest
     name = rest[0] if rest and rest[0].isidentifier() else ""
     default = None
     if "=" in rest:
-        default = type_text(rest[rest.index("=") + 1 :])
+        default = format_type(rest[rest.index("=") + 1 :])
     return TemplateParameter(kind, name, "", default, pack)
 
 
-def class_head(tokens: Sequence[str], place: int) -> ClassHead | None:
+def parse_class_head(tokens: Sequence[str], place: int) -> ClassHead | None:
     """The head of a class, union or enum whose keyword stands at a place; None when it is something else."""
     kind = tokens[place]
     end = len(tokens)
@@ -267,9 +267,9 @@ def class_head(tokens: Sequence[str], place: int) -> ClassHead | None:
     while place < end:
         token = tokens[place]
         if token == "[":
-            place = closed(tokens, place)
+            place = find_closing(tokens, place)
         elif token in ATTRIBUTE_WORDS and place + 1 < end:
-            place = closed(tokens, place + 1)
+            place = find_closing(tokens, place + 1)
         elif token == ":":
             break
         elif token == "final" and units:
@@ -277,9 +277,9 @@ def class_head(tokens: Sequence[str], place: int) -> ClassHead | None:
             place += 1
         elif token == "(" and units and CAPITALS.match(tokens[units[-1][0]]):
             units.pop()  # a macro with arguments
-            place = closed(tokens, place)
+            place = find_closing(tokens, place)
         elif token.isidentifier() or token == "::":
-            behind = unit_end(tokens, place)
+            behind = find_unit_end(tokens, place)
             if behind <= place:
                 return None
             units.append((place, behind))
@@ -297,9 +297,9 @@ def class_head(tokens: Sequence[str], place: int) -> ClassHead | None:
     if place < end:
         rest = tokens[place + 1 :]
         if kind == "enum":
-            type_ = type_text(rest)
+            type_ = format_type(rest)
         else:
-            bases = tuple(_base(piece, kind) for piece in split(rest) if piece)
+            bases = tuple(_parse_base(piece, kind) for piece in split(rest) if piece)
     name = arguments = ""
     if units:
         start, behind = units[-1]
@@ -312,13 +312,13 @@ def class_head(tokens: Sequence[str], place: int) -> ClassHead | None:
                 if depth == 0:
                     opening = index
                     break
-            arguments = ", ".join(type_text(piece) for piece in split(unit[opening + 1 : -1]) if piece)
+            arguments = ", ".join(format_type(piece) for piece in split(unit[opening + 1 : -1]) if piece)
             unit = unit[:opening]
         name = "".join(unit).removeprefix("::")
     return ClassHead(kind, name, bases, frozenset(traits), type_, arguments, place >= end)
 
 
-def _base(tokens: Sequence[str], kind: str) -> Base:
+def _parse_base(tokens: Sequence[str], kind: str) -> Base:
     access = "private" if kind == "class" else "public"
     rest = []
     virtual = False
@@ -329,10 +329,10 @@ def _base(tokens: Sequence[str], kind: str) -> Base:
             virtual = True
         elif token != "...":
             rest.append(token)
-    return Base(type_text(rest), access, virtual)
+    return Base(format_type(rest), access, virtual)
 
 
-def declared(tokens: list[str], head: Head, class_name: str) -> list[Declarator] | None:
+def parse_declarators(tokens: list[str], head: Head, class_name: str) -> list[Declarator] | None:
     """What a declaration declares behind its head; nothing for what is defined elsewhere (`void A::f() {}`). None when
     it is not understood. class_name: of the class it stands in, empty for none."""
     rest = tokens[head.place :]
@@ -349,8 +349,8 @@ def declared(tokens: list[str], head: Head, class_name: str) -> list[Declarator]
         elif token in ("=", ",", ":", "{"):
             break
         elif token == "operator":
-            return _operator(rest, place, head)
-        elif token in ASIDE and (behind := behind_aside(rest, place)) > place:
+            return _parse_operator(rest, place, head)
+        elif token in ASIDE and (behind := skip_aside(rest, place)) > place:
             builtin = builtin or token in DEDUCED
             place = behind
             continue
@@ -359,26 +359,26 @@ def declared(tokens: list[str], head: Head, class_name: str) -> list[Declarator]
                 if token == "::" and not (place + 1 < end and (rest[place + 1].isidentifier())):
                     place += 1
                     continue
-                behind = unit_end(rest, place)
+                behind = find_unit_end(rest, place)
                 if behind > place:
                     units.append((place, behind))
                     place = behind
                     continue
         elif token == "(":
-            behind = closed(rest, place)
+            behind = find_closing(rest, place)
             group = rest[place + 1 : behind - 1]
             last = units[-1] if units and units[-1][1] == place else None
             if last is None:
-                return _grouped(rest, place, behind, head) if units or builtin else None
+                return _parse_grouped(rest, place, behind, head) if units or builtin else None
             if (
                 group
                 and (group[0] in _POINTERS or ("*" in group and "::" in group and group[-1] != ")"))
                 and (len(units) == 1 and not builtin and behind < end and rest[behind] in ("(", "["))
             ):
-                return _grouped(rest, place, behind, head)
-            return _called(rest, place, behind, units, builtin, head, class_name)
+                return _parse_grouped(rest, place, behind, head)
+            return _parse_called(rest, place, behind, units, builtin, head, class_name)
         place += 1
-    return _variables(rest, head)
+    return _parse_variables(rest, head)
 
 
 _PLAIN = frozenset(("const", "volatile", "struct", "class", "union", "enum", "typename", "mutable", "restrict",
@@ -387,14 +387,14 @@ _PLAIN = frozenset(("const", "volatile", "struct", "class", "union", "enum", "ty
 _LATE = frozenset(("static", "inline", "constexpr", "virtual", "friend", "explicit"))
 
 
-def _without_late(tokens: list[str], head: Head) -> tuple[list[str], Head]:
+def _remove_late_specifiers(tokens: list[str], head: Head) -> tuple[list[str], Head]:
     """Tokens without specifiers that stand behind a type, and the head with these."""
     late = head.traits.union(_LATE.intersection(tokens))
     kept = [token for token in tokens if token not in _LATE]
     return (kept, head._replace(traits=late)) if len(kept) < len(tokens) else (tokens, head)
 
 
-def _called(
+def _parse_called(
     rest: list[str], place: int, behind: int, units: list[tuple[int, int]], builtin: bool, head: Head, class_name: str
 ) -> list[Declarator] | None:
     """A name with parentheses behind it."""
@@ -404,9 +404,9 @@ def _called(
     simple = unit[0] if len(unit) == 1 or unit[1:2] == ["<"] else ""
     real = [one for one in units[:-1] if not (one[1] == one[0] + 1 and CAPITALS.match(rest[one[0]]))]
     if class_name and simple == class_name and not builtin and not real:
-        return [_function("constructor", class_name, "", rest, group, behind, head)]
+        return [_make_function("constructor", class_name, "", rest, group, behind, head)]
     if unit[0] == "~" and len(unit) == 2 and class_name:
-        return [_function("destructor", f"~{unit[1]}", "", rest, group, behind, head)]
+        return [_make_function("destructor", f"~{unit[1]}", "", rest, group, behind, head)]
     if "::" in unit:
         return []  # defined elsewhere, or a friend that is declared elsewhere
     if len(units) == 1 and not builtin:
@@ -414,8 +414,8 @@ def _called(
             return []  # a deduction guide
         if behind < len(rest) and (rest[behind].isidentifier() or rest[behind] in ("~", "[")):
             # a macro, and what follows it
-            again = head_of(rest[behind:], class_name)
-            return declared(rest[behind:], again._replace(traits=again.traits | head.traits), class_name)
+            again = parse_head(rest[behind:], class_name)
+            return parse_declarators(rest[behind:], again._replace(traits=again.traits | head.traits), class_name)
         return []
     if len(unit) != 1:
         if unit[1:2] != ["<"]:
@@ -431,18 +431,18 @@ def _called(
         and (len(real) > 1 or (builtin and real) or (_GUARDS.match(name) and (len(real) > 1 or builtin)))
         and not (head.traits & {"virtual"})
     ):
-        return _variables(rest[:start] + rest[behind:], head)  # `int member GUARDED_BY(mutex)`
-    if not class_name and _values(group):
-        return _variables([*list(rest[:place]), "=", "{", *group, "}", *list(rest[behind:])], head)
-    before, head = _without_late(before, head)
+        return _parse_variables(rest[:start] + rest[behind:], head)  # `int member GUARDED_BY(mutex)`
+    if not class_name and _contains_values(group):
+        return _parse_variables([*list(rest[:place]), "=", "{", *group, "}", *list(rest[behind:])], head)
+    before, head = _remove_late_specifiers(before, head)
     if "typedef" in head.words:
-        type_ = named([*before, name])[0]
-        return [Declarator("alias", name, type_ + parameters_text(group))]
+        type_ = cut_name([*before, name])[0]
+        return [Declarator("alias", name, type_ + format_parameters(group))]
     kind = "method" if class_name and "friend" not in head.traits else "function"
-    return [_function(kind, name, named([*before, name])[0], rest, group, behind, head)]
+    return [_make_function(kind, name, cut_name([*before, name])[0], rest, group, behind, head)]
 
 
-def _values(group: Sequence[str]) -> bool:
+def _contains_values(group: Sequence[str]) -> bool:
     """Whether what stands in parentheses are values, not parameters."""
     if not group:
         return False
@@ -459,10 +459,10 @@ def _values(group: Sequence[str]) -> bool:
     )
 
 
-def _function(
+def _make_function(
     kind: str, name: str, type_: str, rest: list[str], group: Sequence[str], behind: int, head: Head
 ) -> Declarator:
-    parameters, variadic = arguments_of(group)
+    parameters, variadic = parse_parameters(group)
     traits = set(head.traits)
     if variadic:
         traits.add("variadic")
@@ -474,14 +474,14 @@ def _function(
             traits.add(token)
         elif token == "noexcept" or token.endswith("_NOEXCEPT"):
             if place + 1 < end and rest[place + 1] == "(":
-                stop = closed(rest, place + 1)
+                stop = find_closing(rest, place + 1)
                 if rest[place + 2 : stop - 1] != ["false"]:
                     traits.add("noexcept")
                 place = stop
                 continue
             traits.add("noexcept")
         elif token == "throw" and place + 1 < end:
-            stop = closed(rest, place + 1)
+            stop = find_closing(rest, place + 1)
             if stop == place + 3:
                 traits.add("noexcept")
             place = stop
@@ -492,12 +492,12 @@ def _function(
             stop = place + 1
             while stop < end and rest[stop] not in ("=", "requires", "override", "final", "try"):
                 if rest[stop] in ("(", "{", "["):
-                    stop = closed(rest, stop)
+                    stop = find_closing(rest, stop)
                 elif rest[stop] == "<":
-                    stop = closed_angle(rest, stop) or stop + 1
+                    stop = find_closing_angle(rest, stop) or stop + 1
                 else:
                     stop += 1
-            type_ = type_text(rest[place + 1 : stop])
+            type_ = format_type(rest[place + 1 : stop])
             place = stop
             continue
         elif token == "=":
@@ -512,7 +512,7 @@ def _function(
         elif token in (":", "try", "requires", "{"):
             break
         elif token == "(" or token == "[":
-            place = closed(rest, place)
+            place = find_closing(rest, place)
             continue
         place += 1
     if "override" in traits or ("final" in traits and kind in ("method", "destructor")):
@@ -520,7 +520,7 @@ def _function(
     return Declarator(kind, name, type_, parameters, frozenset(traits))
 
 
-def _operator(rest: list[str], place: int, head: Head) -> list[Declarator] | None:
+def _parse_operator(rest: list[str], place: int, head: Head) -> list[Declarator] | None:
     """A function whose name begins with `operator`."""
     if place and rest[place - 1] == "::":
         return []
@@ -535,52 +535,52 @@ def _operator(rest: list[str], place: int, head: Head) -> list[Declarator] | Non
         converts = word and rest[stop] not in ("new", "delete", "co_await")
         while stop < end and rest[stop] != "(":
             if converts and rest[stop] == "<":
-                stop = closed_angle(rest, stop) or stop + 1
+                stop = find_closing_angle(rest, stop) or stop + 1
             elif converts and rest[stop] == "decltype":
-                stop = closed(rest, stop + 1)
+                stop = find_closing(rest, stop + 1)
             else:
                 stop += 1
         spelt = rest[place + 1 : stop]
         if not converts and spelt[-1:] == [">"] and "<" in spelt[1:]:
             return []  # an explicit specialisation
-        name = f"operator {type_text(spelt)}" if converts else "operator" + joined(spelt)
+        name = f"operator {format_type(spelt)}" if converts else "operator" + join_tokens(spelt)
         if not converts and word:
-            name = "operator " + joined(spelt)
+            name = "operator " + join_tokens(spelt)
     if stop >= end or rest[stop] != "(":
         return None
-    behind = closed(rest, stop)
+    behind = find_closing(rest, stop)
     group = rest[stop + 1 : behind - 1]
     if converts:
-        return [_function("conversion", name, type_text(rest[place + 1 : stop]), rest, group, behind, head)]
-    before, head = _without_late(rest[:place], head)
-    return [_function("operator", name, named([*before, "x"])[0], rest, group, behind, head)]
+        return [_make_function("conversion", name, format_type(rest[place + 1 : stop]), rest, group, behind, head)]
+    before, head = _remove_late_specifiers(rest[:place], head)
+    return [_make_function("operator", name, cut_name([*before, "x"])[0], rest, group, behind, head)]
 
 
-def _grouped(rest: list[str], place: int, behind: int, head: Head) -> list[Declarator] | None:
+def _parse_grouped(rest: list[str], place: int, behind: int, head: Head) -> list[Declarator] | None:
     """`type (*name)(arguments)`, `type (name)(arguments)`."""
     group = rest[place + 1 : behind - 1]
     if len(group) == 1 and group[0].isidentifier() and behind < len(rest) and rest[behind] == "(":
-        return declared([*rest[:place], group[0], *rest[behind:]], head._replace(place=0), "")
+        return parse_declarators([*rest[:place], group[0], *rest[behind:]], head._replace(place=0), "")
     if "(" in group and group[0] in _POINTERS:
         # a function that gives a pointer to a function or array
         inner = [*rest[:place], "(", group[0], ")", *rest[behind:]]
         opening = group.index("(")
-        stop = closed(group, opening)
+        stop = find_closing(group, opening)
         if opening and group[opening - 1].isidentifier():
             return [
-                _function(
-                    "function", group[opening - 1], named(inner)[0], group, group[opening + 1 : stop - 1], stop, head
+                _make_function(
+                    "function", group[opening - 1], cut_name(inner)[0], group, group[opening + 1 : stop - 1], stop, head
                 )
             ]
         return None
     piece = split(rest, "=")[0] if "=" in rest else rest
-    type_, name = named(piece)
+    type_, name = cut_name(piece)
     if not name:
         return None
     return [Declarator("alias" if "typedef" in head.words else "variable", name, type_, None, head.traits)]
 
 
-def _variables(rest: list[str], head: Head) -> list[Declarator] | None:
+def _parse_variables(rest: list[str], head: Head) -> list[Declarator] | None:
     """`type a, *b = 0, c[3];`"""
     found: list[Declarator] = []
     base: list[str] = []
@@ -591,12 +591,12 @@ def _variables(rest: list[str], head: Head) -> list[Declarator] | None:
                 cut = split(piece, mark)[0] if mark != "{" else piece[: piece.index("{")]
                 if len(cut) < len(piece):
                     if mark != ":":
-                        value = joined(piece[len(cut) + (mark == "=") :])
+                        value = join_tokens(piece[len(cut) + (mark == "=") :])
                     piece = list(cut)
         if number:
             piece = [*base, *piece]
-        piece, own = _without_late(piece, head)
-        type_, name = named(piece)
+        piece, own = _remove_late_specifiers(piece, head)
+        type_, name = cut_name(piece)
         if not name:
             if any(token == "::" for token in piece[-3:]) or not piece:
                 return found

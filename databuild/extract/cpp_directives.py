@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator
 
 from ...impact.facts.condition import Condition
-from ...impact.facts.cpp.lexical import Directive, Scan, blanked, conditional_blocks
+from ...impact.facts.cpp.lexical import Directive, Scan, blank_stretches, list_conditional_blocks
 from ...impact.facts.surface import CppParameter, Entity
-from .cpp_types import arguments_of, tokens_of
+from .cpp_types import parse_parameters, split_tokens
 
 HIDDEN = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'", re.DOTALL)
 """Comments and literals."""
@@ -21,7 +21,7 @@ _WARNS = re.compile(
 )
 
 
-def without_directives(scanned: Scan) -> tuple[str, list[Entity]]:
+def blank_directives(scanned: Scan) -> tuple[str, list[Entity]]:
     """The visible text with its directives blanked, and the macros that it defines. Where #if branches cut through a
     declaration, all but the first are blanked too."""
     visible = scanned.visible
@@ -40,28 +40,28 @@ def without_directives(scanned: Scan) -> tuple[str, list[Entity]]:
             undefined.add(match[2].strip())
         else:
             directives.append((start, end, match[1], match[2].strip()))
-    for branches in conditional_blocks(directives):
+    for branches in list_conditional_blocks(directives):
         if len(branches) > 2 or branches[0][3] == "0":
             gone += _cut(visible, branches)
-    return blanked(visible, sorted(gone)), list(_macros(scanned, defines, undefined))
+    return blank_stretches(visible, sorted(gone)), list(_list_macros(scanned, defines, undefined))
 
 
-def _macros(scanned: Scan, defines: list[tuple[int, int, str]], undefined: set[str]) -> Iterator[Entity]:
+def _list_macros(scanned: Scan, defines: list[tuple[int, int, str]], undefined: set[str]) -> Iterator[Entity]:
     seen: set[tuple[str, tuple[Condition, ...]]] = set()
     for start, end, body in defines:
         match = _DEFINE.match(body)
         if match is None or match[1] in undefined:
             continue
         name = match[1]
-        conditions = scanned.segment(start)[2]
+        conditions = scanned.find_segment(start)[2]
         if (name, conditions) in seen:
             continue
         parameters = None
         value = ""
         if match[2]:
-            parameters = arguments_of(tokens_of(match[2][1:-1].replace("\\\n", " ")))
+            parameters = parse_parameters(split_tokens(match[2][1:-1].replace("\\\n", " ")))
         else:
-            whole = HIDDEN.sub(_kept, scanned.text[start:end])
+            whole = HIDDEN.sub(_keep_literal, scanned.text[start:end])
             found = _DEFINE.match(whole.split("define", 1)[-1])
             rest = found[3].strip() if found else ""
             literal = _LITERAL.match(rest)
@@ -84,7 +84,7 @@ def _is_guard(scanned: Scan, name: str, start: int) -> bool:
     return line.lstrip()[:1] == "#" and name in line
 
 
-def warning_of(text: str) -> str | None:
+def find_warning(text: str) -> str | None:
     """What a header that warns of itself says, None when it does not."""
     if "warning" not in text and "pragma" not in text:
         return None
@@ -98,7 +98,7 @@ def warning_of(text: str) -> str | None:
     return None
 
 
-def _kept(match: re.Match[str]) -> str:
+def _keep_literal(match: re.Match[str]) -> str:
     """Literals stay, comments go."""
     return " " if match[0][0] == "/" else match[0]
 
@@ -108,14 +108,14 @@ def _cut(visible: str, branches: list[Directive]) -> list[tuple[int, int]]:
     bodies = [(branches[number][1], branches[number + 1][0]) for number in range(len(branches) - 1)]
     never = 0 if branches[0][3] == "0" and branches[0][2] == "if" else -1
     if len(bodies) > 1 and any(
-        not _whole(visible[start:end]) for number, (start, end) in enumerate(bodies) if number != never
+        not _is_complete(visible[start:end]) for number, (start, end) in enumerate(bodies) if number != never
     ):
         keep = 1 if never == 0 else 0
         return [body for number, body in enumerate(bodies) if number != keep]
     return [bodies[0]] if never == 0 else []
 
 
-def _whole(body: str) -> bool:
+def _is_complete(body: str) -> bool:
     if body.count("{") != body.count("}") or body.count("(") != body.count(")"):
         return False
     last = ""

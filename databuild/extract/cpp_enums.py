@@ -5,32 +5,32 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from .cpp_declarations import without_deprecation
-from .cpp_types import joined, split, tokens_of
+from .cpp_declarations import remove_deprecation
+from .cpp_types import join_tokens, split, split_tokens
 
 _NUMBER = re.compile(r"(?:0[xX][\da-fA-F]+|\d+)[uUlL]*\Z")
 
 
-def enumerators(body: str) -> Iterator[tuple[str, str, str | None]]:
+def list_enumerators(body: str) -> Iterator[tuple[str, str, str | None]]:
     """Name, value and message of a deprecation of each enumerator in the body of an enum. A value is a number, else the
     expression as it is written, else the last such with what is added: `A`, `A+1`."""
     number: int | None = -1
     last = ""
     steps = 0
-    for piece in split(tokens_of(body)):
+    for piece in split(split_tokens(body)):
         deprecated = None
         while piece and piece[0] == "#":
             piece = piece[1:]
         if any("eprecated" in word or "DEPRECATED" in word for word in piece[1:]):
-            piece, deprecated = without_deprecation(piece)
+            piece, deprecated = remove_deprecation(piece)
         if not piece or not piece[0].isidentifier():
             continue
         steps += 1
         if "=" in piece:
             value = piece[piece.index("=") + 1 :]
-            number = _value(value)
+            number = _evaluate(value)
             if number is None:
-                last = joined(value)
+                last = join_tokens(value)
                 steps = 0
         elif number is not None:
             number += 1
@@ -38,7 +38,7 @@ def enumerators(body: str) -> Iterator[tuple[str, str, str | None]]:
         yield piece[0], shown, deprecated
 
 
-def _value(tokens: Sequence[str]) -> int | None:
+def _evaluate(tokens: Sequence[str]) -> int | None:
     """The number an enumerator is given, where that is told by the text alone."""
     sign = 1
     rest = list(tokens)
@@ -48,18 +48,18 @@ def _value(tokens: Sequence[str]) -> int | None:
         sign = -1 if rest[0] == "-" else 1
         rest = rest[1:]
     if len(rest) == 3 and rest[1] == "<<" and all(_NUMBER.match(rest[place]) for place in (0, 2)):
-        shift = _number(rest[2])
-        return sign * (_number(rest[0]) << shift) if shift < 64 else None
+        shift = _parse_number(rest[2])
+        return sign * (_parse_number(rest[0]) << shift) if shift < 64 else None
     if len(rest) == 1:
         token = rest[0]
         if _NUMBER.match(token):
-            return sign * _number(token)
+            return sign * _parse_number(token)
         if len(token) == 3 and token[0] == "'":
             return sign * ord(token[1])
     return None
 
 
-def _number(token: str) -> int:
+def _parse_number(token: str) -> int:
     token = token.rstrip("uUlL")
     if token[:2] in ("0x", "0X"):
         return int(token, 16)

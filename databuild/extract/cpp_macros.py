@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from .cpp_types import split, tokens_of
+from .cpp_types import split, split_tokens
 
 _SHARED = "using SharedPtr = std::shared_ptr<T>; using ConstSharedPtr = std::shared_ptr<const T>;"
 _MAKE_SHARED = "template<typename... Args> static std::shared_ptr<T> make_shared(Args&&... args);"
@@ -51,7 +51,7 @@ DECLARES: dict[str, tuple[tuple[str, ...], str]] = {
 
 
 @lru_cache(maxsize=1024)
-def expansion(name: str, arguments: tuple[str, ...]) -> list[list[str]]:
+def expand_macro(name: str, arguments: tuple[str, ...]) -> list[list[str]]:
     """The declarations of a known macro, each as tokens."""
     parameters, text = DECLARES[name]
     given = split(list(arguments))
@@ -62,7 +62,7 @@ def expansion(name: str, arguments: tuple[str, ...]) -> list[list[str]]:
     for statement in text.split(";"):
         tokens: list[str] = []
         pending = False
-        for token in tokens_of(statement.replace("##", " \x01 ")):
+        for token in split_tokens(statement.replace("##", " \x01 ")):
             if token == "\x01":
                 pending = True
             elif pending:

@@ -34,12 +34,12 @@ CAPITALS = re.compile(r"_*[A-Z][A-Z0-9_]+\Z")
 """How macros are written, and some types."""
 
 
-def tokens_of(text: str) -> list[str]:
+def split_tokens(text: str) -> list[str]:
     """The tokens of a piece of C++ without comments. Two `>` are two tokens."""
     return TOKEN.findall(text)
 
 
-def closed(tokens: Sequence[str], at: int) -> int:
+def find_closing(tokens: Sequence[str], at: int) -> int:
     """The place behind the bracket that closes the one at a place; the end when none does."""
     depth = 0
     for place in range(at, len(tokens)):
@@ -53,13 +53,13 @@ def closed(tokens: Sequence[str], at: int) -> int:
     return len(tokens)
 
 
-def behind_aside(tokens: Sequence[str], place: int) -> int:
+def skip_aside(tokens: Sequence[str], place: int) -> int:
     """The place behind the thing in brackets that begins with a word of ASIDE; the same place when none follows it."""
     opening = place if tokens[place] == "[" else place + 1
-    return closed(tokens, opening) if opening < len(tokens) else place
+    return find_closing(tokens, opening) if opening < len(tokens) else place
 
 
-def closed_angle(tokens: Sequence[str], at: int) -> int:
+def find_closing_angle(tokens: Sequence[str], at: int) -> int:
     """The place behind the `>` that closes the `<` at a place, 0 when it is no bracket."""
     depth = 0
     place = at
@@ -75,7 +75,7 @@ def closed_angle(tokens: Sequence[str], at: int) -> int:
         elif token == ">=" and depth == 1:
             return 0
         elif token in _OPENING:
-            place = closed(tokens, place)
+            place = find_closing(tokens, place)
             continue
         elif token in _CLOSING or token == ";":
             return 0
@@ -100,9 +100,9 @@ def split(tokens: Sequence[str], mark: str = ",") -> list[list[str]]:
             continue
         behind = 0
         if token in _OPENING:
-            behind = closed(tokens, place)
+            behind = find_closing(tokens, place)
         elif token == "<" and place and _WORD.match(tokens[place - 1]):
-            behind = closed_angle(tokens, place)
+            behind = find_closing_angle(tokens, place)
         if behind:
             current += tokens[place:behind]
             place = behind
@@ -113,7 +113,7 @@ def split(tokens: Sequence[str], mark: str = ",") -> list[list[str]]:
     return pieces
 
 
-def joined(tokens: Sequence[str]) -> str:
+def join_tokens(tokens: Sequence[str]) -> str:
     """Tokens as text, words apart and operators between blanks; the same for however it was spaced."""
     pieces: list[str] = []
     before = ""
@@ -129,15 +129,15 @@ def joined(tokens: Sequence[str]) -> str:
     return "".join(pieces)
 
 
-def type_text(tokens: Sequence[str]) -> str:
+def format_type(tokens: Sequence[str]) -> str:
     """A type in one form: `const` first, builtin types in their shortest usual spelling, no elaborating keywords."""
     if len(tokens) == 1 and tokens[0] not in _BUILTIN_WORDS:
         return tokens[0]
-    return _type_text(tuple(tokens))
+    return _format_type(tuple(tokens))
 
 
 @lru_cache(maxsize=65536)
-def _type_text(tokens: tuple[str, ...]) -> str:
+def _format_type(tokens: tuple[str, ...]) -> str:
     base: list[str] = []
     qualifiers: set[str] = set()
     numbers: list[str] = []
@@ -157,29 +157,29 @@ def _type_text(tokens: tuple[str, ...]) -> str:
         elif token in _BUILTIN_WORDS and not tail:
             numbers.append(token)
         elif token == "<" and base and not tail:
-            behind = closed_angle(tokens, place)
+            behind = find_closing_angle(tokens, place)
             if behind == 0:
                 base.append(token)
             else:
-                base.append("<" + ", ".join(map(type_text, split(tokens[place + 1 : behind - 1]))) + ">")
+                base.append("<" + ", ".join(map(format_type, split(tokens[place + 1 : behind - 1]))) + ">")
                 place = behind
                 continue
         elif token in _POINTERS:
             tail.append(token)
         elif token == "[":
-            behind = closed(tokens, place)
-            tail.append("[" + joined(tokens[place + 1 : behind - 1]) + "]")
+            behind = find_closing(tokens, place)
+            tail.append("[" + join_tokens(tokens[place + 1 : behind - 1]) + "]")
             place = behind
             continue
         elif token == "(":
-            behind = closed(tokens, place)
+            behind = find_closing(tokens, place)
             inner = tokens[place + 1 : behind - 1]
             if base[-1:] == ["decltype"] and not tail:
-                base.append("(" + joined(inner) + ")")
+                base.append("(" + join_tokens(inner) + ")")
             elif inner and (inner[0] in _POINTERS or ("::" in inner and inner[-1] == "*")):
-                tail.append("(" + joined(inner) + ")")
+                tail.append("(" + join_tokens(inner) + ")")
             else:
-                tail.append(parameters_text(inner))
+                tail.append(format_parameters(inner))
             place = behind
             continue
         elif token == "::" and not base and not tail:
@@ -192,20 +192,20 @@ def _type_text(tokens: tuple[str, ...]) -> str:
             base.append(token)
         place += 1
     if numbers:
-        base.append((" " if base else "") + _number(numbers))
+        base.append((" " if base else "") + _normalize_builtin(numbers))
     front = "".join(f"{word} " for word in _QUALIFIERS if word in qualifiers)
     return front + "".join(base) + "".join(tail)
 
 
-def parameters_text(tokens: Sequence[str]) -> str:
+def format_parameters(tokens: Sequence[str]) -> str:
     """What stands in the parentheses of a function type, names of parameters left out."""
     pieces = split(tokens)
     if pieces == [["void"]]:
         return "()"
-    return "(" + ", ".join("..." if piece == ["..."] else argument(piece).type for piece in pieces if piece) + ")"
+    return "(" + ", ".join("..." if piece == ["..."] else read_parameter(piece).type for piece in pieces if piece) + ")"
 
 
-def arguments_of(tokens: Sequence[str]) -> tuple[tuple[CppParameter, ...], bool]:
+def parse_parameters(tokens: Sequence[str]) -> tuple[tuple[CppParameter, ...], bool]:
     """The parameters between two parentheses, and whether `...` ends them."""
     if not tokens or (len(tokens) == 1 and tokens[0] == "void"):
         return (), False
@@ -214,30 +214,30 @@ def arguments_of(tokens: Sequence[str]) -> tuple[tuple[CppParameter, ...], bool]
     last = pieces[-1]
     if last and last[-1] == "..." and (len(last) == 1 or (last[-2] not in ("&", "&&", "*") and len(last) > 2)):
         # `(int a, ...)` and `(int a ...)`
-        variadic = len(last) == 1 or named(last[:-1])[1] != ""
+        variadic = len(last) == 1 or cut_name(last[:-1])[1] != ""
         if variadic:
             pieces[-1] = last[:-1]
-    return tuple(argument(piece) for piece in pieces if piece), variadic
+    return tuple(read_parameter(piece) for piece in pieces if piece), variadic
 
 
-def argument(tokens: Sequence[str]) -> CppParameter:
+def read_parameter(tokens: Sequence[str]) -> CppParameter:
     """A parameter of a function."""
-    return _argument(tuple(tokens))
+    return _parse_parameter(tuple(tokens))
 
 
 @lru_cache(maxsize=65536)
-def _argument(tokens: tuple[str, ...]) -> CppParameter:
+def _parse_parameter(tokens: tuple[str, ...]) -> CppParameter:
     default = None
     if "=" in tokens:
         front = split(tokens, "=")[0]
         if len(front) < len(tokens):
-            default = joined(tokens[len(front) + 1 :])
+            default = join_tokens(tokens[len(front) + 1 :])
             tokens = tuple(front)
-    type_, name = named(tokens)
-    return CppParameter(seen_by_callers(type_), name, default, "..." in tokens and "..." in type_)
+    type_, name = cut_name(tokens)
+    return CppParameter(drop_outer_const(type_), name, default, "..." in tokens and "..." in type_)
 
 
-def seen_by_callers(type_: str) -> str:
+def drop_outer_const(type_: str) -> str:
     """The type of a parameter without the `const` of the parameter itself."""
     if type_.endswith(" const"):
         return type_[:-6]
@@ -246,7 +246,7 @@ def seen_by_callers(type_: str) -> str:
     return type_
 
 
-def unit_end(tokens: Sequence[str], at: int) -> int:
+def find_unit_end(tokens: Sequence[str], at: int) -> int:
     """The place behind a qualified name with its template arguments that starts at a place."""
     place = at
     end = len(tokens)
@@ -260,7 +260,7 @@ def unit_end(tokens: Sequence[str], at: int) -> int:
             return place
         place += 1
         if place < end and tokens[place] == "<":
-            place = closed_angle(tokens, place) or place
+            place = find_closing_angle(tokens, place) or place
             if tokens[place - 1] != ">":
                 return place
         if place + 1 < end and tokens[place] == "::" and (tokens[place + 1].isidentifier() or tokens[place + 1] == "~"):
@@ -270,7 +270,7 @@ def unit_end(tokens: Sequence[str], at: int) -> int:
     return place
 
 
-def named(tokens: Sequence[str]) -> tuple[str, str]:
+def cut_name(tokens: Sequence[str]) -> tuple[str, str]:
     """The type and the name (empty for none) of `type name`, as parameters and members of types have them."""
     units: list[tuple[int, int]] = []
     dropped: list[tuple[int, int]] = []
@@ -284,7 +284,7 @@ def named(tokens: Sequence[str]) -> tuple[str, str]:
             builtin = True
         elif token in _NO_UNITS:
             pass
-        elif token in ASIDE and (behind := behind_aside(tokens, place)) > place:
+        elif token in ASIDE and (behind := skip_aside(tokens, place)) > place:
             if token in DEDUCED:
                 builtin = True
             elif token != "[" or (place + 1 < end and tokens[place + 1] == "["):
@@ -292,26 +292,26 @@ def named(tokens: Sequence[str]) -> tuple[str, str]:
             place = behind
             continue
         elif token == "(":
-            behind = closed(tokens, place)
+            behind = find_closing(tokens, place)
             group = tokens[place + 1 : behind - 1]
             if (
                 (units or builtin)
                 and group
                 and (group[0] in _POINTERS or (len(group) > 2 and "::" in group and "*" in group))
             ):
-                name, operators = _within_group(group)
-                front = type_text(_typed(tokens[:place], units, builtin, dropped))
+                name, operators = _split_group(group)
+                front = format_type(_remove_macros(tokens[:place], units, builtin, dropped))
                 rest = tokens[behind:]
                 if rest[:1] == ("(",) or rest[:1] == ["("]:
-                    inner_end = closed(rest, 0)
-                    return f"{front}({operators}){parameters_text(rest[1 : inner_end - 1])}", name
-                return f"{front}({operators}){joined(rest)}", name
+                    inner_end = find_closing(rest, 0)
+                    return f"{front}({operators}){format_parameters(rest[1 : inner_end - 1])}", name
+                return f"{front}({operators}){join_tokens(rest)}", name
             if units and behind < end and tokens[behind].isidentifier():
                 dropped.append((units.pop()[0], behind))  # a macro with arguments
             place = behind
             continue
         elif token.isidentifier() or token == "::":
-            behind = unit_end(tokens, place)
+            behind = find_unit_end(tokens, place)
             if behind > place:
                 units.append((place, behind))
                 place = behind
@@ -323,15 +323,15 @@ def named(tokens: Sequence[str]) -> tuple[str, str]:
             name_at = start
             units.pop()
     if name_at < 0:
-        return type_text(_typed(tokens, units, builtin, dropped)), ""
+        return format_type(_remove_macros(tokens, units, builtin, dropped)), ""
     rest = list(tokens[name_at + 1 :])
     if rest[:1] == [":"]:
         rest = []
-    typed = _typed(tokens[:name_at], units, builtin, dropped)
-    return type_text([*typed, *rest]) if rest else type_text(typed), tokens[name_at]
+    typed = _remove_macros(tokens[:name_at], units, builtin, dropped)
+    return format_type([*typed, *rest]) if rest else format_type(typed), tokens[name_at]
 
 
-def _typed(
+def _remove_macros(
     tokens: Sequence[str], units: Sequence[tuple[int, int]], builtin: bool, dropped: Sequence[tuple[int, int]]
 ) -> Sequence[str]:
     """The tokens of a type without macros: a type has one name, or builtin words."""
@@ -346,16 +346,16 @@ def _typed(
     return [token for place, token in enumerate(tokens) if place not in away]
 
 
-def _within_group(group: Sequence[str]) -> tuple[str, str]:
+def _split_group(group: Sequence[str]) -> tuple[str, str]:
     """The name in `(*name)`, `(&name)[3]`, `(Class::*name)`, and what is left without it."""
     place = max(index for index, token in enumerate(group) if token in _POINTERS) + 1
     rest = [token for token in group[place:] if token not in _QUALIFIERS]
     if rest and rest[0].isidentifier():
-        return rest[0], joined(group[:place])
-    return "", joined(group[:place])
+        return rest[0], join_tokens(group[:place])
+    return "", join_tokens(group[:place])
 
 
-def _number(words: list[str]) -> str:
+def _normalize_builtin(words: list[str]) -> str:
     if "char" in words:
         sign = "unsigned " if "unsigned" in words else "signed " if "signed" in words else ""
         return sign + "char"

@@ -23,8 +23,8 @@ from ...impact.facts.cpp.lexical import scan
 from ...impact.facts.place import Problem
 from ...impact.facts.python.constants import Constants
 from ...impact.facts.python.source import read
-from ...impact.facts.usage import argument_spans
-from ...impact.targets.parameters import last_part
+from ...impact.facts.usage import find_argument_spans
+from ...impact.targets.parameters import find_last_part
 
 
 class DeclaredParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -55,8 +55,8 @@ def kind_of(language: str) -> str:
 
 def extract(data: bytes, language: str) -> ParametersFile:
     """What a file declares. language: one of LIMITS. Raises nothing that kinds.extract() does not contain."""
-    readers = {"cpp": _in_cpp, "python": _in_python, "cfg": _in_cfg, "yaml": _in_yaml}
-    mentioned = _mentioned(data) if language in ("cpp", "python") else ()
+    readers = {"cpp": _list_in_cpp, "python": _list_in_python, "cfg": _list_in_cfg, "yaml": _list_in_yaml}
+    mentioned = _list_mentioned_names(data) if language in ("cpp", "python") else ()
     problems: tuple[Problem, ...] = ()
     if language in ("python", "cfg"):
         source = read(data)
@@ -67,14 +67,14 @@ def extract(data: bytes, language: str) -> ParametersFile:
 _TEXT = re.compile(rb"""["']([A-Za-z_~/.][\w./]{0,80})["']""")
 
 
-def _mentioned(data: bytes) -> tuple[str, ...]:
+def _list_mentioned_names(data: bytes) -> tuple[str, ...]:
     """The last parts of all texts that could be, or end, the name of a parameter."""
-    return tuple(sorted({last_part(text.decode("ascii").rstrip("./")) for text in _TEXT.findall(data)} - {""}))
+    return tuple(sorted({find_last_part(text.decode("ascii").rstrip("./")) for text in _TEXT.findall(data)} - {""}))
 
 
 def mentions(mentioned: Collection[str], name: str) -> bool:
     """Whether one of the texts of ParametersFile.mentioned may be, begin or end a parameter's name."""
-    last = last_part(name)
+    last = find_last_part(name)
     return last in mentioned or any(
         (one[0] == "_" and last.endswith(one)) or (one[-1] == "_" and last.startswith(one)) for one in mentioned
     )
@@ -98,28 +98,28 @@ _SHOWN = 60
 _LONGEST = 10_000
 
 
-def _in_cpp(data: bytes) -> Iterator[DeclaredParameter]:
+def _list_in_cpp(data: bytes) -> Iterator[DeclaredParameter]:
     if b"declare" not in data:
         return
     scanned = scan(data)
     for call in _CALL.finditer(scanned.visible):
         # Where they end is told by the text without literals and comments; they are read as they are written.
-        spans, _ = argument_spans(scanned.visible, call.end() - 1) or ((), 0)
+        spans, _ = find_argument_spans(scanned.visible, call.end() - 1) or ((), 0)
         arguments = [scanned.text[begins:ends] for begins, ends in spans]
         if call[1].endswith("_parameters"):
             space = _NAME.match(arguments[0]) if arguments else None
             for name, value in _PAIR.findall(arguments[1]) if len(arguments) > 1 else ():
-                yield DeclaredParameter(f"{space[1]}.{name}" if space else name, _cpp_value(value))
+                yield DeclaredParameter(f"{space[1]}.{name}" if space else name, _normalize(value))
             continue
         for place, text in enumerate(arguments[:2]):
             whole, last = _NAME.match(text), _LAST_NAME.match(text)
             if whole or last:
                 name = whole[1] if whole else f"*.{last[1]}" if last else ""
-                yield DeclaredParameter(name, _cpp_value(arguments[place + 1]) if place + 1 < len(arguments) else None)
+                yield DeclaredParameter(name, _normalize(arguments[place + 1]) if place + 1 < len(arguments) else None)
                 break
 
 
-def _cpp_value(text: str) -> str | None:
+def _normalize(text: str) -> str | None:
     value = " ".join(text.split())
     if len(value) > _LONGEST:
         return "?"
@@ -128,10 +128,10 @@ def _cpp_value(text: str) -> str | None:
     if not value or _NO_DEFAULT.match(value):
         return None
     value = _VECTOR.sub("", value.replace("'", ""))
-    return _short(_number(value)) if _PLAIN.match(value) else "?"
+    return _shorten(_normalize_number(value)) if _PLAIN.match(value) else "?"
 
 
-def _number(value: str) -> str:
+def _normalize_number(value: str) -> str:
     """A real number as Python writes it; anything else as it is."""
     try:
         return str(float(value.rstrip("fF"))) if "." in value and value[0] not in '"{' else value
@@ -139,15 +139,15 @@ def _number(value: str) -> str:
         return value
 
 
-def _short(value: str) -> str:
+def _shorten(value: str) -> str:
     return value if len(value) <= _SHOWN else "?"
 
 
-def _in_python(data: bytes) -> Iterator[DeclaredParameter]:
+def _list_in_python(data: bytes) -> Iterator[DeclaredParameter]:
     tree = read(data).tree if b"declare" in data else None
     if tree is None:
         return
-    constants = module_constants(tree)
+    constants = find_module_constants(tree)
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
             continue
@@ -157,18 +157,18 @@ def _in_python(data: bytes) -> Iterator[DeclaredParameter]:
         if node.func.attr.endswith("_parameters"):
             space, listed = [*node.args, None, None][:2]
             space, listed = space or given.get("namespace"), listed or given.get("parameters")
-            told = constants.value(space) if space is not None else None
+            told = constants.find_value(space) if space is not None else None
             start = f"{told}." if isinstance(told, str) and told else ""
             for item in listed.elts if isinstance(listed, (ast.List, ast.Tuple)) else ():
                 if isinstance(item, (ast.Tuple, ast.List)) and item.elts:
                     default = item.elts[1] if len(item.elts) > 1 else None
-                    yield from _python_parameter(item.elts[0], default, constants, start)
+                    yield from _read_python_parameter(item.elts[0], default, constants, start)
             continue
         name = node.args[0] if node.args else given.get("name")
-        yield from _python_parameter(name, node.args[1] if len(node.args) > 1 else given.get("value"), constants)
+        yield from _read_python_parameter(name, node.args[1] if len(node.args) > 1 else given.get("value"), constants)
 
 
-def module_constants(tree: ast.Module) -> Constants:
+def find_module_constants(tree: ast.Module) -> Constants:
     """The names that the module itself binds and nothing in it binds again, so that they mean the same everywhere."""
     bound = Counter(
         node.id if isinstance(node, ast.Name) else node.arg
@@ -184,63 +184,63 @@ def module_constants(tree: ast.Module) -> Constants:
         else:
             continue
         if isinstance(target, ast.Name) and bound[target.id] == 1 and statement.value is not None:
-            constants.assign(target, constants.value(statement.value))
+            constants.assign(target, constants.find_value(statement.value))
     return constants
 
 
-def _python_parameter(
+def _read_python_parameter(
     name: ast.expr | None, default: ast.expr | None, constants: Constants, start: str = ""
 ) -> Iterator[DeclaredParameter]:
-    told = constants.value(name) if name is not None else None
+    told = constants.find_value(name) if name is not None else None
     if isinstance(told, str):
-        yield DeclaredParameter(start + told, _python_value(default, constants))
+        yield DeclaredParameter(start + told, _read_python_value(default, constants))
         return
     last = name.values[-1] if isinstance(name, ast.JoinedStr) and name.values else None
     last = name.right if isinstance(name, ast.BinOp) else last
     if isinstance(last, ast.Constant) and isinstance(last.value, str) and last.value.strip("."):
-        yield DeclaredParameter(f"*.{last.value.lstrip('.')}", _python_value(default, constants))
+        yield DeclaredParameter(f"*.{last.value.lstrip('.')}", _read_python_value(default, constants))
 
 
-def _python_value(node: ast.expr | None, constants: Constants) -> str | None:
+def _read_python_value(node: ast.expr | None, constants: Constants) -> str | None:
     if node is None or (isinstance(node, ast.Attribute) and "Parameter" in ast.unparse(node)):
         return None  # a type
     try:
-        return _written(ast.literal_eval(node))
+        return _format_value(ast.literal_eval(node))
     except (ValueError, TypeError, SyntaxError, MemoryError):
-        told = constants.value(node)
-        return _written(told) if isinstance(told, (str, bool, int, float)) else "?"
+        told = constants.find_value(node)
+        return _format_value(told) if isinstance(told, (str, bool, int, float)) else "?"
 
 
-def _written(value: Any) -> str:
+def _format_value(value: Any) -> str:
     """A value in the words of C++, as both languages may declare the same."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return _short(f'"{value}"')
+        return _shorten(f'"{value}"')
     if isinstance(value, (list, tuple)):
-        return _short("{" + ", ".join(map(_written, value)) + "}")
-    return _short(str(value))
+        return _shorten("{" + ", ".join(map(_format_value, value)) + "}")
+    return _shorten(str(value))
 
 
-def _in_cfg(data: bytes) -> Iterator[DeclaredParameter]:
+def _list_in_cfg(data: bytes) -> Iterator[DeclaredParameter]:
     tree = read(data).tree
-    constants = module_constants(tree) if tree is not None else Constants()
+    constants = find_module_constants(tree) if tree is not None else Constants()
     for node in ast.walk(tree) if tree is not None else ():
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "add":
             given = {keyword.arg: keyword.value for keyword in node.keywords}
             name = node.args[0] if node.args else given.get("name")
             if len(node.args) + len(node.keywords) > 2 and isinstance(name, ast.Constant):
                 default = node.args[4] if len(node.args) > 4 else given.get("default")
-                yield from _python_parameter(name, default, constants)
+                yield from _read_python_parameter(name, default, constants)
 
 
-def _in_yaml(data: bytes) -> Iterator[DeclaredParameter]:
+def _list_in_yaml(data: bytes) -> Iterator[DeclaredParameter]:
     whole = load_yaml(data)
     for each in whole.values() if isinstance(whole, Mapping) else ():
-        yield from _of_library(each, "")
+        yield from _list_in_library(each, "")
 
 
-def _of_library(node: Any, start: str) -> Iterator[DeclaredParameter]:
+def _list_in_library(node: Any, start: str) -> Iterator[DeclaredParameter]:
     """Parameters of generate_parameter_library: what has a `type` is one, all else is a group."""
     for name, inner in node.items() if isinstance(node, Mapping) else ():
         if not isinstance(inner, Mapping):
@@ -248,6 +248,6 @@ def _of_library(node: Any, start: str) -> Iterator[DeclaredParameter]:
         path = f"{start}{'*' if str(name).startswith('__map_') else name}"
         if isinstance(inner.get("type"), str):
             default = inner.get("default_value")
-            yield DeclaredParameter(path, None if default is None else _written(default))
+            yield DeclaredParameter(path, None if default is None else _format_value(default))
         else:
-            yield from _of_library(inner, f"{path}.")
+            yield from _list_in_library(inner, f"{path}.")

@@ -11,8 +11,8 @@ from ...impact.facts.condition import Condition
 from ...impact.facts.place import Problem
 from ...impact.facts.python.reader import EXCEPT, IMPORT_ERRORS, TRY
 from ...impact.facts.python.source import read
-from ...impact.facts.python.surface import LATE, Bound, ModuleSurface, Taken, even_source, parameters_of
-from ...impact.facts.python.text import caught_by, dotted
+from ...impact.facts.python.surface import LATE, Bound, ModuleSurface, Taken, even_source, make_parameters
+from ...impact.facts.python.text import format_dotted, list_caught_exceptions
 
 LONGEST = 80
 _WARNINGS = frozenset(("DeprecationWarning", "PendingDeprecationWarning", "FutureWarning"))
@@ -38,7 +38,7 @@ def extract(data: bytes) -> ModuleSurface:
         return ModuleSurface((), (), parsed=False, problems=problems)
     reader = _Module()
     try:
-        reader.block(source.tree.body, "", ())
+        reader.visit_block(source.tree.body, "", ())
     except RecursionError:
         return ModuleSurface((), (), parsed=False, problems=(Problem(1, "nested too deeply"),))
     everything = None if reader.all is None else tuple(dict.fromkeys(reader.all))
@@ -48,7 +48,7 @@ def extract(data: bytes) -> ModuleSurface:
         everything,
         reader.all_open,
         tuple(dict.fromkeys(reader.open)),
-        _warned(source.tree.body),
+        _find_warning(source.tree.body),
         problems=source.problems,
     )
 
@@ -64,21 +64,21 @@ class _Module:
         self.open: list[tuple[str, str]] = []
         self.modules: set[str] = set()  # names that stand for an entry of sys.modules
 
-    def block(self, body: Iterable[ast.stmt], scope: str, conditions: tuple[Condition, ...]) -> None:
+    def visit_block(self, body: Iterable[ast.stmt], scope: str, conditions: tuple[Condition, ...]) -> None:
         """Statements of the module or of a class body. scope: the class, empty for the module."""
         for node in body:
             if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
-                self.function(node, scope, conditions)
+                self.add_function(node, scope, conditions)
             elif isinstance(node, ast.ClassDef):
-                self.class_(node, scope, conditions)
+                self.add_class(node, scope, conditions)
             elif isinstance(node, ast.Assign):
                 for target in node.targets:
-                    self.assigned(target, node.value, "", scope, conditions)
+                    self.bind_target(target, node.value, "", scope, conditions)
             elif isinstance(node, ast.AnnAssign):
                 if node.value is not None or scope:  # `x: int` binds nothing in a module
-                    self.assigned(node.target, node.value, even_source(node.annotation), scope, conditions)
+                    self.bind_target(node.target, node.value, even_source(node.annotation), scope, conditions)
             elif isinstance(node, ast.AugAssign):
-                self.added(node, scope)
+                self.extend_exports(node, scope)
             elif isinstance(node, ast.Import):
                 for alias in node.names:
                     name = alias.asname or alias.name.partition(".")[0]
@@ -88,54 +88,54 @@ class _Module:
                     name, module = alias.asname or alias.name, node.module or ""
                     self.imports.append(Taken(name, module, node.level, alias.name, node.lineno, scope, conditions))
             elif isinstance(node, ast.Delete):
-                self.deleted(node, scope)
+                self.remove_deleted(node, scope)
             elif isinstance(node, ast.Expr):
-                self.expression(node.value, scope)
+                self.visit_call_statement(node.value, scope)
             else:
-                self.nested(node, scope, conditions)
+                self.visit_nested(node, scope, conditions)
 
-    def nested(self, node: ast.stmt, scope: str, conditions: tuple[Condition, ...]) -> None:
+    def visit_nested(self, node: ast.stmt, scope: str, conditions: tuple[Condition, ...]) -> None:
         """Statements that hold others."""
         if isinstance(node, ast.If):
-            self.choice(node, scope, conditions)
+            self.visit_choice(node, scope, conditions)
         elif isinstance(node, ast.Try) or node.__class__.__name__ == "TryStar":
-            self.attempt(node, scope, conditions)
+            self.visit_try(node, scope, conditions)
         elif isinstance(node, (ast.With, ast.AsyncWith)):
             for item in node.items:
                 if item.optional_vars is not None:
-                    self.assigned(item.optional_vars, None, "", scope, conditions)
-            hides = any(_dotted(item.context_expr).endswith("suppress") for item in node.items)
-            self.block(node.body, scope, (*conditions, TRY) if hides else conditions)
+                    self.bind_target(item.optional_vars, None, "", scope, conditions)
+            hides = any(_format_dotted(item.context_expr).endswith("suppress") for item in node.items)
+            self.visit_block(node.body, scope, (*conditions, TRY) if hides else conditions)
         elif isinstance(node, (ast.For, ast.AsyncFor, ast.While)):
             if not isinstance(node, ast.While):
-                self.assigned(node.target, None, "", scope, conditions)
-            self.block([*node.body, *node.orelse], scope, conditions)
+                self.bind_target(node.target, None, "", scope, conditions)
+            self.visit_block([*node.body, *node.orelse], scope, conditions)
         elif isinstance(node, ast.Match):
             for case in node.cases:
-                self.block(case.body, scope, (*conditions, Condition("python", "match")))
+                self.visit_block(case.body, scope, (*conditions, Condition("python", "match")))
         elif node.__class__.__name__ == "TypeAlias":
             target = getattr(node, "name", None)
             if target is not None:
-                self.assigned(target, None, "", scope, conditions)
+                self.bind_target(target, None, "", scope, conditions)
 
-    def choice(self, node: ast.If, scope: str, conditions: tuple[Condition, ...]) -> None:
+    def visit_choice(self, node: ast.If, scope: str, conditions: tuple[Condition, ...]) -> None:
         test = even_source(node.test)
         if test == "__name__ == '__main__'":
             return
-        self.block(node.body, scope, (*conditions, Condition("python", test)))
-        self.block(node.orelse, scope, (*conditions, Condition("python", test, True)))
+        self.visit_block(node.body, scope, (*conditions, Condition("python", test)))
+        self.visit_block(node.orelse, scope, (*conditions, Condition("python", test, True)))
 
-    def attempt(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
+    def visit_try(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
         """try: with an except that covers ImportError, what stands in it may be missing, as may the other branch."""
-        guarded = not caught_by(node.handlers).isdisjoint(IMPORT_ERRORS)
-        self.block(node.body, scope, (*conditions, TRY) if guarded else conditions)
+        guarded = not list_caught_exceptions(node.handlers).isdisjoint(IMPORT_ERRORS)
+        self.visit_block(node.body, scope, (*conditions, TRY) if guarded else conditions)
         for handler in node.handlers:
-            self.block(handler.body, scope, (*conditions, EXCEPT))
-        self.block(node.orelse, scope, (*conditions, TRY) if guarded else conditions)
-        self.block(node.finalbody, scope, conditions)
+            self.visit_block(handler.body, scope, (*conditions, EXCEPT))
+        self.visit_block(node.orelse, scope, (*conditions, TRY) if guarded else conditions)
+        self.visit_block(node.finalbody, scope, conditions)
 
-    def function(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
-        decorators = tuple(_dotted(decorator) for decorator in node.decorator_list)
+    def add_function(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
+        decorators = tuple(_format_dotted(decorator) for decorator in node.decorator_list)
         last = {decorator.rpartition(".")[2] for decorator in decorators}
         if last & {"setter", "deleter", "getter"} and scope:
             return  # of a property that is there already
@@ -150,7 +150,7 @@ class _Module:
                 kind = "classmethod"
         if "overload" in last:
             conditions = (*conditions, Condition("python", "overload"))
-        given = tuple(parameters_of(node.args))
+        given = tuple(make_parameters(node.args))
         if scope and kind != "staticmethod" and given and given[0].kind in ("positional", "normal"):
             given = given[1:]
         name = f"{scope}.{node.name}" if scope else node.name
@@ -159,16 +159,16 @@ class _Module:
             Bound(
                 name, kind, node.lineno, () if kind == "property" else given, returns,
                 decorators=tuple(name for name in decorators if name),
-                deprecated=_deprecated(node.decorator_list) or _warned(node.body), conditions=conditions,
+                deprecated=_find_deprecation(node.decorator_list) or _find_warning(node.body), conditions=conditions,
             )
         )  # fmt: skip
         if node.name == "__getattr__":
             self.open.append((scope, "__getattr__"))
         elif scope and node.name == "__getattribute__":
             self.open.append((scope, "__getattribute__"))
-        self.inside(node, scope if kind != "staticmethod" else "", conditions)
+        self.visit_function_body(node, scope if kind != "staticmethod" else "", conditions)
 
-    def inside(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
+    def visit_function_body(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
         """What a function binds outside of itself: attributes of `self`, names that it declares global."""
         first = [*node.args.posonlyargs, *node.args.args][:1]
         me = first[0].arg if first and scope else ""
@@ -181,93 +181,93 @@ class _Module:
                 outside.update(at.names)
             elif isinstance(at, (ast.Assign, ast.AnnAssign, ast.AugAssign)):
                 annotation = even_source(at.annotation) if isinstance(at, ast.AnnAssign) else ""
-                of_module = isinstance(at.value, ast.Subscript) and _dotted(at.value.value) == "sys.modules"
-                for target in _flat(at.targets if isinstance(at, ast.Assign) else [at.target]):
-                    if isinstance(target, ast.Attribute) and me and _dotted(target.value) == me:
+                of_module = isinstance(at.value, ast.Subscript) and _format_dotted(at.value.value) == "sys.modules"
+                for target in _flatten_targets(at.targets if isinstance(at, ast.Assign) else [at.target]):
+                    if isinstance(target, ast.Attribute) and me and _format_dotted(target.value) == me:
                         name = f"{scope}.{target.attr}"
                         if name not in known:
                             known.add(name)
                             self.names.append(Bound(name, "instance", at.lineno, (), annotation, conditions=conditions))
                     elif isinstance(target, ast.Subscript):
-                        self.subscript(target, "")
+                        self.bind_subscript(target, "")
                     elif isinstance(target, ast.Name) and of_module:
                         self.modules.add(target.id)
                     elif isinstance(target, ast.Name) and target.id in outside:
                         late = (*conditions, LATE)
                         self.names.append(Bound(target.id, "attribute", at.lineno, conditions=late))
             elif isinstance(at, ast.Call):
-                self.late_call(at, scope, me)
+                self.visit_late_call(at, scope, me)
             if isinstance(at, (ast.expr, ast.ClassDef)) and not isinstance(at, ast.Call):
                 continue
             stack.extend(child for child in ast.iter_child_nodes(at) if isinstance(child, _INSIDE))
 
-    def class_(self, node: ast.ClassDef, scope: str, conditions: tuple[Condition, ...]) -> None:
+    def add_class(self, node: ast.ClassDef, scope: str, conditions: tuple[Condition, ...]) -> None:
         name = f"{scope}.{node.name}" if scope else node.name
-        decorators = tuple(_dotted(decorator) for decorator in node.decorator_list)
-        metaclass = [_dotted(keyword.value) for keyword in node.keywords if keyword.arg == "metaclass"]
+        decorators = tuple(_format_dotted(decorator) for decorator in node.decorator_list)
+        metaclass = [_format_dotted(keyword.value) for keyword in node.keywords if keyword.arg == "metaclass"]
         place = len(self.names)
         bases = tuple(even_source(base) for base in node.bases)
         self.names.append(
             Bound(
                 name, "class", node.lineno, bases=bases, decorators=tuple(d for d in decorators if d),
-                deprecated=_deprecated(node.decorator_list), conditions=conditions,
+                deprecated=_find_deprecation(node.decorator_list), conditions=conditions,
             )
         )  # fmt: skip
         for meta in metaclass:
             if meta.rpartition(".")[2] not in ("ABCMeta", "EnumMeta", "type"):
                 self.open.append((name, f"metaclass {meta}"))
-        self.block(node.body, name, ())
+        self.visit_block(node.body, name, ())
         made = [bound.deprecated for bound in self.names[place:] if bound.name == f"{name}.__init__"]
         if any(made) and not self.names[place].deprecated:
             deprecated = next(filter(None, made))
             self.names[place] = msgspec.structs.replace(self.names[place], deprecated=deprecated)
 
-    def assigned(
+    def bind_target(
         self, target: ast.expr, value: ast.expr | None, annotation: str, scope: str, conditions: tuple[Condition, ...]
     ) -> None:
         if isinstance(target, ast.Name):
             if target.id == "__all__" and not scope:
                 self.all = []
-                self.all_from(value)
+                self.add_exports(value)
                 return
             name = f"{scope}.{target.id}" if scope else target.id
-            text = _literal(value)
-            if isinstance(value, ast.Subscript) and _dotted(value.value) == "sys.modules":
+            text = _format_literal(value)
+            if isinstance(value, ast.Subscript) and _format_dotted(value.value) == "sys.modules":
                 self.modules.add(target.id)
             self.names.append(Bound(name, "attribute", target.lineno, (), annotation, text, conditions=conditions))
             if value is not None:
-                self.expression(value, scope)
+                self.visit_call_statement(value, scope)
         elif isinstance(target, (ast.Tuple, ast.List)):
             parts: list[ast.expr | None] = [None] * len(target.elts)
             if isinstance(value, (ast.Tuple, ast.List)) and len(value.elts) == len(target.elts):
                 parts = list(value.elts)
             for element, part in zip(target.elts, parts, strict=True):
-                self.assigned(element, part, "", scope, conditions)
+                self.bind_target(element, part, "", scope, conditions)
         elif isinstance(target, ast.Starred):
-            self.assigned(target.value, None, "", scope, conditions)
+            self.bind_target(target.value, None, "", scope, conditions)
         elif isinstance(target, ast.Subscript):
-            self.subscript(target, scope)
+            self.bind_subscript(target, scope)
         elif isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name) and not scope:
             # `Class.name = value` beside the class
             name = f"{target.value.id}.{target.attr}"
             if self.is_class(target.value.id):
-                self.names.append(Bound(name, "attribute", target.lineno, (), "", _literal(value),
+                self.names.append(Bound(name, "attribute", target.lineno, (), "", _format_literal(value),
                                         conditions=conditions))  # fmt: skip
 
-    def subscript(self, target: ast.Subscript, scope: str) -> None:
+    def bind_subscript(self, target: ast.Subscript, scope: str) -> None:
         """`globals()[name] = ...` and `sys.modules[name] = ...`."""
         holder = target.value
-        if isinstance(holder, ast.Call) and _dotted(holder.func) in _NAMESPACES:
+        if isinstance(holder, ast.Call) and _format_dotted(holder.func) in _NAMESPACES:
             if isinstance(target.slice, ast.Constant) and isinstance(target.slice.value, str):
                 name = f"{scope}.{target.slice.value}" if scope else target.slice.value
                 self.names.append(Bound(name, "attribute", target.lineno))
             else:
-                self.open.append((scope, f"{_dotted(holder.func)}()[...]"))
-        elif _dotted(holder) == "sys.modules":
+                self.open.append((scope, f"{_format_dotted(holder.func)}()[...]"))
+        elif _format_dotted(holder) == "sys.modules":
             self.open.append((scope, "sys.modules[...]"))
 
-    def deleted(self, node: ast.Delete, scope: str) -> None:
-        for target in _flat(node.targets):
+    def remove_deleted(self, node: ast.Delete, scope: str) -> None:
+        for target in _flatten_targets(node.targets):
             if isinstance(target, ast.Name):
                 name = f"{scope}.{target.id}" if scope else target.id
                 self.names = [b for b in self.names if b.name != name and not b.name.startswith(f"{name}.")]
@@ -275,39 +275,39 @@ class _Module:
 
     # __all__, and what puts names where no reader sees them
 
-    def added(self, node: ast.AugAssign, scope: str) -> None:
+    def extend_exports(self, node: ast.AugAssign, scope: str) -> None:
         if isinstance(node.target, ast.Name) and node.target.id == "__all__" and not scope:
             self.all = self.all if self.all is not None else []
-            self.all_from(node.value)
+            self.add_exports(node.value)
 
-    def all_from(self, value: ast.expr | None) -> None:
+    def add_exports(self, value: ast.expr | None) -> None:
         assert self.all is not None
         if isinstance(value, (ast.List, ast.Tuple, ast.Set)):
             for element in value.elts:
                 if isinstance(element, ast.Constant) and isinstance(element.value, str):
                     self.all.append(element.value)
                 elif isinstance(element, ast.Starred):
-                    self.all_from(element.value)
+                    self.add_exports(element.value)
                 else:
                     self.all_open = True
         elif isinstance(value, ast.BinOp) and isinstance(value.op, ast.Add):
-            self.all_from(value.left)
-            self.all_from(value.right)
+            self.add_exports(value.left)
+            self.add_exports(value.right)
         elif isinstance(value, ast.Attribute) and value.attr == "__all__":
-            self.all.append(f"+{_dotted(value.value)}")
+            self.all.append(f"+{_format_dotted(value.value)}")
         elif not (isinstance(value, ast.Name) and value.id == "__all__"):
             self.all_open = True
 
-    def expression(self, node: ast.expr, scope: str) -> None:
+    def visit_call_statement(self, node: ast.expr, scope: str) -> None:
         """A statement that is a call: of __all__.extend() and kin, or one that may bind names."""
         if not isinstance(node, ast.Call):
             return
-        name = _dotted(node.func)
+        name = _format_dotted(node.func)
         if name in ("__all__.extend", "__all__.append", "__all__.remove") and not scope and len(node.args) == 1:
             self.all = self.all if self.all is not None else []
             argument = node.args[0]
             if name.endswith("extend"):
-                self.all_from(argument)
+                self.add_exports(argument)
             elif isinstance(argument, ast.Constant) and isinstance(argument.value, str):
                 if name.endswith("append"):
                     self.all.append(argument.value)
@@ -320,7 +320,7 @@ class _Module:
 
     def call(self, node: ast.Call, scope: str) -> None:
         """A call that runs on import and may bind names by other means."""
-        name = _dotted(node.func)
+        name = _format_dotted(node.func)
         owner = node.args[0] if node.args else None
         if name in ("exec", "execfile"):
             self.open.append((scope, f"{name}()"))
@@ -329,7 +329,7 @@ class _Module:
         elif name == "setattr":
             self.open.append((scope, "setattr()"))
         elif isinstance(node.func, ast.Attribute) and node.func.attr == "update":
-            maker = _dotted(node.func.value) if isinstance(node.func.value, ast.Call) else ""
+            maker = _format_dotted(node.func.value) if isinstance(node.func.value, ast.Call) else ""
             if maker in _NAMESPACES:
                 self.open.append((scope, f"{maker}().update()"))
 
@@ -337,9 +337,9 @@ class _Module:
         """Whether the module has bound a class of this name so far."""
         return any(bound.name == name and bound.kind == "class" for bound in self.names)
 
-    def late_call(self, node: ast.Call, scope: str, me: str) -> None:
+    def visit_late_call(self, node: ast.Call, scope: str, me: str) -> None:
         """The same in a function, where only the object itself and the module can be given names."""
-        name = _dotted(node.func)
+        name = _format_dotted(node.func)
         if not isinstance(node.func, ast.Attribute):
             owner = node.args[0] if name == "setattr" and node.args else None
             if isinstance(owner, ast.Name) and owner.id == me:
@@ -357,25 +357,25 @@ class _Module:
 _INSIDE = (ast.stmt, ast.ExceptHandler, ast.Call, ast.withitem, ast.match_case)
 
 
-def _flat(targets: Iterable[ast.expr]) -> Iterator[ast.expr]:
+def _flatten_targets(targets: Iterable[ast.expr]) -> Iterator[ast.expr]:
     for target in targets:
         if isinstance(target, (ast.Tuple, ast.List)):
-            yield from _flat(target.elts)
+            yield from _flatten_targets(target.elts)
         elif isinstance(target, ast.Starred):
             yield target.value
         else:
             yield target
 
 
-def _dotted(node: ast.AST) -> str:
+def _format_dotted(node: ast.AST) -> str:
     """A path of names, calls left out (`deprecated('x')` is `deprecated`); empty for anything else."""
     while isinstance(node, ast.Call):
         node = node.func
-    path = dotted(node) if isinstance(node, ast.expr) else ""
+    path = format_dotted(node) if isinstance(node, ast.expr) else ""
     return "" if path.startswith(".") else path
 
 
-def _literal(node: ast.expr | None) -> str:
+def _format_literal(node: ast.expr | None) -> str:
     """The source of a literal, empty for what is none or is long."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
         return even_source(node)
@@ -387,15 +387,15 @@ def _literal(node: ast.expr | None) -> str:
     return ""
 
 
-def _deprecated(decorators: Iterable[ast.expr]) -> str:
+def _find_deprecation(decorators: Iterable[ast.expr]) -> str:
     """The message of a decorator called `deprecated` (PEP 702's and the many that came before it)."""
     for decorator in decorators:
-        if _dotted(decorator).rpartition(".")[2].lower() in ("deprecated", "deprecate"):
-            return _message(decorator.args if isinstance(decorator, ast.Call) else ())
+        if _format_dotted(decorator).rpartition(".")[2].lower() in ("deprecated", "deprecate"):
+            return _find_message(decorator.args if isinstance(decorator, ast.Call) else ())
     return ""
 
 
-def _message(arguments: Iterable[ast.expr]) -> str:
+def _find_message(arguments: Iterable[ast.expr]) -> str:
     for argument in arguments:
         text = "".join(
             part.value for part in ast.walk(argument) if isinstance(part, ast.Constant) and isinstance(part.value, str)
@@ -407,7 +407,7 @@ def _message(arguments: Iterable[ast.expr]) -> str:
     return "deprecated"
 
 
-def _warned(body: list[ast.stmt]) -> str:
+def _find_warning(body: list[ast.stmt]) -> str:
     """The message of a warning that a body gives at its beginning, whatever it is called with."""
     seen = 0
     for node in body:
@@ -421,9 +421,9 @@ def _warned(body: list[ast.stmt]) -> str:
         if not isinstance(node, ast.Expr) or not isinstance(node.value, ast.Call):
             continue
         call = node.value
-        if _dotted(call.func).rpartition(".")[2] != "warn" or not call.args:
+        if _format_dotted(call.func).rpartition(".")[2] != "warn" or not call.args:
             continue
         given = [*call.args[1:2], *(k.value for k in call.keywords if k.arg == "category")]
-        if any(_dotted(one).rpartition(".")[2] in _WARNINGS for one in given):
-            return _message(call.args[:1])
+        if any(_format_dotted(one).rpartition(".")[2] in _WARNINGS for one in given):
+            return _find_message(call.args[:1])
     return ""

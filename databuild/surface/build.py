@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ...impact.facts.cmake import CMakeFile
-from ...impact.facts.kinds import kind_of as kind_by_name
-from ...impact.facts.launch.actions import Action, plain
-from ...impact.model.cmake.build import Install, for_tests
-from ...impact.model.cmake.installed import HEADER_NAME, copied_files
-from ...impact.model.flow.started import launch_kind
-from ...impact.model.package import role_of_folder
-from ...impact.targets.surface.fields import snake
+from ...impact.facts.kinds import find_kind as kind_by_name
+from ...impact.facts.launch.actions import Action, find_literal
+from ...impact.model.cmake.build import Install, is_for_tests
+from ...impact.model.cmake.installed import HEADER_NAME, list_copied_files
+from ...impact.model.flow.started import classify_launch_file
+from ...impact.model.package import find_folder_role
+from ...impact.targets.surface.fields import make_snake_case
 from ...impact.targets.surface.surface import (
     BuildSurface,
     ExportedTarget,
@@ -42,10 +42,10 @@ KINDS = frozenset((
 """The kinds of facts that a surface of the build needs."""
 
 
-def surface_of(workspace: Workspace, package: Package) -> BuildSurface:
+def build_surface(workspace: Workspace, package: Package) -> BuildSurface:
     """The surface of a package as the state of the workspace builds it. The workspace needs no facts besides KINDS;
     its tree is read for the arguments of launch files."""
-    return _Surface(workspace, package).surface()
+    return _Surface(workspace, package).make_surface()
 
 
 _CONFIGURATION = re.compile(r"(.+?)(?:-config|Config)\.cmake(?:\.in)?\Z")
@@ -64,35 +64,37 @@ class _Surface:
         self.targets = {target.name: target for target in self.build.targets}
         # Packages of catkin that DEPENDS names are taken for CATKIN_DEPENDS.
         self.of_catkin = frozenset(found.name for found in self.build.found if found.how == "catkin")
-        self.installs = [install for install in self.build.installs if not for_tests(install.conditions)]
-        self.exports = [export for export in self.build.exports if not for_tests(export.conditions)]
+        self.installs = [install for install in self.build.installs if not is_for_tests(install.conditions)]
+        self.exports = [export for export in self.build.exports if not is_for_tests(export.conditions)]
         self.generated = [made for made in self.build.generated if made.offered]
 
-    def surface(self) -> BuildSurface:
+    def make_surface(self) -> BuildSurface:
         package, manifest = self.package, self.package.manifest
-        commands, variables = self.extras()
-        targets = tuple(self.exported_targets())
+        commands, variables = self.collect_extras()
+        targets = tuple(self.list_exported_targets())
         return BuildSurface(
             package.name,
             manifest.version,
             package.build_type,
-            tuple(self.cmake_names()),
+            tuple(self.list_cmake()),
             targets,
-            _once(self.libraries()),
-            _once(self.roots()),
-            _once(self.dependencies()),
-            _once(e.item for e in self.exports if e.how == "system_depends" and e.item not in self.of_catkin),
+            _deduplicate(self.list_libraries()),
+            _deduplicate(self.list_roots()),
+            _deduplicate(self.list_dependencies()),
+            _deduplicate(e.item for e in self.exports if e.how == "system_depends" and e.item not in self.of_catkin),
             tuple(sorted(commands)),
             tuple(sorted(variables)),
             max((target.standard for target in targets), default=0),
-            tuple(sorted(set(self.programs()), key=msgspec.structs.astuple)),  # what is sure comes last, and counts
-            tuple(sorted(set(self.plugins()), key=msgspec.structs.astuple)),
-            tuple(self.launches()),
-            tuple(sorted(set(self.headers()), key=msgspec.structs.astuple)),
+            tuple(
+                sorted(set(self.list_programs()), key=msgspec.structs.astuple)
+            ),  # what is sure comes last, and counts
+            tuple(sorted(set(self.list_plugins()), key=msgspec.structs.astuple)),
+            tuple(self.list_launch_files()),
+            tuple(sorted(set(self.list_headers()), key=msgspec.structs.astuple)),
             tuple(self.unknown),
         )
 
-    def inside(self, path: str) -> str:
+    def strip_prefix(self, path: str) -> str:
         return path.removeprefix(self.prefix)
 
     def note(self, part: str, why: str) -> None:
@@ -100,7 +102,7 @@ class _Surface:
 
     # -- CMake
 
-    def cmake_names(self) -> Iterator[str]:
+    def list_cmake(self) -> Iterator[str]:
         if self.build.ament_package is not None or self.build.catkin_package is not None:
             yield self.name
         given = {posixpath.basename(item) for install in self.installs for item in install.items}
@@ -108,7 +110,7 @@ class _Surface:
         for file in self.build.files:
             if not file.startswith(self.prefix):
                 continue
-            for command in self.commands_of(file):
+            for command in self.get_commands(file):
                 if command.name in ("configure_package_config_file", "configure_file") and len(command.arguments) > 1:
                     given.update(posixpath.basename(a.text) for a in command.arguments[:2])
         for text in given:
@@ -119,7 +121,7 @@ class _Surface:
                 found.add(self.name)
         yield from sorted(found - ({self.name} if self.build.catkin_package is not None else set()))
 
-    def exported_targets(self) -> Iterator[ExportedTarget]:
+    def list_exported_targets(self) -> Iterator[ExportedTarget]:
         """Targets of export sets that install(EXPORT) or ament_export_targets() give away."""
         spaces: dict[str, tuple[str, bool]] = {}
         for export in self.exports:
@@ -158,7 +160,7 @@ class _Surface:
             if not any(made.target == missing for made in self.generated):
                 self.note("targets", f"the export set `{missing}`")
 
-    def libraries(self) -> Iterator[str]:
+    def list_libraries(self) -> Iterator[str]:
         for export in self.exports:
             if export.how not in ("libraries", "ament_export_libraries"):
                 continue
@@ -167,7 +169,7 @@ class _Surface:
             else:
                 yield export.item
 
-    def roots(self) -> Iterator[str]:
+    def list_roots(self) -> Iterator[str]:
         """Folders of the prefix that dependants search for headers."""
         for export in self.exports:
             if export.how == "ament_export_include_directories" and "$" not in export.item:
@@ -182,7 +184,7 @@ class _Surface:
                 if "$" not in root:
                     yield root
 
-    def dependencies(self) -> Iterator[str]:
+    def list_dependencies(self) -> Iterator[str]:
         for export in self.exports:
             of_catkin = export.how == "system_depends" and export.item in self.of_catkin
             if of_catkin or export.how in ("ament_export_dependencies", "catkin_depends"):
@@ -192,15 +194,15 @@ class _Surface:
 
     # -- what the package's CMake files define
 
-    def commands_of(self, path: str):
+    def get_commands(self, path: str):
         """The commands of a CMake file of the workspace."""
         gathered = self.workspace.gathered
         if gathered.kinds.get(path) != "cmake":
             return ()
-        file = gathered.facts(path).facts
+        file = gathered.get_facts(path).facts
         return file.commands if isinstance(file, CMakeFile) else ()
 
-    def extras(self) -> tuple[set[str], set[str]]:
+    def collect_extras(self) -> tuple[set[str], set[str]]:
         """Commands and variables that come with find_package()."""
         cmake = {path for path in self.package.digest.files if kind_by_name(path) == "cmake"}
         by_name: dict[str, list[str]] = {}
@@ -209,9 +211,9 @@ class _Surface:
         wanted: list[str] = []
         for export in self.exports:
             if export.how == "cfg_extras":
-                wanted += self.file_of(export.item, cmake, by_name)
+                wanted += self.find_extra_file(export.item, cmake, by_name)
         for path in cmake:
-            if _CONFIGURATION.match(posixpath.basename(path)) and role_of_folder(self.inside(path)) is None:
+            if _CONFIGURATION.match(posixpath.basename(path)) and find_folder_role(self.strip_prefix(path)) is None:
                 wanted.append(path)
         commands: set[str] = set()
         variables: set[str] = set()
@@ -222,7 +224,7 @@ class _Surface:
                 continue
             read.add(path)
             inner = 0
-            for command in self.commands_of(path):
+            for command in self.get_commands(path):
                 arguments = [a.text.replace("@PROJECT_NAME@", self.name) for a in command.arguments]
                 first = arguments[0] if arguments else ""
                 if command.name in ("function", "macro"):
@@ -243,7 +245,7 @@ class _Surface:
                     self.note("targets", "what there is hangs on COMPONENTS")
         return commands, variables
 
-    def file_of(self, item: str, cmake: set[str], by_name: dict[str, list[str]]) -> list[str]:
+    def find_extra_file(self, item: str, cmake: set[str], by_name: dict[str, list[str]]) -> list[str]:
         """The file of the package that an extra is made from."""
         for path in (item, f"{item}.in", f"{item}.em"):
             if path in cmake:
@@ -255,8 +257,8 @@ class _Surface:
 
     # -- headers
 
-    def headers(self) -> Iterator[Header]:
-        roots = sorted({*self.roots(), "include"}, key=len, reverse=True)
+    def list_headers(self) -> Iterator[Header]:
+        roots = sorted({*self.list_roots(), "include"}, key=len, reverse=True)
         for install in self.installs:
             destination = posixpath.normpath(install.destination.replace("${CMAKE_INSTALL_INCLUDEDIR}", "include"))
             if "$" in destination and install.kind in ("files", "directory"):
@@ -266,13 +268,13 @@ class _Surface:
             if not f"{destination}/".startswith("include/") or install.kind not in ("files", "directory", "programs"):
                 continue
             sure = not install.conditions
-            for source, installed in self.copied(install, destination):
+            for source, installed in self.list_copied_files(install, destination):
                 if HEADER_NAME.search(installed):
-                    include, certain = _below(installed, roots)
+                    include, certain = _find_include_path(installed, roots)
                     yield Header(include, installed, source, sure and certain)
-        yield from self.generated_headers(roots)
+        yield from self.list_generated_headers(roots)
 
-    def copied(self, install: Install, destination: str) -> Iterator[tuple[str, str]]:
+    def list_copied_files(self, install: Install, destination: str) -> Iterator[tuple[str, str]]:
         """(source, path in the prefix) of the files that an install rule copies."""
         for item in install.items:
             made = install.kind != "directory" and item.startswith(_BUILT)
@@ -280,10 +282,10 @@ class _Surface:
                 yield "", f"{destination}/{install.rename or posixpath.basename(item)}"
             elif "$" in item:
                 self.note("headers" if destination.startswith("include") else "launches", f"`{item}` is installed")
-        for path, installed in copied_files(install, destination, self.package.digest.files):
-            yield self.inside(path), installed
+        for path, installed in list_copied_files(install, destination, self.package.digest.files):
+            yield self.strip_prefix(path), installed
 
-    def generated_headers(self, roots: list[str]) -> Iterator[Header]:
+    def list_generated_headers(self, roots: list[str]) -> Iterator[Header]:
         for made in self.generated:
             sure = not made.conditions
             for path in made.files if made.how != "protobuf" else ():
@@ -291,21 +293,21 @@ class _Surface:
                 if made.how == "rosidl":
                     folder = posixpath.basename(posixpath.dirname(path)) or ending.lstrip(".")
                     for end in (".hpp", ".h"):
-                        yield _made(f"{self.name}/{folder}/{snake(stem)}{end}", sure)
+                        yield _make_header(f"{self.name}/{folder}/{make_snake_case(stem)}{end}", sure)
                 elif made.how == "catkin":
                     for end in _ROS1.get(ending, ()):
-                        yield _made(f"{self.name}/{stem}{end}.h", sure)
+                        yield _make_header(f"{self.name}/{stem}{end}.h", sure)
                 elif made.how == "reconfigure":
-                    yield _made(f"{self.name}/{stem}Config.h", sure)
+                    yield _make_header(f"{self.name}/{stem}Config.h", sure)
             if made.how == "parameters":
-                yield _made(f"{self.name}/{made.target}.hpp", False)
-                yield _made(f"{made.target}.hpp", False)
+                yield _make_header(f"{self.name}/{made.target}.hpp", False)
+                yield _make_header(f"{made.target}.hpp", False)
             elif made.how == "protobuf":
                 self.note("headers", f"`{made.target}` is generated")
 
     # -- programs, plugins, launch files
 
-    def programs(self) -> Iterator[InstalledProgram]:
+    def list_programs(self) -> Iterator[InstalledProgram]:
         package = self.package
         places = ("bin", f"lib/{package.name}", f"lib/{self.name}")
         components = {export.executable for export in self.exports if export.how == "component" and export.executable}
@@ -326,12 +328,12 @@ class _Surface:
                     if install.kind == "programs" or item.endswith(".py"):
                         yield InstalledProgram(name, destination, "script", sure)
             if install.kind == "directory":
-                for _, installed in self.copied(install, destination):
+                for _, installed in self.list_copied_files(install, destination):
                     yield InstalledProgram(posixpath.basename(installed), destination, "script", False)
         if package.build_type == "ament_python" or any(i.kind == "python" for i in self.installs):
-            yield from self.entry_points()
+            yield from self.list_entry_points()
 
-    def entry_points(self) -> Iterator[InstalledProgram]:
+    def list_entry_points(self) -> Iterator[InstalledProgram]:
         files = {path: file for path, file in self.package.digest.setup}
         folders = (folder for f in files.values() for command, folder, _ in f.script_folders if command == "install")
         place = next(folders, "bin").removeprefix("$base/")
@@ -349,15 +351,15 @@ class _Surface:
                 elif clause.startswith("data_files"):
                     self.note("launches", clause)
 
-    def plugins(self) -> Iterator[Plugin]:
+    def list_plugins(self) -> Iterator[Plugin]:
         for path, plugin in self.package.digest.plugins:
-            if role_of_folder(self.inside(path)) is None:
+            if find_folder_role(self.strip_prefix(path)) is None:
                 yield Plugin(plugin.name or plugin.type, plugin.type, plugin.base)
         for export in self.exports:
             if export.how == "component" and "$" not in export.item:
                 yield Plugin(export.item, export.item, "rclcpp_components", not export.conditions)
 
-    def launches(self) -> Iterator[InstalledLaunchFile]:
+    def list_launch_files(self) -> Iterator[InstalledLaunchFile]:
         """Installed launch files, by the path below share/<package>."""
         found: dict[str, str] = {}
         share = (f"share/{self.package.name}", f"share/{self.name}")
@@ -367,7 +369,7 @@ class _Surface:
                 continue
             if not f"{destination}/".startswith((f"{share[0]}/", f"{share[1]}/")):
                 continue
-            for source, installed in self.copied(install, destination):
+            for source, installed in self.list_copied_files(install, destination):
                 found[installed.split("/", 2)[2]] = source
         for path, file in self.package.digest.setup:
             if path not in (f"{self.prefix}setup.py", f"{self.prefix}setup.cfg"):
@@ -375,17 +377,17 @@ class _Surface:
             for destination, pattern, _ in file.data_files:
                 if f"{destination}/".startswith((f"{share[0]}/", f"{share[1]}/")):
                     wanted = re.compile(fnmatch.translate(pattern.replace("**/", "*")))
-                    for source in map(self.inside, self.package.digest.files):
+                    for source in map(self.strip_prefix, self.package.digest.files):
                         if wanted.match(source) and source.count("/") >= pattern.count("/"):
                             folder = destination.rstrip("/").split("/", 2)[2:]
                             found["/".join([*folder, posixpath.basename(source)])] = source
         for path, source in sorted(found.items()):
-            kind = launch_kind(source)
+            kind = classify_launch_file(source)
             # A folder of Python holds more than launch files.
             if kind and ("launch" in path) and not path.endswith("__init__.py"):
-                yield InstalledLaunchFile(path, tuple(self.arguments(f"{self.prefix}{source}", kind)))
+                yield InstalledLaunchFile(path, tuple(self.list_launch_arguments(f"{self.prefix}{source}", kind)))
 
-    def arguments(self, path: str, kind: str) -> Iterator[tuple[str, str | None]]:
+    def list_launch_arguments(self, path: str, kind: str) -> Iterator[tuple[str, str | None]]:
         for facts in self.workspace.gathered.look((path,), f"flow_{kind}").values():
             yield from launch_arguments(facts.actions)
 
@@ -393,13 +395,13 @@ class _Surface:
 def launch_arguments(actions: Iterable[Any]) -> Iterator[tuple[str, str | None]]:
     """Name and default of each argument that a launch file takes, as LaunchFile has them."""
     seen: set[str] = set()
-    for action in _actions(actions):
-        name = plain(action.get("name"))
+    for action in _flatten_actions(actions):
+        name = find_literal(action.get("name"))
         if action.kind != "argument" or name is None or name in seen or action.get("value") is not None:
             continue
         seen.add(name)
         default = action.get("default")
-        text = plain(default)
+        text = find_literal(default)
         yield name, None if default is None else "?" if text is None else text
 
 
@@ -410,18 +412,18 @@ _ROS1 = {
 }
 
 
-def _made(include: str, sure: bool) -> Header:
+def _make_header(include: str, sure: bool) -> Header:
     return Header(include, f"include/{include}", "", sure)
 
 
-def _actions(actions: Iterable[Action]) -> Iterator[Action]:
+def _flatten_actions(actions: Iterable[Action]) -> Iterator[Action]:
     for action in actions:
         yield action
         if action.kind == "group":
-            yield from _actions(action.children)
+            yield from _flatten_actions(action.children)
 
 
-def _below(installed: str, roots: list[str]) -> tuple[str, bool]:
+def _find_include_path(installed: str, roots: list[str]) -> tuple[str, bool]:
     """What dependants write for a header: its path below the longest exported folder that leaves it in a folder, as
     they all are called after their package; and whether that is the longest folder of all. Roots come longest first."""
     rests = [installed[len(root) + 1 :] for root in roots if installed.startswith(f"{root}/")]
@@ -429,7 +431,7 @@ def _below(installed: str, roots: list[str]) -> tuple[str, bool]:
     return chosen, not rests or chosen == rests[0]
 
 
-def _once(items: Iterable[str]) -> tuple[str, ...]:
+def _deduplicate(items: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(items))
 
 

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...edges.console import UserError
 from ...impact.targets.distro.distro import DistroTarget, TargetError
-from ...impact.targets.distro.known import known_distros
-from ...impact.targets.snapshot import Snapshot, default
+from ...impact.targets.distro.known import list_known_distros
+from ...impact.targets.snapshot import Snapshot, load_snapshot
 from ...impact.targets.surface.surface import Surface
-from ...impact.targets.version import parts
+from ...impact.targets.version import parse
 from ...impact.tree import GitTree, TreeError
 from .compare import RepositorySurfaces
-from .package import of_tree
-from .releases import git_directory, plain_url, releases_of, tag_of
+from .package import build_tree_surfaces
+from .releases import find_git_directory, list_releases, normalize_url, tag_of
 
 if TYPE_CHECKING:
     from ...impact.facts.store import Store
@@ -54,7 +54,7 @@ class Clone:
     """A git repository, bare or not. name: `owner/name` or its folder's name."""
 
     def __init__(self, place: Path, name: str = ""):
-        where = git_directory(place)
+        where = find_git_directory(place)
         if where is None:
             raise VersionError(f"{place} is no git repository; give a clone with its tags")
         self.place, self.name = where, name or place.name.replace("+", "/")
@@ -95,10 +95,10 @@ class Clone:
             if told is not None:
                 distro, package, version, increment = told.groups()
                 each = found.setdefault((package, version), {})
-                each[distro] = max(each.get(distro, ((), "")), (parts(increment or ""), ref))
+                each[distro] = max(each.get(distro, ((), "")), (parse(increment or ""), ref))
         return {key: {distro: ref for distro, (_, ref) in each.items()} for key, each in found.items()}
 
-    def branch(self, *names: str) -> str | None:
+    def find_branch(self, *names: str) -> str | None:
         """The ref of the first of these branches that there is."""
         known = set(self._repository.references)
         spelt = (f"{start}{name}" for name in names if name for start in ("refs/heads/", "refs/remotes/origin/"))
@@ -106,23 +106,23 @@ class Clone:
 
     def is_one_of(self, urls: Iterable[str]) -> bool:
         """Whether it is a clone from one of these addresses."""
-        return self.name.lower() in map(plain_url, urls)
+        return self.name.lower() in map(normalize_url, urls)
 
     def is_older(self, version: str) -> bool:
         """Whether there are tags, all of them of versions before this one."""
-        known = [parts(tag) for tag in self.tags if re.fullmatch(r"v?\d+\.\d+(?:\.\d+)?", tag)]
-        return bool(known) and max(known) < parts(version)
+        known = [parse(tag) for tag in self.tags if re.fullmatch(r"v?\d+\.\d+(?:\.\d+)?", tag)]
+        return bool(known) and max(known) < parse(version)
 
-    def surfaces(self, revision: str, store: Store, jobs: int | None = None) -> dict[str, Surface]:
+    def read_surfaces(self, revision: str, store: Store, jobs: int | None = None) -> dict[str, Surface]:
         """The surfaces of all packages at a revision. Raises TreeError."""
-        return of_tree(self.tree(revision), store, self.folder_id(revision), jobs)
+        return build_tree_surfaces(self.read_tree(revision), store, self.find_folder_id(revision), jobs)
 
-    def tree(self, revision: str) -> GitTree:
+    def read_tree(self, revision: str) -> GitTree:
         """The files of a revision; folders that revisions share are read once. Raises TreeError."""
-        self._tree = GitTree(self.place, revision) if self._tree is None else self._tree.at(revision)
+        self._tree = GitTree(self.place, revision) if self._tree is None else self._tree.open_revision(revision)
         return self._tree
 
-    def folder_id(self, revision: str) -> str:
+    def find_folder_id(self, revision: str) -> str:
         """Git's id of all that a revision holds. Raises TreeError."""
         import pygit2
 
@@ -139,24 +139,24 @@ def release_of(package: str, asked: str, data: Snapshot) -> Release:
         target = DistroTarget(name, date or None, data=data)
     except TargetError as error:
         raise VersionError(str(error)) from None
-    version = target.version(package)
+    version = target.find_version(package)
     if version is None:
-        having = [known.name for known in known_distros(data) if DistroTarget(known.name).version(package)]
+        having = [known.name for known in list_known_distros(data) if DistroTarget(known.name).find_version(package)]
         where = f"; released in {', '.join(having)}" if having else ", and no other distro either"
         raise VersionError(f"{asked} has no `{package}`{where}")
-    _, url, branch = target.repository(package) or ("", "", "")
+    _, url, branch = target.find_repository(package) or ("", "", "")
     return Release(name, version, (url,) if url else (), branch)
 
 
-def newest_with(package: str, data: Snapshot) -> str:
+def find_newest_distro(package: str, data: Snapshot) -> str:
     """The newest distro that has a package. Raises VersionError when none has it."""
-    for known in reversed(known_distros(data)):
-        if DistroTarget(known.name, data=data).version(package):
+    for known in reversed(list_known_distros(data)):
+        if DistroTarget(known.name, data=data).find_version(package):
             return known.name
     raise VersionError(f"no distro ever had `{package}`; say which version is meant: {package}@1.0.0")
 
 
-def _at_tags(clones: Iterable[Clone], package: str, version: str, distro: str = "") -> Iterator[Version]:
+def _find_tagged_versions(clones: Iterable[Clone], package: str, version: str, distro: str = "") -> Iterator[Version]:
     for clone in clones:
         tag = clone.tag(version, package, distro)
         if tag is not None:
@@ -169,7 +169,7 @@ class Clones:
     def __init__(self, folder: Path, data: Snapshot | None = None):
         if not folder.is_dir():
             raise VersionError(f"{folder}: no such folder; give one that holds clones of the repositories")
-        self.folder, self._data = folder, data or default()
+        self.folder, self._data = folder, data or load_snapshot()
         self._clones: dict[str, Clone] = {}
         self._known: dict[str, list[Clone]] = {}
 
@@ -178,12 +178,12 @@ class Clones:
         """Folders of clones by the last part of their name, in lower case."""
         found: dict[str, list[Path]] = {}
         for place in sorted(self.folder.iterdir()):
-            if place.is_dir() and git_directory(place) is not None:
+            if place.is_dir() and find_git_directory(place) is not None:
                 name = place.name.rpartition("+")[2].removesuffix(".git").lower()
                 found.setdefault(name, []).append(place)
         return found
 
-    def all(self) -> Iterator[Clone]:
+    def list_clones(self) -> Iterator[Clone]:
         """Every clone."""
         for places in self._places.values():
             yield from map(self._open, places)
@@ -193,19 +193,19 @@ class Clones:
             self._clones[place.name] = Clone(place)
         return self._clones[place.name]
 
-    def of(self, package: str) -> list[Clone]:
+    def find_clones(self, package: str) -> list[Clone]:
         """Clones of the repositories that ever released a package."""
         if package not in self._known:
-            self._known[package] = self._of(package)
+            self._known[package] = self._find_clones(package)
         return self._known[package]
 
-    def _of(self, package: str) -> list[Clone]:
-        urls = self._data.rows(
+    def _find_clones(self, package: str) -> list[Clone]:
+        urls = self._data.fetch(
             "SELECT DISTINCT u.text FROM package p JOIN home h ON h.package = p.id JOIN source s ON"
             " s.distro = h.distro AND s.repository = h.repository JOIN url u ON u.id = s.url WHERE p.name = ?",
             (package,),
         )
-        names = dict.fromkeys(plain_url(text) for (text,) in urls if text)
+        names = dict.fromkeys(normalize_url(text) for (text,) in urls if text)
         found = [place for name in names for place in self._places.get(name.rpartition("/")[2], ())]
         # The clone of the very owner first; forks and moved repositories have the same tags.
         exact = [place for place in found if place.name.lower().replace("+", "/") in names]
@@ -221,68 +221,68 @@ class Clones:
                     found.setdefault(package, []).append(clone)
         return found
 
-    def releases(self, clone: Clone) -> dict[str, dict[str, frozenset[str]]]:
+    def list_clone_releases(self, clone: Clone) -> dict[str, dict[str, frozenset[str]]]:
         """What a repository released: distro to version, in order, to packages."""
         found: dict[str, dict[str, frozenset[str]]] = {}
-        for release in releases_of(self._data, clone.name):
+        for release in list_releases(self._data, clone.name):
             found.setdefault(release.distro, {})[release.version] = release.packages
         return found
 
     def find(self, package: str, asked: str) -> Iterator[Version]:
         """States that may stand for a version (`28.1.0`), or for a distro's (`jazzy`, `jazzy@2024-08-01`), of a
         package, best first. Raises VersionError when the distro never had it, or there is no clone."""
-        clones = self.of(package)
+        clones = self.find_clones(package)
         if not clones:
             raise VersionError(f"no clone in {self.folder} has `{package}`; clone its repository there, with tags")
         if not asked or asked[0].isdigit():
-            yield from _at_tags(clones, package, asked)
+            yield from _find_tagged_versions(clones, package, asked)
             return
         release = release_of(package, asked, self._data)
-        if not self._having(package, release):
+        if not self._find_release_clones(package, release):
             url = release.urls[0]
             raise VersionError(
                 f"{asked} has `{package}` from {url}, of which there is no clone in {self.folder}; clone it there"
             )
-        yield from self.standing_for(package, release)
+        yield from self.find_candidates(package, release)
 
-    def standing_for(self, package: str, release: Release) -> Iterator[Version]:
+    def find_candidates(self, package: str, release: Release) -> Iterator[Version]:
         """States that may stand for a package of a release, best first."""
-        clones = self._having(package, release)
-        yield from _at_tags(clones, package, release.version, release.distro)
+        clones = self._find_release_clones(package, release)
+        yield from _find_tagged_versions(clones, package, release.version, release.distro)
         if release.superseded:
             return  # a branch went on since
         for clone in clones:
-            tip = clone.branch(release.branch, release.distro, f"{release.distro}-devel")
+            tip = clone.find_branch(release.branch, release.distro, f"{release.distro}-devel")
             if tip is None and clone.is_one_of(release.urls) and clone.is_older(release.version):
                 tip = "HEAD"  # released after all that the clone has a tag for
             if tip is not None:
                 yield Version(clone, tip, release.version, True)
 
-    def _having(self, package: str, release: Release) -> list[Clone]:
+    def _find_release_clones(self, package: str, release: Release) -> list[Clone]:
         """The clones that may have what a distro released."""
-        clones = self.of(package)
+        clones = self.find_clones(package)
         own = [clone for clone in clones if clone.is_one_of(release.urls)]
         # A release repository says itself what it released for whom.
         bloomed = [clone for clone in clones if release.distro in clone.released.get((package, release.version), ())]
         # Another owner's repository of the same name may be another project: geometry2 of ROS 1 and of ROS 2.
-        names = {plain_url(url).rpartition("/")[2] for url in release.urls}
+        names = {normalize_url(url).rpartition("/")[2] for url in release.urls}
         alike = [clone for clone in clones if not names or clone.name.lower().rpartition("/")[2] in names]
         return list(dict.fromkeys((*own, *bloomed))) or alike
 
-    def newest(self, package: str) -> str:
+    def find_newest(self, package: str) -> str:
         """The newest distro that has a package. Raises VersionError when none has it."""
-        return newest_with(package, self._data)
+        return find_newest_distro(package, self._data)
 
-    def surface(
+    def find_surface(
         self, package: str, asked: str, store: Store, jobs: int | None = None
     ) -> tuple[Version, RepositorySurfaces]:
         """The state that stands for a version of a package, see find(). Raises VersionError where there is none."""
         tried = []
         for version in self.find(package, asked):
-            surfaces = version.clone.surfaces(version.revision, store, jobs)
+            surfaces = version.clone.read_surfaces(version.revision, store, jobs)
             if package in surfaces:
                 return version, RepositorySurfaces(surfaces)
             tried.append(version.revision.removeprefix("refs/").partition("/")[2])
-        clones = ", ".join(clone.name for clone in self.of(package))
+        clones = ", ".join(clone.name for clone in self.find_clones(package))
         what = f"{', '.join(tried)} in {clones} does not have it" if tried else f"{clones} has no tag for it"
         raise VersionError(f"`{package}` {asked} cannot be read: {what}; `git fetch --tags` may bring it")

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from ...edges.memory import cached_method
+from ...edges.memory import cache_method
 from ...edges.reach import walk
-from ...impact.facts.interface import PRIMITIVES, Field, Section, full_name
-from ...impact.facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, declared, offered
+from ...impact.facts.interface import PRIMITIVES, Field, Section, make_full_name
+from ...impact.facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, format_declaration, list_offered
 from ...impact.targets.surface.changes import OPEN, PARAMETER, VersionChange
-from ...impact.targets.surface.fields import ROS1_SUFFIXES, snake
+from ...impact.targets.surface.fields import ROS1_SUFFIXES, make_snake_case
 from ...impact.targets.surface.python import UNKNOWN, SurfaceNames
 from ...impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 from ..extract.parameters import mentions
@@ -42,7 +42,7 @@ class RepositorySurfaces:
             every = [header for _, header in surface.headers]
             inline = tuple(dict.fromkeys(name for header in every for name in header.inline))
             for path, header in surface.headers:
-                for entity in offered([msgspec.structs.replace(header, inline=inline)]):
+                for entity in list_offered([msgspec.structs.replace(header, inline=inline)]):
                     found[entity.name].append(EntityPlace(surface.package, path, entity))
         return found
 
@@ -67,8 +67,8 @@ class RepositorySurfaces:
                 found[path] = (surface.package, header)
         return found
 
-    @cached_method
-    def mentioned(self, package: str) -> frozenset[str] | None:
+    @cache_method
+    def collect_mentioned_names(self, package: str) -> frozenset[str] | None:
         """The names that the sources of a package mention, and those of the packages of this state that come along
         with it; None where they are not known."""
         known = self.surfaces
@@ -76,21 +76,21 @@ class RepositorySurfaces:
         mentioned = [known[name].mentioned for name in along if name in known]
         return None if None in mentioned else frozenset().union(*filter(None, mentioned))
 
-    @cached_method
-    def python(self, package: str) -> SurfaceNames:
+    @cache_method
+    def get_python_names(self, package: str) -> SurfaceNames:
         """The Python names of a package."""
         return SurfaceNames(self.surfaces[package].python)
 
     def includes(self, header: str) -> set[str]:
         """Headers of this state that a header includes, itself among them, over any number of steps."""
 
-        def inner(path: str) -> Iterator[str]:
+        def list_includes(path: str) -> Iterator[str]:
             _, surface = self.headers.get(path, ("", None))
             for include in surface.includes if surface is not None else ():
                 yield include.path
                 yield posixpath.normpath(posixpath.join(posixpath.dirname(path), include.path))
 
-        return self.headers.keys() & walk([header], inner)
+        return self.headers.keys() & walk([header], list_includes)
 
     def resolve(self, type_: str, scope: str) -> str | None:
         """The class of this state that a type means in a scope; None for one that is not there."""
@@ -107,7 +107,7 @@ class RepositorySurfaces:
                         return target
         return None
 
-    def inherited(self, owner: str, last: str, depth: int = 0) -> tuple[list[Entity], frozenset[str]]:
+    def find_in_base(self, owner: str, last: str, depth: int = 0) -> tuple[list[Entity], frozenset[str]]:
         """Public members of that name that the bases of a class have, and bases that are not in this state."""
         found: list[Entity] = []
         strange: set[str] = set()
@@ -120,17 +120,17 @@ class RepositorySurfaces:
                     strange.add(base.type)
                     continue
                 found += [p.entity for p in self.cpp.get(f"{name}::{last}", ()) if p.entity.access != "private"]
-                more, others = self.inherited(name, last, depth + 1)
+                more, others = self.find_in_base(name, last, depth + 1)
                 found += more
                 strange |= others
         return found, frozenset(strange)
 
-    def through_namespace(self, name: str) -> bool:
+    def is_reachable_by_using(self, name: str) -> bool:
         """Whether a name can be written because its scope has `using namespace`, or a `using` or alias of its own."""
         owner, _, last = name.rpartition("::")
-        return any(f"{space}::{last}" in self.cpp for space in self._spaces(owner))
+        return any(f"{space}::{last}" in self.cpp for space in self._list_opened_namespaces(owner))
 
-    def _spaces(self, owner: str) -> Iterator[str]:
+    def _list_opened_namespaces(self, owner: str) -> Iterator[str]:
         for space in self.opened.get(owner, ()):
             parts = owner.split("::") if owner else []
             for length in range(len(parts), -1, -1):
@@ -149,9 +149,9 @@ def compare(
     before = before or RepositorySurfaces({old.package: old})
     after = after or RepositorySurfaces({new.package: new})
     changes = compare_cpp.compare(dict(old.headers), dict(new.headers)) if old.headers != new.headers else ()
-    found = [*_headers_changed(old, new, after, changes), *_cpp(old, new, before, after, changes)]
-    found += [*_python(old, new, after), *_messages(old, new, after), *_build(old, new, after)]
-    found += _parameters_changed(old, new, before, after)
+    found = [*_list_header_changes(old, new, after, changes), *_list_cpp_changes(old, new, before, after, changes)]
+    found += [*_list_python_changes(old, new, after), *_list_message_changes(old, new, after), *_build(old, new, after)]
+    found += _list_parameter_changes(old, new, before, after)
     order = {"message": 0, "c++": 1, "python": 2, "build": 3}
     return tuple(dict.fromkeys(sorted(found, key=lambda c: (order[c.side], c.what != "header", c.name, c.kind, c.old))))
 
@@ -179,13 +179,13 @@ def _reaches(new: Surface, package: str, after: RepositorySurfaces) -> bool:
     return package in walk([new.package], lambda name: known[name].build.dependencies if name in known else ())
 
 
-def _all_headers(surface: Surface) -> dict[str, bool]:
+def _collect_headers(surface: Surface) -> dict[str, bool]:
     """Every header, and whether it is sure to be there; those that are made of messages are told as messages."""
-    generated = {snake(name.partition("/")[2]) for name, _ in surface.interfaces}
+    generated = {make_snake_case(name.partition("/")[2]) for name, _ in surface.interfaces}
     found = {}
     for header in surface.build.headers:
         stem = posixpath.splitext(posixpath.basename(header.include))[0]
-        if not header.source and (snake(stem) in generated or _request(stem, surface)):
+        if not header.source and (make_snake_case(stem) in generated or _is_interface_part(stem, surface)):
             continue
         found[header.include] = header.sure
     for path, _ in surface.headers:
@@ -193,16 +193,16 @@ def _all_headers(surface: Surface) -> dict[str, bool]:
     return found
 
 
-def _request(stem: str, surface: Surface) -> bool:
+def _is_interface_part(stem: str, surface: Surface) -> bool:
     """Whether a header of ROS 1 is made of part of a service or action."""
     names = {name.partition("/")[2] for name, _ in surface.interfaces}
     return any(stem.removesuffix(end) in names for ends in ROS1_SUFFIXES.values() for end in ends)
 
 
-def _headers_changed(
+def _list_header_changes(
     old: Surface, new: Surface, after: RepositorySurfaces, changes: Sequence[compare_cpp.CppChange]
 ) -> Iterator[VersionChange]:
-    had, has = _all_headers(old), _all_headers(new)
+    had, has = _collect_headers(old), _collect_headers(new)
     open_ended = _open_ended(old, new)
     surfaces, news = dict(old.headers), dict(new.headers)
     moves: dict[str, Counter[str]] = defaultdict(Counter)
@@ -220,7 +220,7 @@ def _headers_changed(
             continue
         surface = surfaces.get(path)
         instead = surface.instead if surface is not None and surface.instead in after.headers else ""
-        instead = instead or next((there for there, _ in moves[path].most_common(1)), "") or _successor(path, had, has)
+        instead = instead or next((there for there, _ in moves[path].most_common(1)), "") or _find_next(path, had, has)
         yield VersionChange(old.package, "c++", "removed", "header", path, instead=instead, where=path, sure=sure)
     for path in sorted(has.keys() - had.keys()):
         yield VersionChange(
@@ -242,7 +242,7 @@ def _open_ended(old: Surface, new: Surface) -> bool:
     return any(part == "headers" and (part, why) not in old.build.unknown for part, why in new.build.unknown)
 
 
-def _successor(path: str, had: Mapping[str, bool], has: Mapping[str, bool]) -> str:
+def _find_next(path: str, had: Mapping[str, bool], has: Mapping[str, bool]) -> str:
     """The one header of the same name without its ending: a new one, else one in the same folder."""
     stem = posixpath.splitext(path)[0]
     beside = [other for other in has if posixpath.splitext(other)[0] == stem]
@@ -251,7 +251,7 @@ def _successor(path: str, had: Mapping[str, bool], has: Mapping[str, bool]) -> s
     return beside[0] if len(beside) == 1 else same[0] if len(same) == 1 else ""
 
 
-def _cpp(
+def _list_cpp_changes(
     old: Surface,
     new: Surface,
     before: RepositorySurfaces,
@@ -262,7 +262,7 @@ def _cpp(
     broken = {(c.old, c.new) for c in changes if c.kind == "signature" and not c.compatible}
     lost = {path for path, header in new.headers if header.lost or header.problems}
     open_ended = _open_ended(old, new)
-    has = _all_headers(new)
+    has = _collect_headers(new)
     for change in changes:
         if change.kind == "renamed":
             continue
@@ -282,15 +282,15 @@ def _cpp(
             change.kind,
             one.kind,
             change.name,
-            declared(change.old) if change.old else "",
-            declared(change.new) if change.new else "",
+            format_declaration(change.old) if change.old else "",
+            format_declaration(change.new) if change.new else "",
             change.what,
             where=change.old_header or change.new_header,
             breaks=not change.compatible and not one.internal,
             sure=sure,
         )
         if change.kind == "removed":
-            gone = _gone(told, change, old, new, before, after)
+            gone = _adjust_removal(told, change, old, new, before, after)
             if gone is not None and change.name in hints and gone.kind == "removed":
                 gone = msgspec.structs.replace(gone, instead=hints[change.name].new.name)  # type: ignore[union-attr]
             if gone is not None:
@@ -306,7 +306,7 @@ def _cpp(
             yield told
 
 
-def _gone(
+def _adjust_removal(
     told: VersionChange,
     change: compare_cpp.CppChange,
     old: Surface,
@@ -332,7 +332,7 @@ def _gone(
             return msgspec.structs.replace(
                 told, kind="moved", moved_to=others[0].package, instead=others[0].header, breaks=True
             )
-        if after.through_namespace(name):
+        if after.is_reachable_by_using(name):
             return None
     if owner and one.access:
         alias = next((place.entity for place in after.cpp.get(owner, ()) if place.entity.kind == "alias"), None)
@@ -340,27 +340,27 @@ def _gone(
             target = after.resolve(alias.type, owner.rpartition("::")[0])
             if target is None or one.kind in ("constructor", "destructor"):
                 return None  # the class is something else now, which is told of it
-            if f"{target}::{last}" in after.cpp or after.inherited(target, last)[0]:
+            if f"{target}::{last}" in after.cpp or after.find_in_base(target, last)[0]:
                 return None
     if owner and one.access and one.kind not in ("constructor", "destructor"):
-        found, strange = after.inherited(owner, last)
+        found, strange = after.find_in_base(owner, last)
         if found:
             # A method may be there with other parameters; those of the base count then.
-            if one.kind not in FUNCTIONS or "override" in one.traits or compare_cpp.still_callable(one, found):
+            if one.kind not in FUNCTIONS or "override" in one.traits or compare_cpp.is_still_callable(one, found):
                 return None
-            return msgspec.structs.replace(told, kind="signature", now=declared(found[0]), aspects=("types",))
+            return msgspec.structs.replace(told, kind="signature", now=format_declaration(found[0]), aspects=("types",))
         if strange:
             if "override" in one.traits:
                 return None
-            had = before.inherited(owner, last)[1]
+            had = before.find_in_base(owner, last)[1]
             if not strange <= had:
                 return msgspec.structs.replace(told, sure=min(told.sure, OPEN))
     return told
 
 
-def _python(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
+def _list_python_changes(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
     for change in compare_python.compare(old.python, new.python):
-        home = _python_home(change.name, new, after) if change.kind == "removed" else ""
+        home = _find_python_home(change.name, new, after) if change.kind == "removed" else ""
         if home == "?":
             continue
         if home:
@@ -369,13 +369,13 @@ def _python(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[V
         yield change
 
 
-def _python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
+def _find_python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
     """Another package of the state that gives the name; `?` where that cannot be told."""
     top = name.partition(".")[0]
     for package, surface in after.surfaces.items():
         if package == new.package or not any(m.name.partition(".")[0] == top for m in surface.python.modules):
             continue
-        found = after.python(package).find(name)
+        found = after.get_python_names(package).find(name)
         if found is UNKNOWN:
             return "?"
         if found is not None:
@@ -383,7 +383,7 @@ def _python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
     return ""
 
 
-def _messages(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
+def _list_message_changes(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
     had, has = dict(old.interfaces), dict(new.interfaces)
 
     def change(kind: str, what: str, name: str, **more: Any) -> VersionChange:
@@ -404,31 +404,31 @@ def _messages(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator
             now = sections.get(section.name)
             if now is None:
                 continue
-            mine = [(f.name, _type(f, old.package)) for f in section.fields]
-            wire = wire or mine != [(f.name, _type(f, old.package)) for f in now.fields]
+            mine = [(f.name, _resolve_type(f, old.package)) for f in section.fields]
+            wire = wire or mine != [(f.name, _resolve_type(f, old.package)) for f in now.fields]
             prefix = name if section.name == "message" else f"{name} {section.name}"
-            for kind, what, member, more in _members(section, now, old.package):
+            for kind, what, member, more in _list_member_changes(section, now, old.package):
                 yield change(kind, what, f"{prefix}.{member}", **more)
         if wire:
             yield change("wire", "interface", name, breaks=False)
 
 
-def _members(old: Section, new: Section, package: str) -> Iterator[tuple[str, str, str, dict[str, Any]]]:
+def _list_member_changes(old: Section, new: Section, package: str) -> Iterator[tuple[str, str, str, dict[str, Any]]]:
     had, has = {f.name: f for f in old.fields}, {f.name: f for f in new.fields}
     gone, come = [n for n in had if n not in has], [n for n in has if n not in had]
     for name in gone:
-        alike = [n for n in come if _type(has[n], package) == _type(had[name], package)]
-        rivals = [n for n in gone if _type(had[n], package) == _type(had[name], package)]
+        alike = [n for n in come if _resolve_type(has[n], package) == _resolve_type(had[name], package)]
+        rivals = [n for n in gone if _resolve_type(had[n], package) == _resolve_type(had[name], package)]
         instead = alike[0] if len(alike) == len(rivals) == 1 else ""
-        yield "removed", "field", name, {"old": _written(had[name]), "instead": instead}
+        yield "removed", "field", name, {"old": _format_field(had[name]), "instead": instead}
     for name in come:
-        yield "added", "field", name, {"now": _written(has[name]), "breaks": False}
+        yield "added", "field", name, {"now": _format_field(has[name]), "breaks": False}
     for name, field in had.items():
         now = has.get(name)
         if now is None:
             continue
-        if _type(field, package) != _type(now, package):
-            yield "type", "field", name, {"old": _written(field), "now": _written(now)}
+        if _resolve_type(field, package) != _resolve_type(now, package):
+            yield "type", "field", name, {"old": _format_field(field), "now": _format_field(now)}
         elif field.default != now.default:
             yield "default", "field", name, {"old": field.default, "now": now.default, "breaks": False}
     before, after = {c.name: c for c in old.constants}, {c.name: c for c in new.constants}
@@ -442,14 +442,14 @@ def _members(old: Section, new: Section, package: str) -> Iterator[tuple[str, st
         yield "added", "constant", name, {"now": f"{after[name].type} {name}={after[name].value}", "breaks": False}
 
 
-def _written(field: Field) -> str:
+def _format_field(field: Field) -> str:
     return f"{field.type}{field.array} {field.name}"
 
 
-def _type(field: Field, package: str) -> str:
+def _resolve_type(field: Field, package: str) -> str:
     """The type, however it is written."""
     plain, bound, limit = field.type.partition("<=")
-    return f"{plain if plain in PRIMITIVES else full_name(plain, package)}{bound}{limit}{field.array}"
+    return f"{plain if plain in PRIMITIVES else make_full_name(plain, package)}{bound}{limit}{field.array}"
 
 
 def _build(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:
@@ -465,7 +465,7 @@ def _build(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[Ve
         yield change
 
 
-def _parameters_changed(
+def _list_parameter_changes(
     old: Surface, new: Surface, before: RepositorySurfaces, after: RepositorySurfaces
 ) -> Iterator[VersionChange]:
     had, has = dict(old.parameters), dict(new.parameters)
@@ -475,7 +475,7 @@ def _parameters_changed(
                       kind == "removed", sure)  # fmt: skip
 
     # A name that is still mentioned, or was before, may be declared in a way that is not read.
-    later, earlier = after.mentioned(old.package), before.mentioned(old.package)
+    later, earlier = after.collect_mentioned_names(old.package), before.collect_mentioned_names(old.package)
     for name, default in had.items():
         if name not in has:  # who still sets it is ignored
             yield change("removed", name, default, "", OPEN if later is None or mentions(later, name) else 1.0)

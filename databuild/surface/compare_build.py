@@ -22,7 +22,7 @@ def compare(old: BuildSurface, new: BuildSurface) -> tuple[VersionChange, ...]:
         for name in sorted(had):
             shown, sure = had[name]
             if name not in has:
-                instead = _successor(what, name, fresh)
+                instead = _find_next(what, name, fresh)
                 kind = "moved" if instead else "removed"
                 gone = sure and not open_ended
                 found.append(_change(old, kind, what, name, shown, instead=instead, sure=gone))
@@ -36,7 +36,7 @@ def compare(old: BuildSurface, new: BuildSurface) -> tuple[VersionChange, ...]:
     if old.standard != new.standard:
         had, now = str(old.standard or ""), str(new.standard or "")
         found.append(_change(old, "signature", "standard", "C++", had, now, breaks=new.standard > old.standard))
-    return (*found, *_arguments(old, new))
+    return (*found, *_compare_arguments(old, new))
 
 
 def _change(
@@ -45,7 +45,7 @@ def _change(
     return VersionChange(of.package, "build", kind, what, name, old, now, sure=1.0 if sure else OPEN, **more)
 
 
-def _successor(what: str, name: str, fresh: Iterable[str]) -> str:
+def _find_next(what: str, name: str, fresh: Iterable[str]) -> str:
     """The one new thing that bears the same last name, for things that have a path or a namespace."""
     if what == "target":
         same = [one for one in fresh if one.rpartition("::")[2] == name.rpartition("::")[2]]
@@ -59,7 +59,7 @@ def _successor(what: str, name: str, fresh: Iterable[str]) -> str:
     return same[0] if len(same) == 1 else ""
 
 
-def _arguments(old: BuildSurface, new: BuildSurface) -> Iterator[VersionChange]:
+def _compare_arguments(old: BuildSurface, new: BuildSurface) -> Iterator[VersionChange]:
     has = {launch.path: dict(launch.arguments) for launch in new.launches}
     for launch in old.launches:
         now = has.get(launch.path)

@@ -6,7 +6,7 @@ from difflib import SequenceMatcher
 
 import msgspec
 
-from ...impact.facts.surface import CLASSES, FUNCTIONS, CppParameter, Entity, HeaderSurface, plain
+from ...impact.facts.surface import CLASSES, FUNCTIONS, CppParameter, Entity, HeaderSurface, drop_inline
 
 
 class CppChange(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -50,7 +50,7 @@ def compare(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) 
     """The differences between the headers of two versions of a package, by their paths as they are included. Sorted by
     name; nothing for what only moved its line, changed its spacing or the names of its parameters."""
     changes: list[CppChange] = []
-    before, after = _offered(old), _offered(new)
+    before, after = _group_offered(old), _group_offered(new)
     names = {name for _, name in after}
     gone: list[_Placed] = []
     come: list[_Placed] = []
@@ -58,53 +58,53 @@ def compare(old: Mapping[str, HeaderSurface], new: Mapping[str, HeaderSurface]) 
         olds, news = before.get(key, []), after.get(key, [])
         if not news:
             if key[1] in names:
-                changes += _other_kind(olds, key[1], after)
+                changes += _list_kind_changes(olds, key[1], after)
             else:
-                gone += _distinct(olds)
+                gone += _remove_duplicates(olds)
         elif not olds:
-            come += _distinct(news)
+            come += _remove_duplicates(news)
         else:
-            changes += _same_name(olds, news)
+            changes += _compare_same_name(olds, news)
     lost, found = {one.name for _, one in gone}, {one.name for _, one in come}
     known_before = {name for _, name in before}
-    changes += _renamed(gone, come)
+    changes += _guess_renamed(gone, come)
     for path, one in gone:
-        if _owner(one.name) not in lost:
-            changes.append(CppChange("removed", one.name, one, None, path, "", (), _implicit(one)))
+        if _find_owner(one.name) not in lost:
+            changes.append(CppChange("removed", one.name, one, None, path, "", (), _is_implicit(one)))
     for path, one in come:
-        if _owner(one.name) in found:
+        if _find_owner(one.name) in found:
             continue
         if one.name not in known_before:
             changes.append(CppChange("added", one.name, None, one, "", path, compatible="pure" not in one.traits))
     moved = {change.name for change in changes if change.kind == "moved"}
     return tuple(
         sorted(
-            (change for change in changes if not (change.kind == "moved" and _owner(change.name) in moved)),
+            (change for change in changes if not (change.kind == "moved" and _find_owner(change.name) in moved)),
             key=lambda change: (change.name, change.kind, change.old_header, change.new_header),
         )
     )
 
 
-def _implicit(one: Entity) -> bool:
+def _is_implicit(one: Entity) -> bool:
     """Whether the compiler makes it when nobody writes it: a destructor, and constructors with no others beside."""
     if one.kind == "destructor":
         return "virtual" not in one.traits
     return one.kind == "constructor" and (
-        _copies(one) or all(parameter.default is not None for parameter in one.parameters or ())
+        _is_copy(one) or all(parameter.default is not None for parameter in one.parameters or ())
     )
 
 
-def _copies(one: Entity) -> bool:
+def _is_copy(one: Entity) -> bool:
     """Whether it is a copy or move constructor."""
-    types = _types(one)
+    types = _get_types(one)
     return (
         one.kind == "constructor"
         and len(types) == 1
-        and types[0].removeprefix("const ").rstrip("&") == _simple(one.name)
+        and types[0].removeprefix("const ").rstrip("&") == _strip_owner(one.name)
     )
 
 
-def _offered(headers: Mapping[str, HeaderSurface]) -> dict[tuple[str, str], list[_Placed]]:
+def _group_offered(headers: Mapping[str, HeaderSurface]) -> dict[tuple[str, str], list[_Placed]]:
     """Entities by family and name, as users write it."""
     inline = {name for surface in headers.values() for name in surface.inline}
     found: dict[tuple[str, str], list[_Placed]] = defaultdict(list)
@@ -112,16 +112,16 @@ def _offered(headers: Mapping[str, HeaderSurface]) -> dict[tuple[str, str], list
         for one in headers[path].entities:
             if one.kind == "using namespace":
                 continue
-            name = plain(one.name, inline)
+            name = drop_inline(one.name, inline)
             if one.arguments:
                 name = f"{name}<{one.arguments}>"
             if name != one.name:
                 one = msgspec.structs.replace(one, name=name)
-            found[_family(one), name].append((path, one))
+            found[_find_family(one), name].append((path, one))
     return found
 
 
-def _family(one: Entity) -> str:
+def _find_family(one: Entity) -> str:
     if one.kind in FUNCTIONS:
         return "function"
     if one.kind in CLASSES or one.kind in ("alias", "enum"):
@@ -131,7 +131,7 @@ def _family(one: Entity) -> str:
     return one.kind
 
 
-def _owner(name: str) -> str:
+def _find_owner(name: str) -> str:
     """The scope of a name; template arguments may hold `::` too."""
     depth = 0
     for place in range(len(name) - 1, 0, -1):
@@ -142,36 +142,36 @@ def _owner(name: str) -> str:
     return ""
 
 
-def _simple(name: str) -> str:
-    owner = _owner(name)
+def _strip_owner(name: str) -> str:
+    owner = _find_owner(name)
     return name[len(owner) + 2 :] if owner else name
 
 
-def _distinct(placed: Sequence[_Placed]) -> list[_Placed]:
+def _remove_duplicates(placed: Sequence[_Placed]) -> list[_Placed]:
     seen: set[tuple] = set()
     kept: list[_Placed] = []
     for path, one in placed:
-        key = _signature(one)
+        key = _make_signature(one)
         if key not in seen:
             seen.add(key)
             kept.append((path, one))
     return kept
 
 
-def _types(one: Entity) -> tuple[str, ...]:
+def _get_types(one: Entity) -> tuple[str, ...]:
     return tuple(parameter.type for parameter in one.parameters or ())
 
 
-def _signature(one: Entity) -> tuple:
+def _make_signature(one: Entity) -> tuple:
     """What tells overloads apart."""
-    return (one.kind, _types(one), "const" in one.traits, "&" in one.traits, "&&" in one.traits, _template(one))
+    return (one.kind, _get_types(one), "const" in one.traits, "&" in one.traits, "&&" in one.traits, _get_template(one))
 
 
-def _template(one: Entity) -> tuple[tuple[str, str, bool], ...]:
+def _get_template(one: Entity) -> tuple[tuple[str, str, bool], ...]:
     return tuple((parameter.kind, parameter.type, parameter.pack) for parameter in one.template or ())
 
 
-def _other_kind(
+def _list_kind_changes(
     olds: Sequence[_Placed], name: str, after: Mapping[tuple[str, str], list[_Placed]]
 ) -> Iterable[CppChange]:
     path, one = olds[0]
@@ -179,17 +179,17 @@ def _other_kind(
     yield CppChange("signature", name, one, other, path, there, ("kind",), other.kind in ("using", "alias"))
 
 
-def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[CppChange]:
+def _compare_same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[CppChange]:
     """Differences of the entities of one name, overloads paired."""
-    if len(olds) == len(news) and all(map(_as_before, olds, news)):
+    if len(olds) == len(news) and all(map(_is_unchanged, olds, news)):
         return []
     changes: list[CppChange] = []
     old_paths, new_paths = {path for path, _ in olds}, {path for path, _ in news}
-    left = _distinct(news)
+    left = _remove_duplicates(news)
     unpaired: list[_Placed] = []
     pairs: list[tuple[_Placed, _Placed]] = []
-    for placed in _distinct(olds):
-        match = next((other for other in left if _signature(other[1]) == _signature(placed[1])), None)
+    for placed in _remove_duplicates(olds):
+        match = next((other for other in left if _make_signature(other[1]) == _make_signature(placed[1])), None)
         if match is None:
             unpaired.append(placed)
         else:
@@ -197,7 +197,7 @@ def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[CppChan
             pairs.append((placed, match))
     candidates = sorted(
         (
-            (_unlike(placed[1], other[1]), first, second)
+            (_compute_distance(placed[1], other[1]), first, second)
             for first, placed in enumerate(unpaired)
             for second, other in enumerate(left)
         ),
@@ -212,12 +212,12 @@ def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[CppChan
         used_new.add(second)
         pairs.append((unpaired[first], left[second]))
     for (path, one), (there, other) in pairs:
-        changes += _pair(path, one, there, other, [offered for _, offered in news])
+        changes += _compare_pair(path, one, there, other, [offered for _, offered in news])
     removed = [placed for number, placed in enumerate(unpaired) if number not in used_old]
     added = [placed for number, placed in enumerate(left) if number not in used_new]
     for path, one in removed:
         # an overload that another one takes over is no loss
-        taken = _copies(one) or ("virtual" not in one.traits and still_callable(one, [other for _, other in news]))
+        taken = _is_copy(one) or ("virtual" not in one.traits and is_still_callable(one, [other for _, other in news]))
         changes.append(CppChange("removed", one.name, one, None, path, "", ("overload",), taken))
     for path, one in added:
         changes.append(CppChange("added", one.name, None, one, "", path, ("overload",), "pure" not in one.traits))
@@ -228,20 +228,20 @@ def _same_name(olds: Sequence[_Placed], news: Sequence[_Placed]) -> list[CppChan
     return changes
 
 
-def _as_before(old: _Placed, new: _Placed) -> bool:
+def _is_unchanged(old: _Placed, new: _Placed) -> bool:
     """Whether nothing changed but the line. Most entities of two versions are so, and no more is asked of them."""
     (path, one), (there, other) = old, new
     return path == there and (one == other or msgspec.structs.replace(one, line=other.line) == other)
 
 
-def _unlike(one: Entity, other: Entity) -> float:
+def _compute_distance(one: Entity, other: Entity) -> float:
     """0 for the same parameters, 1 for nothing in common."""
-    mine, theirs = _types(one), _types(other)
+    mine, theirs = _get_types(one), _get_types(other)
     ratio = 1.0 if not mine and not theirs else SequenceMatcher(None, mine, theirs, autojunk=False).ratio()
     return 1 - ratio + 0.1 * (one.type != other.type) + 0.1 * (("const" in one.traits) != ("const" in other.traits))
 
 
-def _pair(path: str, one: Entity, there: str, other: Entity, offered: Sequence[Entity]) -> list[CppChange]:
+def _compare_pair(path: str, one: Entity, there: str, other: Entity, offered: Sequence[Entity]) -> list[CppChange]:
     """Differences of two entities; offered: all of that name in the new version."""
     changes: list[CppChange] = []
 
@@ -254,13 +254,13 @@ def _pair(path: str, one: Entity, there: str, other: Entity, offered: Sequence[E
         if one.value != other.value:
             add_change("value", True)
         return changes
-    what = _what(one, other)
+    what = _list_differences(one, other)
     if what:
-        add_change("signature", _compatible(one, other, what, offered), *what)
+        add_change("signature", _is_compatible(one, other, what, offered), *what)
     if one.value and other.value and one.value != other.value:
         add_change("value", True)
-    if _defaults(one.parameters, other.parameters) or _template_defaults(one, other):
-        add_change("default", _family(one) != "function" or still_callable(one, offered))
+    if _changes_defaults(one.parameters, other.parameters) or _changes_template_defaults(one, other):
+        add_change("default", _find_family(one) != "function" or is_still_callable(one, offered))
     if one.kind in CLASSES and other.kind in CLASSES and one.bases != other.bases:
         add_change("base", {base.type for base in one.bases} <= {base.type for base in other.bases})
     if one.access == "public" and other.access in ("protected", "private"):
@@ -271,24 +271,24 @@ def _pair(path: str, one: Entity, there: str, other: Entity, offered: Sequence[E
     return changes
 
 
-def _what(one: Entity, other: Entity) -> list[str]:
+def _list_differences(one: Entity, other: Entity) -> list[str]:
     """In what two entities of one name differ, in the words of Change."""
     what: list[str] = []
-    if _family(one) != "function":
+    if _find_family(one) != "function":
         if one.kind != other.kind and not (one.kind in CLASSES and other.kind in CLASSES):
             what.append("kind")
         elif one.type != other.type and one.kind not in CLASSES:
             what.append("type")
-        if one.kind == "macro" and _macro_arity(one) != _macro_arity(other):
+        if one.kind == "macro" and _get_macro_arity(one) != _get_macro_arity(other):
             what.append("arity")
         if one.kind == "enum" and ("scoped" in one.traits) != ("scoped" in other.traits):
             what.append("kind")
         if ("static" in one.traits) != ("static" in other.traits) and one.kind == "field":
             what.append("static")
-        if _template(one) != _template(other):
+        if _get_template(one) != _get_template(other):
             what.append("template")
         return what
-    mine, theirs = _types(one), _types(other)
+    mine, theirs = _get_types(one), _get_types(other)
     if len(mine) != len(theirs) or ("variadic" in one.traits) != ("variadic" in other.traits):
         what.append("arity")
         if mine[: len(theirs)] != theirs[: len(mine)]:
@@ -302,30 +302,30 @@ def _what(one: Entity, other: Entity) -> list[str]:
             what.append(trait)
     if {"&", "&&"} & set(one.traits) != {"&", "&&"} & set(other.traits):
         what.append("ref")
-    if _template(one) != _template(other):
+    if _get_template(one) != _get_template(other):
         what.append("template")
     if "virtual" in one.traits and {"arity", "types", "result", "const", "virtual"} & set(what):
         what.append("override")
     return what
 
 
-def _macro_arity(one: Entity) -> tuple[str, ...] | int | None:
+def _get_macro_arity(one: Entity) -> tuple[str, ...] | int | None:
     if one.parameters is None:
         return None
     return len(one.parameters)
 
 
-def _compatible(one: Entity, other: Entity, what: Sequence[str], offered: Sequence[Entity]) -> bool:
-    if _family(one) != "function":
+def _is_compatible(one: Entity, other: Entity, what: Sequence[str], offered: Sequence[Entity]) -> bool:
+    if _find_family(one) != "function":
         return list(what) == ["kind"] and other.kind == "alias"
     if "override" in what or "ref" in what:
         return False
     if "template" in what and one.template:
         return False
-    return still_callable(one, offered)
+    return is_still_callable(one, offered)
 
 
-def still_callable(one: Entity, offered: Sequence[Entity]) -> bool:
+def is_still_callable(one: Entity, offered: Sequence[Entity]) -> bool:
     """Whether every call of a function still finds one that takes it, by the types of its parameters as written."""
     mine = one.parameters or ()
     least = sum(parameter.default is None and not parameter.pack for parameter in mine)
@@ -335,7 +335,7 @@ def still_callable(one: Entity, offered: Sequence[Entity]) -> bool:
 def _accepts(one: Entity, given: Sequence[CppParameter], other: Entity) -> bool:
     """Whether what is given to one function can be given to another instead."""
     taken = other.parameters or ()
-    if "deleted" in other.traits or _family(other) != "function":
+    if "deleted" in other.traits or _find_family(other) != "function":
         return False
     if one.type not in (other.type, "void"):
         return False
@@ -363,40 +363,40 @@ def _takes(given: CppParameter, taken: CppParameter) -> bool:
     return mine == f"const {theirs}&"
 
 
-def _defaults(mine: Sequence[CppParameter] | None, theirs: Sequence[CppParameter] | None) -> bool:
+def _changes_defaults(mine: Sequence[CppParameter] | None, theirs: Sequence[CppParameter] | None) -> bool:
     return any(
         one.default is not None and one.default != other.default and one.type == other.type
         for one, other in zip(mine or (), theirs or (), strict=False)
     )
 
 
-def _template_defaults(one: Entity, other: Entity) -> bool:
+def _changes_template_defaults(one: Entity, other: Entity) -> bool:
     return any(
         mine.default is not None and mine.default != theirs.default
         for mine, theirs in zip(one.template or (), other.template or (), strict=False)
     )
 
 
-def _renamed(gone: Sequence[_Placed], come: Sequence[_Placed]) -> list[CppChange]:
+def _guess_renamed(gone: Sequence[_Placed], come: Sequence[_Placed]) -> list[CppChange]:
     """Hints: what is gone and what has come with a near name in the same scope, or with the same name in another one,
     and otherwise alike. Each of them is in one hint at most, the surest."""
-    members_gone, members_come = _members(gone), _members(come)
+    members_gone, members_come = _collect_members(gone), _collect_members(come)
     by_scope: dict[tuple[str, str], list[int]] = defaultdict(list)
     by_name: dict[tuple[str, str], list[int]] = defaultdict(list)
     for number, (_, one) in enumerate(come):
-        by_scope[one.kind, _owner(one.name)].append(number)
-        by_name[one.kind, _simple(one.name)].append(number)
+        by_scope[one.kind, _find_owner(one.name)].append(number)
+        by_name[one.kind, _strip_owner(one.name)].append(number)
     lost, found = {one.name for _, one in gone}, {one.name for _, one in come}
     hints: list[tuple[float, bool, int, int]] = []
     for first, (_, one) in enumerate(gone):
-        simple = _simple(one.name)
-        if one.kind in ("constructor", "destructor") or _owner(one.name) in lost:
+        simple = _strip_owner(one.name)
+        if one.kind in ("constructor", "destructor") or _find_owner(one.name) in lost:
             continue
-        for second in {*by_scope[one.kind, _owner(one.name)], *by_name[one.kind, simple]}:
+        for second in {*by_scope[one.kind, _find_owner(one.name)], *by_name[one.kind, simple]}:
             other = come[second][1]
-            if _owner(other.name) in found:
+            if _find_owner(other.name) in found:
                 continue
-            sure = _likeness(one, other, members_gone, members_come)
+            sure = _compute_likeness(one, other, members_gone, members_come)
             if sure >= _SIMILAR:
                 hints.append((-sure, gone[first][0] != come[second][0], first, second))
     changes: list[CppChange] = []
@@ -412,19 +412,19 @@ def _renamed(gone: Sequence[_Placed], come: Sequence[_Placed]) -> list[CppChange
     return changes
 
 
-def _members(placed: Sequence[_Placed]) -> dict[str, set[str]]:
+def _collect_members(placed: Sequence[_Placed]) -> dict[str, set[str]]:
     found: dict[str, set[str]] = defaultdict(set)
     for _, one in placed:
         if one.kind not in ("constructor", "destructor"):
-            found[_owner(one.name)].add(_simple(one.name))
+            found[_find_owner(one.name)].add(_strip_owner(one.name))
     return found
 
 
-def _likeness(
+def _compute_likeness(
     one: Entity, other: Entity, members_gone: Mapping[str, set[str]], members_come: Mapping[str, set[str]]
 ) -> float:
     """How sure it is that both are one thing under two names, 0 to 1."""
-    mine, theirs = _simple(one.name), _simple(other.name)
+    mine, theirs = _strip_owner(one.name), _strip_owner(other.name)
     names = SequenceMatcher(
         None, mine.lower().replace("_", ""), theirs.lower().replace("_", ""), autojunk=False
     ).ratio()
@@ -436,12 +436,12 @@ def _likeness(
             return names * 0.8
         return (names + len(inner & outer) / len(inner | outer)) / 2
     if one.kind in FUNCTIONS:
-        if _types(one) != _types(other) or one.type != other.type:
+        if _get_types(one) != _get_types(other) or one.type != other.type:
             return 0.0
         # without parameters, alike signatures say little
         return names if one.parameters else names * 0.9
     if one.kind == "enumerator":
         return names if one.value == other.value else 0.0
     if one.kind == "macro":
-        return names if _macro_arity(one) == _macro_arity(other) and one.value == other.value else 0.0
+        return names if _get_macro_arity(one) == _get_macro_arity(other) and one.value == other.value else 0.0
     return names if one.type == other.type else 0.0

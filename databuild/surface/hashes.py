@@ -10,7 +10,7 @@ import json
 from collections.abc import Callable
 from typing import Any
 
-from ...impact.facts.interface import Field, Interface, full_name
+from ...impact.facts.interface import Field, Interface, make_full_name
 
 Find = Callable[[str], Interface | None]
 """The definition of `package/Name`, a message; None where it is not known."""
@@ -30,25 +30,25 @@ _ARRAY, _BOUNDED, _SEQUENCE = 48, 96, 144
 _EMPTY = Field("structure_needs_at_least_one_member", "uint8", "", "", 0)
 
 
-def md5(package: str, definition: Interface, find: Find) -> str | None:
+def compute_md5(package: str, definition: Interface, find: Find) -> str | None:
     """The hash of a message or service of ROS 1; None where something in it is not known, and of actions, which are
     several messages."""
     if definition.kind not in ("msg", "srv"):
         return None
-    texts = [_text_of(package, section.constants, section.fields, find, ()) for section in definition.sections]
+    texts = [_build_hash_text(package, section.constants, section.fields, find, ()) for section in definition.sections]
     if None in texts:
         return None
     return hashlib.md5("".join(text for text in texts if text is not None).encode()).hexdigest()
 
 
-def _text_of(package: str, constants: Any, fields: Any, find: Find, above: tuple[str, ...]) -> str | None:
+def _build_hash_text(package: str, constants: Any, fields: Any, find: Find, above: tuple[str, ...]) -> str | None:
     """What the hash is taken of: constants, then fields, with the hash of each message in the place of its name."""
     lines = [f"{one.type} {one.name}={one.value.strip()}" for one in constants]
     for field in fields:
         if field.type in _PRIMITIVES_1:
             lines.append(f"{field.type}{field.array} {field.name}")
             continue
-        name = full_name(field.type, package)
+        name = make_full_name(field.type, package)
         inner = find(name)
         if inner is None or name in above:
             return None
@@ -56,7 +56,7 @@ def _text_of(package: str, constants: Any, fields: Any, find: Find, above: tuple
         text = (
             ""
             if section is None
-            else _text_of(name.partition("/")[0], section.constants, section.fields, find, (*above, name))
+            else _build_hash_text(name.partition("/")[0], section.constants, section.fields, find, (*above, name))
         )
         if text is None:
             return None
@@ -64,7 +64,7 @@ def _text_of(package: str, constants: Any, fields: Any, find: Find, above: tuple
     return "\n".join(lines)
 
 
-def rihs01(package: str, name: str, definition: Interface, find: Find) -> str | None:
+def compute_rihs01(package: str, name: str, definition: Interface, find: Find) -> str | None:
     """The type hash of a message of ROS 2, as `RIHS01_...`; None where something in it is not known, and of services
     and actions, which have messages of their own. name: without its package."""
     if definition.kind != "msg" or len(definition.sections) != 1:
@@ -83,7 +83,7 @@ def _describe(package: str, name: str, definition: Interface, find: Find, known:
     fields: list[dict[str, Any]] = []
     known[f"{package}/msg/{name}"] = {"type_name": f"{package}/msg/{name}", "fields": fields}
     for field in definition.sections[0].fields or (_EMPTY,):
-        array = _array(field.array)
+        array = _parse_array(field.array)
         plain, _, limit = field.type.partition("<=")
         nested = ""
         if array is None or not (limit or "0").isdecimal():
@@ -93,7 +93,7 @@ def _describe(package: str, name: str, definition: Interface, find: Find, known:
         elif plain in _NUMBERS:
             number = _NUMBERS[plain]
         else:
-            other, _, short = full_name(plain, package).partition("/")
+            other, _, short = make_full_name(plain, package).partition("/")
             number, nested = _NESTED, f"{other}/msg/{short}"
             if nested not in known:
                 inner = find(f"{other}/{short}")
@@ -109,7 +109,7 @@ def _describe(package: str, name: str, definition: Interface, find: Find, known:
     return True
 
 
-def _array(text: str) -> tuple[int, int] | None:
+def _parse_array(text: str) -> tuple[int, int] | None:
     """What is added to a type's number, and how many elements there may be; None where that is no number."""
     inside = text.strip("[]")
     if not inside:
@@ -124,5 +124,5 @@ def hash_of(name: str, ros: int, definition: Interface, find: Find) -> str | Non
     """The hash of an interface (`package/msg/Name`) in a ROS generation; None where it has none, or it is not known."""
     package, _, rest = name.partition("/")
     if ros == 1:
-        return md5(package, definition, find)
-    return rihs01(package, rest.partition("/")[2], definition, find)
+        return compute_md5(package, definition, find)
+    return compute_rihs01(package, rest.partition("/")[2], definition, find)

@@ -13,8 +13,8 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from ...edges.files import read_file, read_start, too_large
-from ...edges.limits import limits
+from ...edges.files import make_size_error, read_file, read_start
+from ...edges.limits import get_limits
 from ...impact.facts import interface as interfaces
 from ...impact.facts import manifest as manifests
 from ...impact.facts.interface import Field, Interface, Section
@@ -32,11 +32,11 @@ from ...impact.targets.surface.surface import (
     Surface,
 )
 from ..extract import cpp, python
-from .build import launch_arguments, launch_kind
+from .build import classify_launch_file, launch_arguments
 from .clones import VersionError
 from .compare import RepositorySurfaces
-from .headers import compiled
-from .unpacked_deb import DebError, DebFile, members
+from .headers import keep_compiled_includes
+from .unpacked_deb import DebError, DebFile, read_members
 
 _DPKG = Path("/var/lib/dpkg/info")
 _START = 4
@@ -80,55 +80,55 @@ def is_installed(asked: str) -> bool:
     return os.sep in asked and os.path.exists(asked)
 
 
-def surface_at(package: str, asked: str) -> tuple[Surface, RepositorySurfaces]:
+def read_surface(package: str, asked: str) -> tuple[Surface, RepositorySurfaces]:
     """What a package offers that is installed in a prefix, or in a .deb or a folder of them. Raises VersionError."""
     place = Path(asked)
     try:
-        parts = debs([place]) if place.is_file() else debs(found) if (found := sorted(place.glob("*.deb"))) else None
+        parts = load([place]) if place.is_file() else load(found) if (found := sorted(place.glob("*.deb"))) else None
         if parts is None:
-            parts = prefix(place, package)
+            parts = read_prefix(place, package)
     except (DebError, OSError) as error:
         raise VersionError(str(error)) from None
     if not any(f"share/{package}/package.xml" in part.paths for part in parts):
         known = sorted(frozenset().union(*(part.packages for part in parts)))
         names = f"; it has {', '.join(known[:8])}" if known else ""
         raise VersionError(f"{asked}: there is no `{package}` (no share/{package}/package.xml){names}")
-    surface = surface_of(package, parts)
+    surface = build_surface(package, parts)
     return surface, RepositorySurfaces({package: surface})
 
 
 # -- where files are ---------------------------------------------------------------------------------------------------
 
 
-def prefix(folder: Path, package: str) -> list[Part]:
+def read_prefix(folder: Path, package: str) -> list[Part]:
     """The files of one package in a prefix, and of what its Debian packages have besides."""
     share = folder / "share" / package
     if not share.is_dir():
         have = sorted(path.parent.name for path in folder.glob("share/*/package.xml"))
         if not have:
             raise VersionError(f"{folder}: is no prefix of ROS packages (nothing has share/PACKAGE/package.xml)")
-        return [_part(folder, [f"share/{name}/package.xml" for name in have])]
-    owned = _of_dpkg(folder, package)
+        return [_make_part(folder, [f"share/{name}/package.xml" for name in have])]
+    owned = _list_dpkg_files(folder, package)
     if owned:
-        return [_part(folder, paths) for paths in owned]
+        return [_make_part(folder, paths) for paths in owned]
     roots = [f"share/{package}", f"include/{package}", f"lib/{package}"]
     roots += [str(path.relative_to(folder)) for path in folder.glob(f"lib/python3*/*-packages/{package}")]
     roots += [str(path.relative_to(folder)) for path in folder.glob(f"local/lib/python3*/*-packages/{package}")]
     found = (path for root in roots for path in (folder / root).rglob("*") if path.is_file())
-    return [_part(folder, [path.relative_to(folder).as_posix() for path in found], convention=True)]
+    return [_make_part(folder, [path.relative_to(folder).as_posix() for path in found], convention=True)]
 
 
-def _part(folder: Path, paths: Iterable[str], convention: bool = False) -> Part:
+def _make_part(folder: Path, paths: Iterable[str], convention: bool = False) -> Part:
     return Part(
         frozenset(paths),
-        lambda path: read_file(folder / path, limits().text),
+        lambda path: read_file(folder / path, get_limits().text),
         lambda path: read_start(folder / path, _START),
         lambda path: os.access(folder / path, os.X_OK),
         convention,
     )
 
 
-def _of_dpkg(folder: Path, package: str) -> list[list[str]]:
+def _list_dpkg_files(folder: Path, package: str) -> list[list[str]]:
     """Files below a prefix by Debian package, of those that have something of a ROS package; empty without dpkg."""
     start = f"{folder.resolve().as_posix().rstrip('/')}/"
     marks = [f"\n{start}share/{package}/".encode()]
@@ -136,7 +136,7 @@ def _of_dpkg(folder: Path, package: str) -> list[list[str]]:
     found = []
     for file in sorted(_DPKG.glob("*.list")):
         try:
-            data = read_file(file, limits().listing)
+            data = read_file(file, get_limits().listing)
         except OSError:
             continue
         if any(mark in data for mark in marks):
@@ -146,25 +146,25 @@ def _of_dpkg(folder: Path, package: str) -> list[list[str]]:
     return found
 
 
-def _content(files: Mapping[str, DebFile], path: str) -> bytes:
+def _get_content(files: Mapping[str, DebFile], path: str) -> bytes:
     data = files[path].data
-    if len(data) > limits().text:
-        raise too_large(path, limits().text)
+    if len(data) > get_limits().text:
+        raise make_size_error(path, get_limits().text)
     return data
 
 
-def debs(files: Sequence[Path]) -> list[Part]:
+def load(files: Sequence[Path]) -> list[Part]:
     """The files of Debian packages, from the prefix in which their ROS packages lie. Raises DebError and OSError."""
     parts = []
     for file in files:
-        held = members(file)
+        held = read_members(file)
         starts = {found[1] for path in held if (found := re.match(r"((?:usr|opt/ros/[^/]+)/)", path))}
         for start in sorted(starts):
             inside = {path.removeprefix(start): member for path, member in held.items() if path.startswith(start)}
             parts.append(
                 Part(
                     frozenset(inside),
-                    partial(_content, inside),
+                    partial(_get_content, inside),
                     partial(lambda inside, path: inside[path].data[:_START], inside),
                     partial(lambda inside, path: inside[path].executable, inside),
                 )
@@ -175,30 +175,30 @@ def debs(files: Sequence[Path]) -> list[Part]:
 # -- what they tell ----------------------------------------------------------------------------------------------------
 
 
-def surface_of(package: str, parts: Sequence[Part]) -> Surface:
+def build_surface(package: str, parts: Sequence[Part]) -> Surface:
     """The surface of a package by its installed files. One of the parts has its manifest. What cannot be read is left
     out, and listed as unknown."""
     share = f"share/{package}/"
     unread: dict[str, str] = {}
     parts = [
-        part._replace(read=partial(_contained, part.read, unread), start=partial(_contained, part.start, unread))
+        part._replace(read=partial(_read_or_note, part.read, unread), start=partial(_read_or_note, part.start, unread))
         for part in parts
     ]
     home = next(part for part in parts if f"{share}package.xml" in part.paths)
     manifest = manifests.extract(home.read(f"{share}package.xml"))
     mine = [part for part in parts if package in part.packages or _touches(part, package)]
-    defined = dict(_interfaces(package, mine))
+    defined = dict(_read_interfaces(package, mine))
     headers: list[tuple[str, HeaderSurface]] = []
     listed: list[Header] = []
-    for part, path in _headers(package, mine):
+    for part, path in _list_headers(package, mine):
         include, data = _include(path), part.read(path)
         if _GENERATED.search(data[:400]):
             listed.append(Header(include, path))
             continue
         listed.append(Header(include, path, path))
-        headers.append((include, compiled(cpp.extract(data))))
-    cmake = _cmake(package, mine)
-    modules, unknown = _python(package, mine)
+        headers.append((include, keep_compiled_includes(cpp.extract(data))))
+    cmake = _read_cmake(package, mine)
+    modules, unknown = _read_python(package, mine)
     declared = [d.name for d in manifest.dependencies if d.kind in ("exec", "build_export")]
     build = BuildSurface(
         package,
@@ -209,10 +209,10 @@ def surface_of(package: str, parts: Sequence[Part]) -> Surface:
         dependencies=tuple(cmake.dependencies),
         commands=tuple(sorted(cmake.commands)),
         standard=max((target.standard for target in cmake.targets), default=0),
-        programs=tuple(_programs(package, mine)),
-        launches=tuple(_launches(package, mine)),
+        programs=tuple(_list_programs(package, mine)),
+        launches=tuple(_read_launch_files(package, mine)),
         headers=tuple(sorted(set(listed), key=lambda header: (header.include, header.installed))),
-        unknown=(*_TOLD, *_unread(unread)),
+        unknown=(*_TOLD, *_list_unread(unread)),
     )
     return Surface(
         package,
@@ -226,7 +226,7 @@ def surface_of(package: str, parts: Sequence[Part]) -> Surface:
     )
 
 
-def _contained(read: Callable[[str], bytes], unread: dict[str, str], path: str) -> bytes:
+def _read_or_note(read: Callable[[str], bytes], unread: dict[str, str], path: str) -> bytes:
     """What a file holds, nothing where it cannot be read, which is noted."""
     try:
         return read(path)
@@ -235,7 +235,7 @@ def _contained(read: Callable[[str], bytes], unread: dict[str, str], path: str) 
         return b""
 
 
-def _unread(files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+def _list_unread(files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     for path, reason in sorted(files.items()):
         yield "headers" if _HEADER.search(path) else "files", f"{path} cannot be read: {reason}"
 
@@ -243,15 +243,15 @@ def _unread(files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
 def _touches(part: Part, package: str) -> bool:
     """Whether a Debian package has something of a ROS package whose manifest another one has."""
     starts = (f"share/{package}/", f"include/{package}/", f"lib/{package}/")
-    return any(path.startswith(starts) or _module(path).startswith(f"{package}/") for path in part.paths)
+    return any(path.startswith(starts) or _get_module_path(path).startswith(f"{package}/") for path in part.paths)
 
 
-def _module(path: str) -> str:
+def _get_module_path(path: str) -> str:
     found = _PYTHON.match(path)
     return found[1] if found else ""
 
 
-def _headers(package: str, parts: Sequence[Part]) -> Iterator[tuple[Part, str]]:
+def _list_headers(package: str, parts: Sequence[Part]) -> Iterator[tuple[Part, str]]:
     for part in parts:
         alone = not part.convention and part.packages == {package}
         for path in sorted(part.paths):
@@ -268,7 +268,7 @@ def _include(path: str) -> str:
     return rest if rest.startswith(f"{first}/") else inside
 
 
-def _interfaces(package: str, parts: Sequence[Part]) -> Iterator[tuple[str, Interface]]:
+def _read_interfaces(package: str, parts: Sequence[Part]) -> Iterator[tuple[str, Interface]]:
     wanted = re.compile(rf"share/{re.escape(package)}/(msg|srv|action)/([A-Za-z]\w*)\.(msg|srv|action)\Z")
     found: dict[str, Interface] = {}
     for part in parts:
@@ -298,7 +298,7 @@ class _CMake(NamedTuple):
     dependencies: dict[str, None]
 
 
-def _cmake(package: str, parts: Sequence[Part]) -> _CMake:
+def _read_cmake(package: str, parts: Sequence[Part]) -> _CMake:
     found = _CMake(set(), set(), set(), {}, {})
     # Debian keeps configurations below the folder of the architecture.
     place = re.compile(
@@ -321,13 +321,13 @@ def _cmake(package: str, parts: Sequence[Part]) -> _CMake:
     return found
 
 
-def _python(package: str, parts: Sequence[Part]) -> tuple[list[InstalledModule], set[str]]:
+def _read_python(package: str, parts: Sequence[Part]) -> tuple[list[InstalledModule], set[str]]:
     modules: dict[str, InstalledModule] = {}
     unknown: set[str] = set()
     for part in parts:
         alone = not part.convention and part.packages == {package}
         for path in sorted(part.paths):
-            inside = _module(path)
+            inside = _get_module_path(path)
             if not inside or ".egg-info/" in inside or not (inside.startswith(f"{package}/") or alone):
                 continue
             dotted = inside.replace("/", ".")
@@ -342,7 +342,7 @@ def _python(package: str, parts: Sequence[Part]) -> tuple[list[InstalledModule],
     return [modules[name] for name in sorted(modules)], unknown
 
 
-def _programs(package: str, parts: Sequence[Part]) -> Iterator[InstalledProgram]:
+def _list_programs(package: str, parts: Sequence[Part]) -> Iterator[InstalledProgram]:
     found = {}
     for part in parts:
         for path in part.paths:
@@ -353,11 +353,11 @@ def _programs(package: str, parts: Sequence[Part]) -> Iterator[InstalledProgram]
     return iter(sorted(found.values(), key=lambda program: program.name))
 
 
-def _launches(package: str, parts: Sequence[Part]) -> Iterator[InstalledLaunchFile]:
+def _read_launch_files(package: str, parts: Sequence[Part]) -> Iterator[InstalledLaunchFile]:
     share = f"share/{package}/"
     for part in parts:
         for path in sorted(part.paths):
-            kind = launch_kind(path) if path.startswith(share) and "launch" in path else None
+            kind = classify_launch_file(path) if path.startswith(share) and "launch" in path else None
             if kind and not path.endswith("__init__.py"):
                 actions = flow_launch.extract(part.read(path), kind).actions
                 yield InstalledLaunchFile(path.removeprefix(share), tuple(launch_arguments(actions)))

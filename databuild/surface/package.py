@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from ...edges.limits import limits_stamp
+from ...edges.limits import format_limits
 from ...impact.facts import kinds
 from ...impact.facts.interface import Field, Interface, Section
-from ...impact.facts.store import encodable
-from ...impact.model.package import role_of_folder
-from ...impact.source_keys import source_key
-from ...impact.targets.parameters import last_part
+from ...impact.facts.store import encode_rows
+from ...impact.model.package import find_folder_role
+from ...impact.source_keys import compute_source_key
+from ...impact.targets.parameters import find_last_part
 from ...impact.targets.surface.surface import BuildSurface, Surface
 from ..extract import cpp, parameters, python
 from . import build as surface_build
 from . import python as surface_python
-from .headers import compiled
+from .headers import keep_compiled_includes
 
 if TYPE_CHECKING:
     from ...impact.facts.extract import ExtractedFacts
@@ -36,52 +36,52 @@ if TYPE_CHECKING:
 # -- reading -----------------------------------------------------------------------------------------------------------
 
 
-def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, Surface]:
+def build_surfaces(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, Surface]:
     """The surfaces of all packages of a tree, by name. What is equal in two trees is worked out once: facts by the
     content of their file, surfaces by all that they are made from. jobs: processes to parse with. Raises TreeError."""
-    from ...impact.facts.extract import gather
+    from ...impact.facts.extract import extract_all
     from ...impact.model.package import Watched
     from ...impact.model.workspace import link
 
-    gathered = gather(tree, store, jobs=jobs, kind_of=_kind_for_build)
+    gathered = extract_all(tree, store, jobs=jobs, kind_of=_find_build_kind)
     workspace = link(tree, gathered, store, None, Watched(), jobs)
-    builds = {package.name: surface_build.surface_of(workspace, package) for package in workspace}
+    builds = {package.name: surface_build.build_surface(workspace, package) for package in workspace}
     wanted: dict[str, str] = {}
     headers: dict[str, dict[str, str]] = {}
     guessed: set[str] = set()
     for package in workspace:
-        found, sure = _headers(package, builds[package.name])
+        found, sure = _collect_headers(package, builds[package.name])
         headers[package.name] = found
         if not sure:
             guessed.add(package.name)
         wanted.update((path, cpp.__name__) for path in found.values())
-        for path in surface_python.installed(package).modules.values():
-            if surface_python.kind_of(path) is not None:
+        for path in surface_python.find_installed_modules(package).modules.values():
+            if surface_python.find_kind(path) is not None:
                 wanted[path] = python.__name__
-    declaring = {package.name: dict(_declaring(package)) for package in workspace}
-    looked = gather(tree, store, jobs=jobs, kind_of=wanted.get)
+    declaring = {package.name: dict(_list_declaring_files(package)) for package in workspace}
+    looked = extract_all(tree, store, jobs=jobs, kind_of=wanted.get)
     sources = {path: kind for each in declaring.values() for path, kind in each.items()}
-    declared = gather(tree, store, jobs=jobs, kind_of=sources.get)
+    declared = extract_all(tree, store, jobs=jobs, kind_of=sources.get)
 
-    def facts(path: str) -> Any:
-        file = looked.facts(path) if path in looked.kinds else None
+    def get_facts(path: str) -> Any:
+        file = looked.get_facts(path) if path in looked.kinds else None
         return None if file is None else file.facts
 
     surfaces = {}
     for package in workspace:
         name = package.name
         looked.preload(headers[name].values())
-        known = [(include, facts(path)) for include, path in sorted(headers[name].items())]
+        known = [(include, get_facts(path)) for include, path in sorted(headers[name].items())]
         surfaces[name] = Surface(
             name,
             package.manifest.version,
             builds[name],
-            surface_python.surface_of(package, facts),
-            tuple((include, compiled(surface)) for include, surface in known if surface is not None),
-            tuple(sorted(dict(_interfaces(package)).items())),
+            surface_python.build_surface(package, get_facts),
+            tuple((include, keep_compiled_includes(surface)) for include, surface in known if surface is not None),
+            tuple(sorted(dict(_list_interfaces(package)).items())),
             name in guessed,
             tuple(sorted(name for name, how in package.declared.items() if how & _WITH)),
-            *_parameters(declared, declaring[name]),
+            *_merge_parameters(declared, declaring[name]),
         )
     return surfaces
 
@@ -89,13 +89,13 @@ def surfaces_of(tree: Tree, store: Store, jobs: int | None = None) -> dict[str, 
 _WITH = frozenset(("exec", "build_export"))
 
 
-def _declaring(package: Package) -> Iterator[tuple[str, str]]:
+def _list_declaring_files(package: Package) -> Iterator[tuple[str, str]]:
     """Files that may declare parameters of nodes, with the kind of facts that tells it."""
     base = f"{package.path}/" if package.path else ""
     for path in package.files:
         full = path if path.startswith(base) else f"{base}{path}"
-        kind = kinds.kind_of(full)
-        if kind in ("cpp", "python") and role_of_folder(full[len(base) :]) is None:
+        kind = kinds.find_kind(full)
+        if kind in ("cpp", "python") and find_folder_role(full[len(base) :]) is None:
             yield full, parameters.kind_of(kind)
     for made in package.build.generated:
         language = {"parameters": "yaml", "reconfigure": "cfg"}.get(made.how)
@@ -103,66 +103,66 @@ def _declaring(package: Package) -> Iterator[tuple[str, str]]:
             yield from ((path, parameters.kind_of(language)) for path in made.files if "$" not in path)
 
 
-def _parameters(
+def _merge_parameters(
     declared: ExtractedFacts, files: Iterable[str]
 ) -> tuple[tuple[tuple[str, str | None], ...], tuple[str, ...]]:
     """The parameters that some files declare, each with the default that all of them give it, and what they mention."""
     found: dict[str, set[str | None]] = defaultdict(set)
     mentioned: set[str] = set()
     for path in files:
-        facts = declared.facts(path) if path in declared.kinds else None
+        facts = declared.get_facts(path) if path in declared.kinds else None
         if facts is not None and facts.facts is not None:
             for one in facts.facts.parameters:
                 found[one.name].add(one.default)
             mentioned.update(facts.facts.mentioned)
-    mentioned.update(last_part(name) for name in found)
+    mentioned.update(find_last_part(name) for name in found)
     parameters = tuple((name, next(iter(each)) if len(each) == 1 else "?") for name, each in sorted(found.items()))
     return parameters, tuple(sorted(mentioned))
 
 
-def of_tree(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:
+def build_tree_surfaces(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:
     """The same as surfaces_of, remembered as a whole for trees that git names by one id. folder: that id, empty for a
     tree that has none."""
-    key = hashlib.sha1(f"{folder} {source_key(__name__)} {limits_stamp()}".encode()).digest()
+    key = hashlib.sha1(f"{folder} {compute_source_key(__name__)} {format_limits()}".encode()).digest()
     if folder:
-        memory = store.memo("surface", key)
+        memory = store.find_memo("surface", key)
         if memory is not None:
             try:
                 return _decoder.decode(memory)
             except msgspec.MsgspecError:
                 pass  # of another version; it is made again
-    surfaces = surfaces_of(tree, store, jobs)
+    surfaces = build_surfaces(tree, store, jobs)
     if folder:
-        store.remember("surface", encodable([(key, surfaces)]))
+        store.remember("surface", encode_rows([(key, surfaces)]))
     return surfaces
 
 
 _decoder = msgspec.msgpack.Decoder(dict[str, Surface])
 
 
-def _kind_for_build(path: str) -> str | None:
-    kind = kinds.kind_of(path)
+def _find_build_kind(path: str) -> str | None:
+    kind = kinds.find_kind(path)
     return kind if kind in surface_build.KINDS else None
 
 
-def _headers(package: Package, build: BuildSurface) -> tuple[dict[str, str], bool]:
+def _collect_headers(package: Package, build: BuildSurface) -> tuple[dict[str, str], bool]:
     """Path in the workspace by what dependants write, and whether the build tells that."""
     base = f"{package.path}/" if package.path else ""
     found = {}
     for header in build.headers:
-        if header.source and kinds.kind_of(header.source) == "cpp":
+        if header.source and kinds.find_kind(header.source) == "cpp":
             found.setdefault(header.include, f"{base}{header.source}")
     if found or not any(part == "headers" for part, _ in build.unknown):
         return found, True
     start = f"{base}include/"
     for path in package.files:
         full = path if path.startswith(base) else f"{base}{path}"
-        if full.startswith(start) and kinds.kind_of(full) == "cpp":
+        if full.startswith(start) and kinds.find_kind(full) == "cpp":
             found[full[len(start) :]] = full
     return found, not found
 
 
-def _interfaces(package: Package) -> Iterator[tuple[str, Interface]]:
+def _list_interfaces(package: Package) -> Iterator[tuple[str, Interface]]:
     made = {path: False for one in package.build.generated if not one.offered for path in one.files}
     made.update((path, True) for one in package.build.generated if one.offered for path in one.files)
     for file in package.digest.interfaces:

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...impact.facts.kinds import kind_of as kind_by_name
+from ...impact.facts.kinds import find_kind as kind_by_name
 from ...impact.facts.python.surface import ModuleSurface
 from ...impact.facts.setup import SetupFile
 from ...impact.targets.surface.surface import InstalledModule, PythonSurface
@@ -30,15 +30,15 @@ class InstalledModules(NamedTuple):
     unresolved: tuple[str, ...]
 
 
-def kind_of(path: str) -> str | None:
+def find_kind(path: str) -> str | None:
     """The kind of facts that a Python surface wants of a path, besides those of the build: None for none."""
     return python.__name__ if path.endswith(".py") and kind_by_name(path) == "python" else None
 
 
-def surface_of(package: Package, facts: Callable[[str], ModuleSurface | None]) -> PythonSurface:
+def build_surface(package: Package, facts: Callable[[str], ModuleSurface | None]) -> PythonSurface:
     """The Python surface of a package. facts: of a path relative to the workspace, None for a file that could not be
     read."""
-    found = installed(package)
+    found = find_installed_modules(package)
     start = len(package.path) + 1 if package.path else 0
     modules, unknown = [], list(found.unknown)
     for name, path in sorted(found.modules.items()):
@@ -57,8 +57,8 @@ _SITE = re.compile(r"(?:^|/)(?:site|dist)-packages(?:/(?P<inside>.*))?$|^\$\{PYT
 _TESTS = frozenset(("test", "tests"))
 
 
-def installed(package: Package) -> InstalledModules:
-    """Which modules a package installs, by its setup.py, ament_python_install_package() and install() rules."""
+def find_installed_modules(package: Package) -> InstalledModules:
+    """Which modules a package installs, by its setup.py, install_python_package() and install() rules."""
     finder = _Installed(package)
     finder.run()
     modules = {name: path for name, path in finder.modules.items() if all(p.isidentifier() for p in name.split("."))}
@@ -83,17 +83,17 @@ class _Installed:
                 wanted = True
             elif install.kind == "python":
                 for item in install.items:
-                    self.folder(item.rstrip("/"), install.destination)
+                    self.add_folder(item.rstrip("/"), install.destination)
             else:
-                self.installed(install)
+                self.add_installed(install)
         if wanted:
             for name in ("setup.py", "setup.cfg", "pyproject.toml"):
-                file = setups.get(self.at(name))
+                file = setups.get(self.resolve_path(name))
                 if file is not None:
-                    self.by_setup(file)
-        self.generated()
+                    self.add_from_setup(file)
+        self.add_generated()
 
-    def at(self, inside: str) -> str:
+    def resolve_path(self, inside: str) -> str:
         """A path of the package, relative to the workspace."""
         return posixpath.normpath(posixpath.join(self.package.path, inside))
 
@@ -105,7 +105,7 @@ class _Installed:
         elif name:
             self.modules.setdefault(name, path)
 
-    def folder(self, folder: str, name: str) -> None:
+    def add_folder(self, folder: str, name: str) -> None:
         """A folder that is copied as it is, under a dotted name (empty: into the place where modules lie)."""
         if folder.endswith(".py"):
             stem = posixpath.basename(folder)[:-3]
@@ -120,16 +120,16 @@ class _Installed:
                 parts = [*name.split("."), *path[len(base) :].partition(".")[0].split("/")]
                 self.add(".".join(part for part in parts if part), path)
 
-    def by_setup(self, setup: SetupFile) -> None:
+    def add_from_setup(self, setup: SetupFile) -> None:
         """What setup.py, setup.cfg or pyproject.toml name."""
         self.unresolved += [clause for clause in setup.unresolved if clause.startswith(("packages", "py_modules"))]
-        base = self.at(setup.package_dirs.get("", ""))
+        base = self.resolve_path(setup.package_dirs.get("", ""))
         base = "" if base == "." else base
         for name in setup.packages:
             if name == "*":
-                self.every_package(base)
+                self.add_every_package(base)
                 continue
-            folder = self.folder_of(name, setup)
+            folder = self.find_package_folder(name, setup)
             single = f"{folder}.py"
             inside = [path for path in self.files if posixpath.dirname(path) == folder]
             for path in inside:
@@ -137,16 +137,16 @@ class _Installed:
             if not inside and single in self.all:
                 self.add(name, single)
 
-    def folder_of(self, name: str, setup: SetupFile) -> str:
+    def find_package_folder(self, name: str, setup: SetupFile) -> str:
         """The folder of a package that setup.py lists, by package_dir as distutils reads it."""
         parts = name.replace("/", ".").split(".")
         for length in range(len(parts), 0, -1):
             given = setup.package_dirs.get(".".join(parts[:length]))
             if given is not None:
-                return self.at("/".join([given.rstrip("/"), *parts[length:]]))
-        return self.at("/".join([setup.package_dirs.get("", "").rstrip("/") or ".", *parts]))
+                return self.resolve_path("/".join([given.rstrip("/"), *parts[length:]]))
+        return self.resolve_path("/".join([setup.package_dirs.get("", "").rstrip("/") or ".", *parts]))
 
-    def every_package(self, base: str) -> None:
+    def add_every_package(self, base: str) -> None:
         """find_packages(): every folder with an `__init__.py` whose parents have one too; folders of tests are mostly
         excluded there."""
         prefix = f"{base}/" if base else ""
@@ -162,7 +162,7 @@ class _Installed:
             if parts[0] not in _TESTS and all(f"{prefix}{head}/__init__.py" in self.all for head in heads):
                 self.add(".".join([*parts, posixpath.basename(path).partition(".")[0]]), path)
 
-    def installed(self, install: Install) -> None:
+    def add_installed(self, install: Install) -> None:
         """An install() rule that puts something where Python looks for modules."""
         place = _SITE.search(install.destination.rstrip("/"))
         if place is None:
@@ -178,12 +178,12 @@ class _Installed:
             return
         for item in install.items:
             if install.kind != "directory" or item.endswith(("/", ".py")):
-                self.folder(item.rstrip("/"), name)
+                self.add_folder(item.rstrip("/"), name)
             else:
                 stem = posixpath.basename(item)
-                self.folder(item, f"{name}.{stem}" if name else stem)
+                self.add_folder(item, f"{name}.{stem}" if name else stem)
 
-    def generated(self) -> None:
+    def add_generated(self) -> None:
         """Modules made while building, and extensions."""
         package = self.package
         for made in package.build.generated:

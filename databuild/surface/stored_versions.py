@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from ...impact.facts.interface import Interface
 from ...impact.targets.distro.distro import DistroTarget
-from ...impact.targets.snapshot import Snapshot, default
+from ...impact.targets.snapshot import Snapshot, load_snapshot
 from ...impact.targets.surface.store import Surfaces
-from .clones import VersionError, newest_with, release_of
+from .clones import VersionError, find_newest_distro, release_of
 from .compare import RepositorySurfaces
 
 
@@ -27,17 +27,17 @@ class StoredVersions:
     """What a file of surfaces has of versions (`28.1.0`) and distros (`jazzy`, `jazzy@2024-08-01`)."""
 
     def __init__(self, surfaces: Surfaces, data: Snapshot | None = None):
-        self.surfaces, self._data = surfaces, data or default()
+        self.surfaces, self._data = surfaces, data or load_snapshot()
 
-    def newest(self, package: str) -> str:
+    def find_newest(self, package: str) -> str:
         """The newest distro that has a package. Raises VersionError when none has it."""
-        return newest_with(package, self._data)
+        return find_newest_distro(package, self._data)
 
     def find(self, package: str, asked: str) -> StoredVersion:
         """What stands for a version or a distro's version: of the latter the newest one before it, when it is not
         there itself, at a tag; of a version that both ROS generations have, ROS 2's. Raises VersionError when there is
         none."""
-        lines = self.surfaces.lines(package)
+        lines = self.surfaces.find_lines(package)
         stored = None
         if asked[:1].isdigit():
             version = asked
@@ -46,7 +46,7 @@ class StoredVersions:
         else:
             release = release_of(package, asked, self._data)
             version, ros = release.version, DistroTarget(release.distro, data=self._data).ros
-            place = lines[ros].place(version) if ros in lines else None
+            place = lines[ros].find_place(version) if ros in lines else None
             stored = lines[ros].versions[place] if place is not None else None
         if not lines:
             raise VersionError(f"surfaces of `{package}` are not shipped; read them from a clone: --repos DIR")
@@ -58,19 +58,19 @@ class StoredVersions:
             )
         return StoredVersion(version, stored, stored in lines[ros].approximate or stored != version, ros)
 
-    def surface(self, package: str, asked: str) -> tuple[StoredVersion, RepositorySurfaces]:
+    def find_surface(self, package: str, asked: str) -> tuple[StoredVersion, RepositorySurfaces]:
         """What stands for a version of a package, with the packages that its repository released along with it. Raises
         VersionError, see find()."""
         found = self.find(package, asked)
         surfaces = {}
-        for name in (package, *self._beside(package, found.stored)):
-            history = self.surfaces.history(name, found.ros)
-            surface = history.surface(found.stored) if history is not None else None
+        for name in (package, *self._list_packages_beside(package, found.stored)):
+            history = self.surfaces.find_history(name, found.ros)
+            surface = history.load_surface(found.stored) if history is not None else None
             if surface is not None:
                 surfaces[name] = surface
         return found, RepositorySurfaces(surfaces)
 
-    def message(self, distro: str, name: str) -> Interface | None:
+    def find_message(self, distro: str, name: str) -> Interface | None:
         """What a distro (`jazzy`, `jazzy@2024-08-01`) has of a message, by `package/Name`; None where it has none, or
         it is not stored."""
         package, _, short = name.partition("/")
@@ -78,13 +78,13 @@ class StoredVersions:
             found = self.find(package, distro)
         except VersionError:
             return None
-        history = self.surfaces.history(package, found.ros)
-        return history.interfaces(found.stored).get(f"msg/{short}") if history is not None else None
+        history = self.surfaces.find_history(package, found.ros)
+        return history.load_interfaces(found.stored).get(f"msg/{short}") if history is not None else None
 
-    def _beside(self, package: str, version: str) -> Iterator[str]:
+    def _list_packages_beside(self, package: str, version: str) -> Iterator[str]:
         """Other packages that were released with a version of a package."""
         told = {package}
-        for known, names in self._data.rows(
+        for known, names in self._data.fetch(
             "SELECT DISTINCT r.version, n.names FROM release r JOIN packages n ON n.id = r.packages"
             " JOIN home h ON h.distro = r.distro AND h.repository = r.repository JOIN package p ON p.id = h.package"
             " WHERE p.name = ? AND r.version LIKE ?",

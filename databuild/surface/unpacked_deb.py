@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ...edges.console import UserError
-from ...edges.files import open_regular, too_large
-from ...edges.limits import limits, size_text
+from ...edges.files import make_size_error, open_regular
+from ...edges.limits import format_size, get_limits
 
 _MAGIC = b"!<arch>\n"
 _LARGEST = 64 * 1024 * 1024
@@ -50,21 +50,21 @@ class DebFile(NamedTuple):
     executable: bool
 
 
-def members(path: Path) -> dict[str, DebFile]:
+def read_members(path: Path) -> dict[str, DebFile]:
     """The regular files of a package by their path from the root (`usr/include/a.h`); links within the package stand
     for what they lead to. Raises DebError, and OSError where it cannot be read."""
-    return members_and_links(path)[0]
+    return read_members_and_links(path)[0]
 
 
-def members_and_links(path: Path) -> tuple[dict[str, DebFile], dict[str, str]]:
+def read_members_and_links(path: Path) -> tuple[dict[str, DebFile], dict[str, str]]:
     """The same, and all links with what they lead to, be it in the package or not."""
     descriptor = open_regular(path)
     try:
         size = os.fstat(descriptor).st_size
-        if size > limits().deb:
-            raise too_large(path, limits().deb)
-        name, start, end = _part(path, descriptor, size)
-        files, links = _held(_Unpacked(_unpacker(path, name)(_pieces(descriptor, start, end)), limits().deb))
+        if size > get_limits().deb:
+            raise make_size_error(path, get_limits().deb)
+        name, start, end = _find_archive(path, descriptor, size)
+        files, links = _read(_Unpacked(_find_codec(path, name)(_read_pieces(descriptor, start, end)), get_limits().deb))
     except (_TooMuch, tarfile.TarError, lzma.LZMAError, zlib.error, EOFError, ValueError, RecursionError) as error:
         raise DebError(f"{path}: is broken ({error or type(error).__name__}); download it again") from None
     finally:
@@ -88,11 +88,11 @@ class _Header(tarfile.TarInfo):
         return found  # type: ignore[return-value]
 
 
-def _held(stream: Any) -> tuple[dict[str, DebFile], dict[str, str]]:
+def _read(stream: Any) -> tuple[dict[str, DebFile], dict[str, str]]:
     """The files of a tar archive, and its links with what they lead to."""
     files: dict[str, DebFile] = {}
     links: dict[str, str] = {}
-    left, count = limits().deb // 2, 0
+    left, count = get_limits().deb // 2, 0
     with tarfile.open(fileobj=stream, mode="r|", tarinfo=_Header, bufsize=_CHUNK) as archive:
         while (entry := archive.next()) is not None:
             archive.members = []  # type: ignore[attr-defined]  # it would keep them all
@@ -107,13 +107,13 @@ def _held(stream: Any) -> tuple[dict[str, DebFile], dict[str, str]]:
             elif entry.isfile() and entry.size <= _LARGEST:
                 left -= entry.size
                 if left < 0:
-                    raise _TooMuch(f"files of more than {size_text(limits().deb // 2)}")
+                    raise _TooMuch(f"files of more than {format_size(get_limits().deb // 2)}")
                 read = archive.extractfile(entry)
                 files[name] = DebFile(read.read() if read is not None else b"", bool(entry.mode & 0o111))
     return files, links
 
 
-def _part(path: Path, descriptor: int, whole: int) -> tuple[str, int, int]:
+def _find_archive(path: Path, descriptor: int, whole: int) -> tuple[str, int, int]:
     """Name, beginning and end of the tar archive of what is installed."""
     if os.pread(descriptor, len(_MAGIC), 0) != _MAGIC:
         raise DebError(f"{path}: is no Debian package; `apt-get download PACKAGE` fetches one")
@@ -132,7 +132,7 @@ def _part(path: Path, descriptor: int, whole: int) -> tuple[str, int, int]:
     raise DebError(f"{path}: holds no files; download it again")
 
 
-def _pieces(descriptor: int, start: int, end: int) -> Iterator[bytes]:
+def _read_pieces(descriptor: int, start: int, end: int) -> Iterator[bytes]:
     """A part of a file, from its beginning to its end."""
     while start < end:
         data = os.pread(descriptor, min(_CHUNK, end - start), start)
@@ -158,7 +158,7 @@ class _Unpacked:
                 break
             self._left -= len(piece)
             if self._left < 0:
-                raise _TooMuch(f"unpacks to more than {size_text(self._limit)}")
+                raise _TooMuch(f"unpacks to more than {format_size(self._limit)}")
             parts.append(piece)
             have += len(piece)
         data = b"".join(parts)
@@ -166,14 +166,14 @@ class _Unpacked:
         return data[:size]
 
 
-def _unpacker(path: Path, name: str) -> Callable[[Iterator[bytes]], Iterator[bytes]]:
+def _find_codec(path: Path, name: str) -> Callable[[Iterator[bytes]], Iterator[bytes]]:
     """What unpacks an archive of that name. Raises DebError."""
     if name.endswith(".xz"):
-        return lambda pieces: _streams(pieces, lambda: lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=_XZ_MEMORY))
+        return lambda pieces: _decompress(pieces, lambda: lzma.LZMADecompressor(lzma.FORMAT_XZ, memlimit=_XZ_MEMORY))
     if name.endswith(".gz"):
-        return lambda pieces: _streams(pieces, _Gzip)
+        return lambda pieces: _decompress(pieces, _Gzip)
     if name.endswith(".zst"):
-        return _zstd
+        return _decompress_zstd
     if name == "data.tar":
         return lambda pieces: pieces
     raise DebError(f"{path}: is packed as `{name}`, which is not known; give an unpacked prefix instead")
@@ -201,7 +201,7 @@ class _Gzip:
         return self._inner.decompress(self._inner.unconsumed_tail + data, max_length)
 
 
-def _streams(pieces: Iterator[bytes], decompressor: Callable[[], Any]) -> Iterator[bytes]:
+def _decompress(pieces: Iterator[bytes], decompressor: Callable[[], Any]) -> Iterator[bytes]:
     """What compressed streams, one after another, hold. Raises EOFError when the last one is cut off."""
     inner = decompressor()
     for _ in range(_STREAMS):
@@ -222,7 +222,7 @@ def _streams(pieces: Iterator[bytes], decompressor: Callable[[], Any]) -> Iterat
     raise _TooMuch(f"more than {_STREAMS:,} compressed parts")
 
 
-def _zstd(pieces: Iterator[bytes]) -> Iterator[bytes]:
+def _decompress_zstd(pieces: Iterator[bytes]) -> Iterator[bytes]:
     import zstandard
 
     class _Source(io.RawIOBase):

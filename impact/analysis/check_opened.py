@@ -7,14 +7,14 @@ import time
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from ...edges.console import unforeseen
+from ...edges.console import describe_unforeseen
 from ...edges.version import __version__
 from ..config import Config, PathSetting
 from ..facts.extract import ExtractedFacts
 from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, Insert, Replace
-from ..rules.rule import Diagnostic, Finding, FixAction, Rule, all_rules
+from ..rules.rule import Diagnostic, Finding, FixAction, Rule, load_rules
 from ..targets.version import compare as compare_versions
 from ..tree import Tree
 from . import result_cache
@@ -60,10 +60,10 @@ def check_opened(
     base_tree: as for check(). started: when the work began, by time.perf_counter(); now when None.
     """
     started = time.perf_counter() if started is None else started
-    rules = all_rules()
+    rules = load_rules()
     tree, store, gathered, workspace, targets, views, config, _, installed, shelves = opened
     chosen = select_rules(options, config)
-    settings = _settings(rules, config)
+    settings = _collect_settings(rules, config)
     sources = SourceLines(make_reader(tree))
     crashed: Crashes = {}
     reached: Impact | None = None
@@ -72,12 +72,12 @@ def check_opened(
         from . import revision_compare as bases
 
         if base_tree is None:
-            base_tree, notes = bases.base_tree(tree, options.base)
+            base_tree, notes = bases.open_base_tree(tree, options.base)
         before = bases.open_base(base_tree, opened, jobs=options.jobs)
         old = run_and_merge(before, chosen, settings, SourceLines(make_reader(base_tree)), crashed, jobs=options.jobs)
         now = run_and_merge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
         found: Sequence[Finding] = mark_new(now.kept, old.kept)
-        reached = _reached(workspace, before.workspace, crashed)
+        reached = _find_impact(workspace, before.workspace, crashed)
     else:
         now = run_and_merge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
         found = now.kept
@@ -86,7 +86,7 @@ def check_opened(
             result_cache.load_changes(store, view.target)
         found, parted = add_evidence(found, views)
         if parted and "unguarded-split" in chosen:
-            found = sort_findings([*found, *_splits(parted, opened, chosen, settings, sources)])
+            found = sort_findings([*found, *_find_splits(parted, opened, chosen, settings, sources)])
     originals: dict[str, bytes] = {}
     if any(finding.fix for finding in found):
         from . import fix
@@ -104,16 +104,16 @@ def check_opened(
         data=targets[0].target.data_date if targets else "",
         targets=(
             *(report_target(chosen_target, notes if i == 0 else ()) for i, chosen_target in enumerate(targets)),
-            *_alone({chosen_target.target.name for chosen_target in targets}, shelves),
+            *_list_file_only_targets({chosen_target.target.name for chosen_target in targets}, shelves),
         ),
         findings=tuple(found),
-        coverage=coverage(workspace, gathered, views, installed),
+        coverage=measure_coverage(workspace, gathered, views, installed),
         packages=tuple(ReportedPackage(package.name, package.path) for package in workspace),
         suppressed=tuple(now.suppressed),
         known=tuple(known),
         rules=lambda: tuple(chosen.values()),
         seconds=time.perf_counter() - started,
-        excerpt=sources.excerpt,
+        excerpt=sources.read_excerpt,
         root=os.fspath(path),
         base=" ".join(options.base) or (base_tree.label if base_tree is not None else ""),
         failure="; ".join(failures),
@@ -122,7 +122,7 @@ def check_opened(
     return Checked(report, config, tree, originals)
 
 
-def _splits(
+def _find_splits(
     parted: Sequence[tuple[Finding, Split]],
     opened: OpenedWorkspace,
     rules: Mapping[str, Rule],
@@ -137,7 +137,7 @@ def _splits(
         (("unguarded-split", target, one) for target, one in found_splits),
         targets=[view.target.name for view in opened.views],
         rules=rules,
-        line_text=sources.line,
+        line_text=sources.read_line,
     )
     old = {finding.package for finding, _ in parted if not finding.new}
     marked = [finding._replace(new=finding.package not in old) for finding in found]
@@ -146,18 +146,18 @@ def _splits(
     return suppress(configured, allows, rules=rules, ran=()).kept
 
 
-def _reached(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
+def _find_impact(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
     """What the changes since the base reach; None where that failed, which is noted as a rule's failure is."""
-    from .downstream import impact_of
+    from .downstream import compute_impact
 
     try:
-        return impact_of(workspace, base)
+        return compute_impact(workspace, base)
     except Exception as error:
-        crashed.setdefault(("impact", unforeseen(error)), [])
+        crashed.setdefault(("impact", describe_unforeseen(error)), [])
         return None
 
 
-def _alone(names: Container[str], shelves: Iterable[Shelf]) -> Iterator[ReportedTarget]:
+def _list_file_only_targets(names: Container[str], shelves: Iterable[Shelf]) -> Iterator[ReportedTarget]:
     """Machines that only built files are checked on: this one, where no target is it."""
     for shelf in shelves:
         if shelf.target not in names:
@@ -165,7 +165,7 @@ def _alone(names: Container[str], shelves: Iterable[Shelf]) -> Iterator[Reported
             yield ReportedTarget(shelf.target, "", "", shelf.platform, "where --install lies", (note,))
 
 
-def _settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, ...]:
+def _collect_settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, ...]:
     """Settings by path, those for the whole workspace first, so that the others go over them."""
     everywhere = (PathSetting("**", severity=config.severity),) if config.severity else ()
     try:
@@ -192,7 +192,7 @@ def run_and_merge(
     failed; what the others found stands."""
     workspace, views = opened.workspace, opened.views
     names = [view.target.name for view in views]
-    known = all_rules()
+    known = load_rules()
     by_name = {view.target.name: view for view in views}
 
     def merge(diagnostics: Iterable[tuple[str, str, Diagnostic]]) -> list[Finding]:
@@ -200,7 +200,7 @@ def run_and_merge(
             diagnostics,
             targets=names,
             rules=rules,
-            line_text=sources.line,
+            line_text=sources.read_line,
             holds=lambda fix, target: all(is_right_on(action, by_name[target]) for action in fix),
         )
         return apply_settings(found, settings, known)
@@ -210,7 +210,7 @@ def run_and_merge(
         merge(run_rules(opened, rules.values(), crashed, before, jobs)),
         allows,
         rules=known,
-        ran=[name for name in rules if name != "unguarded-split"],  # it speaks last, see _splits()
+        ran=[name for name in rules if name != "unguarded-split"],  # it speaks last, see _find_splits()
     )
     kept = list(result.kept)
     if "unused-suppression" in rules and result.unused:
@@ -228,7 +228,7 @@ def is_right_on(action: FixAction, view: TargetView) -> bool:
     A declaration is when the package is there, an include when its header surely is; anything else cannot be told.
     """
     if isinstance(action, Declare):
-        return view.available(action.name)
+        return view.is_available(action.name)
     if isinstance(action, Replace):
         return _has_header(view, action.new.strip('<>"'))
     if isinstance(action, Insert):
@@ -241,19 +241,19 @@ def _has_header(view: TargetView, path: str) -> bool:
     target = view.target
     if view.is_standard(path) or view.workspace.provides_header(path):
         return True
-    for provider in view.header(path):
-        version = target.version(provider.name) if provider.kind == "ros" else None
+    for provider in view.find_header(path):
+        version = target.find_version(provider.name) if provider.kind == "ros" else None
         if not version:
             continue
-        for span in view.providers.header_history(provider.name, path):
+        for span in view.providers.list_header_spans(provider.name, path):
             # A span without an end goes on in the distro's releases after the newest one whose files are known.
             here = span.distro == target.distro and compare_versions(span.first, version) <= 0
             if here and (span.last is None or compare_versions(version, span.last) <= 0):
                 return True
-    return target.platform in view.providers.header_platforms(path)
+    return target.platform in view.providers.list_header_platforms(path)
 
 
-def coverage(
+def measure_coverage(
     workspace: Workspace, gathered: ExtractedFacts, views: Sequence[TargetView], installed: InstallSpace | None = None
 ) -> Coverage:
     """How much was read and resolved."""

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 from ..model.view import TargetView
 from ..rules.rule import Finding
-from ..targets.changes import version_of
-from ..targets.evidence import holds_on, seen_on
+from ..targets.changes import find_version
+from ..targets.evidence import add_target_states, holds_on
 from ..targets.evidence_record import Evidence, OnTarget
-from ..targets.providers.version_macros import version_test
-from ..targets.version import at_least, compare
+from ..targets.providers.version_macros import make_version_test
+from ..targets.version import compare, is_at_least
 
 _CMAKE = ("cmake", "command", "target", "variable")
 
@@ -46,36 +46,36 @@ def add_evidence(
         if finding.evidence is not None:
             key = (finding.evidence, finding.targets)
             if key not in known:
-                known[key] = _joined(*key, views)
+                known[key] = _combine_evidence(*key, views)
             evidence, split = known[key]
-            finding = finding._replace(evidence=evidence, help=_guarded(split) if split else finding.help)
+            finding = finding._replace(evidence=evidence, help=_suggest_guard(split) if split else finding.help)
             if split is not None:
                 parted.append((finding, split))
         result.append(finding)
     return result, parted
 
 
-def _joined(
+def _combine_evidence(
     evidence: Evidence, spoken_of: tuple[str, ...], views: Sequence[TargetView]
 ) -> tuple[Evidence | None, Split | None]:
     if not views:
         return None, None
-    seen = seen_on(evidence, [view.target for view in views], spoken_of, views[0].providers)
+    seen = add_target_states(evidence, [view.target for view in views], spoken_of, views[0].providers)
     return seen, find_split(seen, spoken_of, views) if seen is not None else None
 
 
 def find_split(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[TargetView]) -> Split | None:
     """How the targets differ, when on some only the one and on others only the other spelling is there; else None.
 
-    evidence: as seen_on() gives it. spoken_of: targets on which the name that is used is not there.
+    evidence: as add_target_states() gives it. spoken_of: targets on which the name that is used is not there.
     """
     if evidence.change not in ("removed", "added") or not evidence.instead or evidence.ahead:
         return None
     spoken = frozenset(spoken_of)
     if spoken.issuperset(view.target.name for view in views):
         return None
-    used = {view.target.name: _used(evidence, view, spoken) for view in views}
-    other = {view.target.name: _other(evidence, view) for view in views}
+    used = {view.target.name: _has_used_spelling(evidence, view, spoken) for view in views}
+    other = {view.target.name: _has_other_spelling(evidence, view) for view in views}
     only_used = tuple(name for name in used if used[name] is True and other[name] is False)
     only_other = tuple(name for name in used if used[name] is False and other[name] is True)
     if not only_used or not only_other or any(used[name] is False and other[name] is False for name in used):
@@ -83,13 +83,13 @@ def find_split(evidence: Evidence, spoken_of: Iterable[str], views: Sequence[Tar
     removed = evidence.change == "removed"
     old, new = (evidence.name, evidence.instead) if removed else (evidence.instead, evidence.name)
     old_only, new_only = (only_used, only_other) if removed else (only_other, only_used)
-    first, oldest = _boundary(evidence, views, old_only, new_only)
+    first, oldest = _find_boundary(evidence, views, old_only, new_only)
     generations = {view.target.ros for view in views}
     ros = generations.pop() if len(generations) == 1 else 0
     return Split(evidence, old, new, old_only, new_only, first, oldest, ros)
 
 
-def _used(evidence: Evidence, view: TargetView, spoken: frozenset[str]) -> bool | None:
+def _has_used_spelling(evidence: Evidence, view: TargetView, spoken: frozenset[str]) -> bool | None:
     """Whether the spelling that is used is there."""
     if view.target.name in spoken:
         return False
@@ -100,7 +100,7 @@ def _used(evidence: Evidence, view: TargetView, spoken: frozenset[str]) -> bool 
     return None if here is None else here.holds == (evidence.change == "added")
 
 
-def _other(evidence: Evidence, view: TargetView) -> bool | None:
+def _has_other_spelling(evidence: Evidence, view: TargetView) -> bool | None:
     """Whether the other spelling is there."""
     if evidence.other is not None:
         holds = holds_on(evidence.other, view.target, view.providers)
@@ -109,7 +109,7 @@ def _other(evidence: Evidence, view: TargetView) -> bool | None:
     return view.environment.headers(evidence.instead) if evidence.side == "header" else None
 
 
-def _boundary(
+def _find_boundary(
     evidence: Evidence, views: Sequence[TargetView], old_only: Sequence[str], new_only: Sequence[str]
 ) -> tuple[str, str]:
     """The version that parts the targets, and the lowest one of them: a bound of the tables that does, else the lowest
@@ -117,35 +117,35 @@ def _boundary(
     versions = {
         view.target.name: version
         for view in views
-        if (version := version_of(evidence.package, evidence.library, view.target))
+        if (version := find_version(evidence.package, evidence.library, view.target))
     }
     if not versions:
         return "", ""
-    oldest = _lowest(versions.values())
+    oldest = _find_lowest(versions.values())
     above, below = [versions[name] for name in new_only], [versions[name] for name in old_only]
     pair = [evidence, evidence.other] if evidence.change == "added" else [evidence.other, evidence]
     bounds = [one.first for one in pair if one is not None and one.first[:1].isdigit()]
-    for bound in (*bounds, _lowest(above)):
-        if all(at_least(version, bound) for version in above) and not any(at_least(one, bound) for one in below):
+    for bound in (*bounds, _find_lowest(above)):
+        if all(is_at_least(version, bound) for version in above) and not any(is_at_least(one, bound) for one in below):
             return bound, oldest
     return "", oldest
 
 
-def _lowest(versions: Iterable[str]) -> str:
+def _find_lowest(versions: Iterable[str]) -> str:
     return min(versions, key=cmp_to_key(compare), default="")
 
 
-def _guarded(split: Split) -> str:
+def _suggest_guard(split: Split) -> str:
     """What to write when neither name works on all targets."""
     evidence = split.evidence
-    where = f"{_listed(split.old_only)} {'has' if len(split.old_only) == 1 else 'have'} only `{split.old}`"
+    where = f"{_format_names(split.old_only)} {'has' if len(split.old_only) == 1 else 'have'} only `{split.old}`"
     if evidence.side == "header":
         return f"`#if __has_include(<{split.new}>)`, include it, `#else` include `{split.old}`: {where}"
     if evidence.side == "python":
         return f"use `{split.new}` if it is available (`try`, or `hasattr`), else `{split.old}`: {where}"
     package = evidence.package
     if evidence.side == "c++" and split.first:
-        test = version_test(package, evidence.library, split.first, ros=split.ros, oldest=split.oldest)
+        test = make_version_test(package, evidence.library, split.first, ros=split.ros, oldest=split.oldest)
         if test is not None:
             return f"`#if {test.text}` use `{split.new}`, `#else` `{split.old}`, with `{test.header}` included: {where}"
     if split.first:
@@ -156,5 +156,5 @@ def _guarded(split: Split) -> str:
     return f"use `{split.new}` or `{split.old}`, whichever is available: {where}"
 
 
-def _listed(names: Sequence[str]) -> str:
+def _format_names(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -12,18 +12,18 @@ import msgspec
 from ..facts.extract import ExtractedFacts
 from ..facts.flow import FlowFile
 from ..facts.store import Store
-from ..logic.code_changes import ChangedFunction, changed_functions
+from ..logic.code_changes import ChangedFunction, find_changed_functions
 from ..logic.history import PackageFile
-from ..logic.states import renamed_words
-from ..logic.two_states import Differing, bytes_of, differing, flow_facts, publishing
+from ..logic.states import find_renamed_words
+from ..logic.two_states import Differing, compare_publishing, extract_flow_facts, find_differences, read_bytes
 from ..model.flow.callers import Led
-from ..model.flow.connections import Edge, edges
+from ..model.flow.connections import Edge, list_edges
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
 from ..model.flow.reach import EVERYWHERE, DownstreamSearch, Step
-from ..model.flow.select import kind_of
-from ..model.flow.workspace import flow_of, linked
+from ..model.flow.select import get_kind
+from ..model.flow.workspace import get_flow, link_for_flow
 from ..model.workspace import Workspace
-from .message_changes import holding, message_changes
+from .message_changes import find_containing_types, list_message_changes
 from .session import link_flow, open_tree
 
 Kind = Literal["message", "topic", "condition", "trigger", "callback"]
@@ -94,47 +94,47 @@ class _Out(NamedTuple):
 
 
 @lru_cache(maxsize=2)
-def impact_of(workspace: Workspace, base: Workspace) -> Impact:
+def compute_impact(workspace: Workspace, base: Workspace) -> Impact:
     """What the changes since the base reach, message by message, topic by topic, statement by statement."""
     reading = _Reading(workspace, base)
-    return reading.impact() if reading.concerned() else NOTHING
+    return reading.build_impact() if reading.has_flow_changes() else NOTHING
 
 
 class _Reading:
     def __init__(self, workspace: Workspace, base: Workspace):
         self.workspace, self.base = workspace, base
-        self.differing: Differing = differing(workspace, base)
+        self.differing: Differing = find_differences(workspace, base)
         self.silent = 0
         self._walked: dict[tuple, list[tuple[int, Hop]]] = {}
 
-    def concerned(self) -> bool:
+    def has_flow_changes(self) -> bool:
         """Whether anything differs that message flow can follow; asked before the graphs are made, which are dear."""
         found = self.differing
-        if any(True for _ in message_changes(self.workspace, self.base)):
+        if any(True for _ in list_message_changes(self.workspace, self.base)):
             return True
-        names = {found.renamed.get(state.whole(file.path), state.whole(file.path)) for state in found.old
+        names = {found.renamed.get(state.locate(file.path), state.locate(file.path)) for state in found.old
                  for file in state.files}  # fmt: skip
         if not found.old and not found.new:
             return False
-        changed = list(found.changed())
-        kept = {state.whole(file.path) for state in found.new for file in state.files}
+        changed = list(found.iterate_changed_files())
+        kept = {state.locate(file.path) for state in found.new for file in state.files}
         builds = any(file.kind not in ("cpp", "python") for _, _, file in changed)
-        return builds or bool(names ^ kept) or bool(self.functions) or any(map(self.redeclared, changed))
+        return builds or bool(names ^ kept) or bool(self.functions) or any(map(self.changes_declarations, changed))
 
-    def redeclared(self, changed: tuple[str, PackageFile | None, PackageFile]) -> bool:
+    def changes_declarations(self, changed: tuple[str, PackageFile | None, PackageFile]) -> bool:
         """Whether a file's members, constants or exported classes differ."""
         path, before, _ = changed
-        new = _facts(self.facts[1], path)
-        old = _facts(self.facts[0], self.was[id(before)]) if before is not None else None
-        return _declared(old) != _declared(new)
+        new = _find_facts(self.facts[1], path)
+        old = _find_facts(self.facts[0], self.was[id(before)]) if before is not None else None
+        return _list_declarations(old) != _list_declarations(new)
 
     @cached_property
     def now(self) -> Graph:
-        return flow_of(self.workspace).graph
+        return get_flow(self.workspace).graph
 
     @cached_property
     def before(self) -> Graph:
-        return flow_of(self.base).graph
+        return get_flow(self.base).graph
 
     @cached_property
     def reach(self) -> DownstreamSearch:
@@ -151,17 +151,17 @@ class _Reading:
     @cached_property
     def facts(self) -> tuple[ExtractedFacts, ExtractedFacts]:
         """The flow facts of what differs, of the base and now."""
-        return flow_facts(self.base, self.differing.old), flow_facts(self.workspace, self.differing.new)
+        return extract_flow_facts(self.base, self.differing.old), extract_flow_facts(self.workspace, self.differing.new)
 
     @cached_property
     def was(self) -> dict[int, str]:
         """Paths at the base of its files."""
-        return {id(file): state.whole(file.path) for state in self.differing.old for file in state.files}
+        return {id(file): state.locate(file.path) for state in self.differing.old for file in state.files}
 
-    def impact(self) -> Impact:
-        found = [*self.messages(), *self.logic()]
-        found += self.topics(found)
-        found += self.callbacks()
+    def build_impact(self) -> Impact:
+        found = [*self.compare_messages(), *self.compare_logic()]
+        found += self.compare_topics(found)
+        found += self.compare_callbacks()
         ordered = sorted(found, key=lambda one: (KINDS.index(one.kind), one.package, one.path, one.line, one.subject))
         effects = tuple(dict.fromkeys(ordered))
         used = {id for effect in effects for id in (*effect.nodes, *(hop.node for hop in effect.reaches))}
@@ -169,7 +169,7 @@ class _Reading:
         kept = tuple(node for id, node in sorted(nodes.items()) if id in used)
         return Impact(effects, kept, len(self.now.nodes), self.silent, self.now.coverage)
 
-    def downstream(
+    def list_downstream(
         self, nodes: Iterable[str], out: Iterable[_Out], reach: DownstreamSearch, first: Iterable[Hop] = ()
     ) -> tuple[Hop, ...]:
         """All nodes that what goes out reaches, nearest first, each once. nodes: that are changed themselves; first:
@@ -181,7 +181,7 @@ class _Reading:
                 found.setdefault(hop.node, (1, hop))
         near = set(found)
         for one in out:
-            for steps, hop in self.walked(one, reach):
+            for steps, hop in self.find_hops(one, reach):
                 known = found.get(hop.node)
                 steps += one.node in near
                 if hop.node not in own and (known is None or steps < known[0]):
@@ -189,43 +189,43 @@ class _Reading:
         told = sorted(found.values(), key=lambda each: each[0])
         return tuple(msgspec.structs.replace(hop, came="") if hop.came in own else hop for _, hop in told)
 
-    def walked(self, out: _Out, reach: DownstreamSearch) -> list[tuple[int, Hop]]:
+    def find_hops(self, out: _Out, reach: DownstreamSearch) -> list[tuple[int, Hop]]:
         key = (id(reach), out)
         known = self._walked.get(key)
         if known is None:
             known = self._walked[key] = [
-                (len(one.steps), self.hop(one.steps[-1], one.steps[-2].node if len(one.steps) > 1 else out.node))
-                for one in reach.from_sent(out.sent, out.node)
+                (len(one.steps), self.make_hop(one.steps[-1], one.steps[-2].node if len(one.steps) > 1 else out.node))
+                for one in reach.find_downstream(out.sent, out.node)
             ]
         return known
 
-    def hop(self, step: Step, came: str = "") -> Hop:
+    def make_hop(self, step: Step, came: str = "") -> Hop:
         return Hop(step.node, self.packages.get(step.node, ""), came, step.kind, step.name, step.path, step.line)
 
-    def messages(self) -> Iterator[Effect]:
-        for change in message_changes(self.workspace, self.base):
+    def compare_messages(self) -> Iterator[Effect]:
+        for change in list_message_changes(self.workspace, self.base):
             gone = change.change == "removed"
             graph, reach = (self.before, self.reach_before) if gone else (self.now, self.reach)
-            types = holding(self.base if gone else self.workspace, change.name)
+            types = find_containing_types(self.base if gone else self.workspace, change.name)
             using = [one for one in graph.endpoints if one.type in types and one.topic and one.node]
             first = [
-                self.hop(Step(kind_of(one), one.topic, one.node, one.path, one.line))
+                self.make_hop(Step(get_kind(one), one.topic, one.node, one.path, one.line))
                 for one in sorted(using, key=lambda one: one.role in ("publisher", "client", "action client"))
             ]
             out = [
-                _Out(one.node, tuple(reach.sent_on(one.node, one.path, one.line, True)))
+                _Out(one.node, tuple(reach.list_sent_on(one.node, one.path, one.line, True)))
                 for one in using
                 if one.role in RECEIVING
             ]
             topics = tuple(sorted({one.topic for one in using}))
-            reached = self.downstream((), out, reach, first)
+            reached = self.list_downstream((), out, reach, first)
             yield Effect(
                 "message", change.change, change.name, change.package, change.path, change.line, (), topics,
                 change.why, reached,
             )  # fmt: skip
 
-    def logic(self) -> Iterator[Effect]:
-        for change in publishing(self.workspace, self.base):
+    def compare_logic(self) -> Iterator[Effect]:
+        for change in compare_publishing(self.workspace, self.base):
             gone = change.kind == "gone"
             graph, reach = (self.before, self.reach_before) if gone else (self.now, self.reach)
             at = (change.path, change.line)
@@ -242,10 +242,10 @@ class _Reading:
             yield Effect(
                 "trigger" if change.kind == "trigger changed" else "condition", change.kind,
                 ", ".join(topics) or change.topic, change.package, change.path, change.line, nodes, topics, change.why,
-                self.downstream(nodes, [_Out(node, sent) for node in nodes or ("",)], reach),
+                self.list_downstream(nodes, [_Out(node, sent) for node in nodes or ("",)], reach),
             )  # fmt: skip
 
-    def topics(self, told: Sequence[Effect]) -> Iterator[Effect]:
+    def compare_topics(self, told: Sequence[Effect]) -> Iterator[Effect]:
         """What is new, gone or of another type or quality at either end of a topic, save what was told already."""
         places = {(effect.path, effect.line) for effect in told}
         named = {
@@ -255,8 +255,8 @@ class _Reading:
             for node in effect.nodes
             for topic in effect.topics
         }
-        found = [edge for edge in edges(self.now, self.before) if edge.mark]
-        renamed = self.renamed(found)
+        found = [edge for edge in list_edges(self.now, self.before) if edge.mark]
+        renamed = self.find_renamed_nodes(found)
         for edge in found:
             why = ", ".join(clause for clause in edge.why.split(", ") if clause in ("type", "QoS"))
             endpoint = edge.endpoints[0]
@@ -264,20 +264,20 @@ class _Reading:
                 continue
             if edge.mark == "changed" and (not why or (endpoint.path, endpoint.line) in places):
                 continue
-            if edge.mark != "changed" and (self.unsure(edge) or (edge.role == "publisher" and
+            if edge.mark != "changed" and (self.may_be_unnamed(edge) or (edge.role == "publisher" and
                                                                  (edge.node, edge.name) in named)):  # fmt: skip
                 continue
-            yield self.topic(edge, endpoint, why)
+            yield self.make_topic_effect(edge, endpoint, why)
 
-    def topic(self, edge: Edge, endpoint: Endpoint, why: str) -> Effect:
+    def make_topic_effect(self, edge: Edge, endpoint: Endpoint, why: str) -> Effect:
         gone = edge.mark == "removed"
         graph, reach = (self.before, self.reach_before) if gone else (self.now, self.reach)
         first: list[Hop] = []
         if edge.role in RECEIVING:
-            sent = tuple(reach.sent_on(edge.node, endpoint.path, endpoint.line, True))
+            sent = tuple(reach.list_sent_on(edge.node, endpoint.path, endpoint.line, True))
             asking = ASKS.get(edge.role)
             first = [
-                self.hop(Step(edge.kind, edge.name, one.node, one.path, one.line))
+                self.make_hop(Step(edge.kind, edge.name, one.node, one.path, one.line))
                 for one in graph.endpoints
                 if one.role == asking and one.topic == edge.name and one.node
             ]
@@ -287,10 +287,10 @@ class _Reading:
         return Effect(
             "topic", edge.mark, edge.name, self.packages.get(edge.node, ""), endpoint.path, endpoint.line,
             (edge.node,) if edge.node else (), (edge.name,), says.format(edge.role),
-            self.downstream((edge.node,), [_Out(edge.node, sent)], reach, first),
+            self.list_downstream((edge.node,), [_Out(edge.node, sent)], reach, first),
         )  # fmt: skip
 
-    def renamed(self, found: Sequence[Edge]) -> set[str]:
+    def find_renamed_nodes(self, found: Sequence[Edge]) -> set[str]:
         """Nodes that are merely called otherwise: all that one of them had, another one has now."""
         before, after = {node.id for node in self.before.nodes}, {node.id for node in self.now.nodes}
         has: dict[str, set[tuple[str, str]]] = {}
@@ -304,7 +304,7 @@ class _Reading:
                     result |= {old, new}
         return result
 
-    def unsure(self, edge: Edge) -> bool:
+    def may_be_unnamed(self, edge: Edge) -> bool:
         """Whether what is new or gone may be what the other side has under a name that is not known."""
         other = self.now if edge.mark == "removed" else self.before
         lines = {(one.function, one.variable) for one in edge.endpoints}
@@ -313,7 +313,7 @@ class _Reading:
             for one in other.endpoints
         )
 
-    def callbacks(self) -> Iterator[Effect]:
+    def compare_callbacks(self) -> Iterator[Effect]:
         publishes: dict[tuple[str, str], list[Publish]] = {}
         for publish in self.now.publishes:
             publishes.setdefault((publish.path, publish.function), []).append(publish)
@@ -324,17 +324,17 @@ class _Reading:
                 owners.setdefault((one.path, one.line), set()).add(one.node)
                 running.setdefault(one.path, set()).add(one.node)
         told: dict[tuple[str, str], set[str]] = {}
-        for change in publishing(self.workspace, self.base):
+        for change in compare_publishing(self.workspace, self.base):
             told.setdefault((change.path, change.function), set()).update((change.topic, *change.topics))
         for function in self.functions:
             place = (function.path, function.name, function.line)
-            led = [one for one in flow_of(self.workspace).callers.leading_to(*place) if one.trigger.kind in EVENTS]
+            led = [one for one in get_flow(self.workspace).callers.list_triggers(*place) if one.trigger.kind in EVENTS]
             if not function.known and not (led and led[0].steps == 0):
                 continue  # who calls what is new is another function too
             sent: dict[str, dict[tuple[str, str], None]] = {}
             own = {node for one in led for node in owners.get((one.trigger.path, one.trigger.line), ())}
             own |= running.get(function.path, set())
-            for called in flow_of(self.workspace).callers.called_from(*place):
+            for called in get_flow(self.workspace).callers.list_called(*place):
                 for publish in publishes.get((called.path, called.name), ()):
                     if publish.topic and (publish.node in own or not own):
                         sent.setdefault(publish.node, {})[publish.topic, "publisher"] = None
@@ -343,7 +343,7 @@ class _Reading:
                 # What is stored is sent on later; that something far away in the calls is stored is not supposed.
                 near = one.trigger.kind == "subscriber" and one.steps <= 1
                 for node in sorted(owners.get(at, ())):
-                    found = self.reach.sent_on(node, *at, near)
+                    found = self.reach.list_sent_on(node, *at, near)
                     sent.setdefault(node, {}).update(dict.fromkeys(found))
             topics = {topic for each in sent.values() for topic, _ in each} - EVERYWHERE
             if not topics:
@@ -353,9 +353,9 @@ class _Reading:
                 continue
             nodes = tuple(sorted(node for node, each in sent.items() if each and node))
             yield Effect(
-                "callback", "changed" if function.known else "added", function.name, self.package_of(function.path),
-                function.path, function.line, nodes, tuple(sorted(topics)), _leads(led),
-                self.downstream(nodes, [_Out(node, tuple(each)) for node, each in sent.items()], self.reach),
+                "callback", "changed" if function.known else "added", function.name, self.find_package(function.path),
+                function.path, function.line, nodes, tuple(sorted(topics)), _describe_trigger(led),
+                self.list_downstream(nodes, [_Out(node, tuple(each)) for node, each in sent.items()], self.reach),
             )  # fmt: skip
 
     @cached_property
@@ -364,24 +364,28 @@ class _Reading:
         found, was = self.differing, self.was
         old, new = self.facts
         result: list[ChangedFunction] = []
-        texts = {file.id: bytes_of(self.base, was[id(file)]) for _, file, _ in found.changed() if file is not None}
-        texts |= {file.id: bytes_of(self.workspace, path) for path, _, file in found.changed()}
-        words = renamed_words(found.old, found.new, found.renamed, lambda file: texts.get(file.id, b""))
-        for path, before, after in found.changed():
-            facts = _facts(new, path)
+        texts = {
+            file.id: read_bytes(self.base, was[id(file)])
+            for _, file, _ in found.iterate_changed_files()
+            if file is not None
+        }
+        texts |= {file.id: read_bytes(self.workspace, path) for path, _, file in found.iterate_changed_files()}
+        words = find_renamed_words(found.old, found.new, found.renamed, lambda file: texts.get(file.id, b""))
+        for path, before, after in found.iterate_changed_files():
+            facts = _find_facts(new, path)
             if facts is None:
                 continue
-            old_facts = _facts(old, was[id(before)]) if before is not None else None
-            old_text = _decoded(texts[before.id]) if before is not None else ""
-            result += changed_functions(path, old_facts, old_text, facts, _decoded(texts[after.id]), words)
+            old_facts = _find_facts(old, was[id(before)]) if before is not None else None
+            old_text = _decode(texts[before.id]) if before is not None else ""
+            result += find_changed_functions(path, old_facts, old_text, facts, _decode(texts[after.id]), words)
         return result
 
-    def package_of(self, path: str) -> str:
+    def find_package(self, path: str) -> str:
         owner = [one for one in self.workspace if not one.path or path.startswith(f"{one.path}/")]
         return max(owner, key=lambda one: len(one.path)).name if owner else ""
 
 
-def _leads(led: Sequence[Led]) -> str:
+def _describe_trigger(led: Sequence[Led]) -> str:
     """What makes a function run, in a clause."""
     if not led:
         return "publishes, or what it calls does"
@@ -394,12 +398,12 @@ def _leads(led: Sequence[Led]) -> str:
     return f"called from `{one.callback.name}`, the callback of {of}{detail}{more}"
 
 
-def _facts(gathered: ExtractedFacts, path: str) -> FlowFile | None:
-    facts = gathered.facts(path).facts if path in gathered.kinds else None
+def _find_facts(gathered: ExtractedFacts, path: str) -> FlowFile | None:
+    facts = gathered.get_facts(path).facts if path in gathered.kinds else None
     return facts if isinstance(facts, FlowFile) else None
 
 
-def _declared(facts: FlowFile | None) -> object:
+def _list_declarations(facts: FlowFile | None) -> object:
     """What a file declares, without places."""
     if facts is None:
         return None
@@ -407,11 +411,11 @@ def _declared(facts: FlowFile | None) -> object:
     return members, [(one.name, one.type, one.value) for one in facts.constants], facts.exports, facts.aliases
 
 
-def _decoded(data: bytes) -> str:
+def _decode(data: bytes) -> str:
     return data.decode("utf-8", "replace")
 
 
-def chosen(
+def select_effects(
     impact: Impact, packages: Sequence[str] = (), topics: Sequence[str] = (), nodes: Sequence[str] = ()
 ) -> Impact:
     """The changes of some packages, what goes through some topics, what some nodes have or are reached by; all when
@@ -422,7 +426,7 @@ def chosen(
 
     called = {node.id: (node.id, node.name, node.executable, node.plugin) for node in impact.nodes}
 
-    def names(effect: Effect) -> Iterator[str]:
+    def list_node_names(effect: Effect) -> Iterator[str]:
         for id in (*effect.nodes, *(hop.node for hop in effect.reaches)):
             yield from called.get(id, (id,))
 
@@ -431,7 +435,7 @@ def chosen(
         for effect in impact.effects
         if (not packages or fits(effect.package, packages))
         and (not topics or any(fits(name, topics) for name in (*effect.topics, *(h.name for h in effect.reaches))))
-        and (not nodes or any(name and fits(name, nodes) for name in names(effect)))
+        and (not nodes or any(name and fits(name, nodes) for name in list_node_names(effect)))
     )
     return msgspec.structs.replace(impact, effects=effects)
 
@@ -446,7 +450,7 @@ class ImpactResult(NamedTuple):
     notes: tuple[str, ...]
 
 
-def reached(
+def analyze_impact(
     path: Path, base: Sequence[str], *, rev: str = "", jobs: int | None = None,
     progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
 ) -> ImpactResult:  # fmt: skip
@@ -455,11 +459,11 @@ def reached(
     base, rev, jobs, follow_links: as for check. progress: called with (done, total) bytes while files are
     parsed. Raises CheckError, TreeError and BaseError with a text for the user.
     """
-    from .revision_compare import base_tree
+    from .revision_compare import open_base_tree
 
     tree = open_tree(path, rev, follow_links=follow_links)
     with Store() as store:
-        old_tree, notes = base_tree(tree, tuple(base))
+        old_tree, notes = open_base_tree(tree, tuple(base))
         now = link_flow(path, tree, store, jobs, progress)
-        before = linked(old_tree, store, jobs)
-        return ImpactResult(impact_of(now, before), os.fspath(path), rev, " ".join(base), (*notes, *store.notes))
+        before = link_for_flow(old_tree, store, jobs)
+        return ImpactResult(compute_impact(now, before), os.fspath(path), rev, " ".join(base), (*notes, *store.notes))

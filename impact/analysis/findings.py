@@ -9,13 +9,13 @@ from functools import lru_cache
 from hashlib import blake2b
 from typing import NamedTuple
 
-from ...edges.console import UserError, json_text
+from ...edges.console import UserError, format_json
 from ...edges.documents import load_json
 from ..config import PathSetting
 from ..facts.place import Allow
 from ..rules.rule import SEVERITIES, Diagnostic, Finding, FixAction, Rule
 from ..rules.severity import Doubt
-from ..rules.text import Value, attributed
+from ..rules.text import Value, append_targets
 
 _MOST_OF_ONE = 1_000_000
 EVERYTHING = ("all", "*")
@@ -57,7 +57,7 @@ def lower_repeats(yielded: Sequence[tuple[str, Diagnostic]], rules: Mapping[str,
 def _list_shared(rule: Rule, diagnostic: Diagnostic) -> dict[tuple[str, str, str], int]:
     """The causes that a warning shares with others, as it counts them, each with how many are worth one of their
     own."""
-    if not diagnostic.together or rule.severity_of(diagnostic) != "warning":
+    if not diagnostic.together or rule.compute_severity(diagnostic) != "warning":
         return {}
     return {
         ("", "", each.cause) if each.everywhere else (rule.name, diagnostic.package, each.cause): each.few
@@ -86,14 +86,14 @@ def merge_diagnostics(
     order = {name: index for index, name in enumerate(targets)}
     groups: dict[tuple, list[dict[str, Diagnostic]]] = {}
     for rule_name, target, diagnostic in diagnostics:
-        severity = rules[rule_name].severity_of(diagnostic)
+        severity = rules[rule_name].compute_severity(diagnostic)
         ahead = diagnostic.evidence is not None and diagnostic.evidence.ahead
         at = diagnostic.at
         key = (rule_name, severity, getattr(at, "path", ""), getattr(at, "line", 0), diagnostic.subject, ahead)
         names = (target,) if target else tuple(targets) or ("",)
         _place(groups.setdefault(key, []), names, diagnostic)
     findings = [
-        _finding(rules[name], severity, path, line, by_target, order, holds)
+        _make_finding(rules[name], severity, path, line, by_target, order, holds)
         for (name, severity, path, line, _, _), facts in groups.items()
         for by_target in facts
     ]
@@ -116,7 +116,7 @@ def _place(facts: list[dict[str, Diagnostic]], names: tuple[str, ...], diagnosti
     facts.append(dict.fromkeys(names, diagnostic))
 
 
-def _finding(
+def _make_finding(
     rule: Rule,
     severity: str,
     path: str,
@@ -168,7 +168,7 @@ def _join(texts: Mapping[str, list[str]]) -> str:
     rendered = {text: names for text, names in texts.items() if text}
     if len(rendered) <= 1:
         return next(iter(rendered), "")
-    return "; ".join(attributed(text, names) for text, names in rendered.items())
+    return "; ".join(append_targets(text, names) for text, names in rendered.items())
 
 
 def _sort_key(finding: Finding) -> tuple:
@@ -197,16 +197,16 @@ def add_fingerprints(
             place = finding.path, finding.line
             text = " ".join(line_text(*place).split()) if finding.line else ""
             if len(text) > _LONGEST_LINE:  # it may have as many findings
-                text = _digest(text)
+                text = _hash_text(text)
         rule = groups.get(finding.rule, finding.rule)
         content = "\0".join((rule, finding.path, finding.package, finding.subject, text))
-        digest = _digest(f"{content}\0{seen[content]}")
+        digest = _hash_text(f"{content}\0{seen[content]}")
         seen[content] += 1
         result.append(finding._replace(fingerprint=digest))
     return result
 
 
-def _digest(text: str) -> str:
+def _hash_text(text: str) -> str:
     return blake2b(text.encode("utf-8", "surrogatepass"), digest_size=12).hexdigest()
 
 
@@ -252,25 +252,25 @@ def choose_rules(
     group, is selected by name.
     Raises SettingsError for a name that is no rule, group or family.
     """
-    known = _known_names(rules.values())
+    known = _list_known_names(rules.values())
     for name in (*select, *ignore):
         if name not in known and name not in EVERYTHING:
-            raise SettingsError(_unknown_rule(name, known))
+            raise SettingsError(_describe_unknown_rule(name, known))
     return {
         name: rule
         for name, rule in rules.items()
-        if _specific(select or EVERYTHING, rule.names) > _specific(ignore, rule.names)
+        if _rank_specificity(select or EVERYTHING, rule.names) > _rank_specificity(ignore, rule.names)
         and (preview or not rule.preview or not {*rule.names[:2]}.isdisjoint(select))
     }
 
 
-def _known_names(rules: Iterable[Rule]) -> list[str]:
+def _list_known_names(rules: Iterable[Rule]) -> list[str]:
     """What a setting can name beside `all`: rules, groups and, last, families."""
     rules = list(rules)
     return [*dict.fromkeys(name for rule in rules for name in rule.names[:2]), *sorted({rule.family for rule in rules})]
 
 
-def _specific(settings: Collection[str], names: Sequence[str]) -> int:
+def _rank_specificity(settings: Collection[str], names: Sequence[str]) -> int:
     """How closely the names in a setting mean a rule: 4 by name, 3 by group, 2 by family, 1 with everything, 0 not at
     all. names: those of the rule."""
     for place, name in enumerate(names):
@@ -279,7 +279,7 @@ def _specific(settings: Collection[str], names: Sequence[str]) -> int:
     return int(any(name in settings for name in EVERYTHING))
 
 
-def _unknown_rule(name: str, known: Sequence[str]) -> str:
+def _describe_unknown_rule(name: str, known: Sequence[str]) -> str:
     from difflib import get_close_matches
 
     close = get_close_matches(name, known, n=1)
@@ -292,12 +292,12 @@ def verify_settings(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) 
 
     Raises SettingsError otherwise.
     """
-    known = _known_names(rules.values())
+    known = _list_known_names(rules.values())
     for entry in settings:
         where = f'[paths."{entry.pattern}"]'
         for name in (*entry.select, *entry.ignore, *entry.severity):
             if name not in known and name not in EVERYTHING:
-                raise SettingsError(f"{where}: {_unknown_rule(name, known)}")
+                raise SettingsError(f"{where}: {_describe_unknown_rule(name, known)}")
         for name, value in entry.severity.items():
             if value not in (*SEVERITIES, "off"):
                 raise SettingsError(f"{where}: severity of `{name}` is `{value}`; write note, warning, error or off")
@@ -315,24 +315,24 @@ def apply_settings(
         return list(findings)
     result = []
     for finding in findings:
-        names = _names_of(finding, rules)
+        names = _list_rule_names(finding, rules)
         severity: str | None = finding.severity
         for entry in settings:
-            if glob_matches(entry.pattern, finding.path):
-                severity = _under(entry, names, severity)
+            if matches_glob(entry.pattern, finding.path):
+                severity = _apply_setting(entry, names, severity)
         if severity is not None:
             result.append(finding._replace(severity=severity))
     return result
 
 
-def _names_of(finding: Finding, rules: Mapping[str, Rule]) -> tuple[str, ...]:
+def _list_rule_names(finding: Finding, rules: Mapping[str, Rule]) -> tuple[str, ...]:
     """The names that mean a finding's rule in settings and comments, the most specific first."""
     return rules[finding.rule].names if finding.rule in rules else (finding.rule,)
 
 
-def _under(entry: PathSetting, names: Sequence[str], severity: str | None) -> str | None:
+def _apply_setting(entry: PathSetting, names: Sequence[str], severity: str | None) -> str | None:
     """The severity a setting gives, None when it silences. names: those of the rule."""
-    if _specific(entry.select or EVERYTHING, names) <= _specific(entry.ignore, names):
+    if _rank_specificity(entry.select or EVERYTHING, names) <= _rank_specificity(entry.ignore, names):
         return None
     for name in (*names, *EVERYTHING):
         if name in entry.severity:
@@ -340,18 +340,18 @@ def _under(entry: PathSetting, names: Sequence[str], severity: str | None) -> st
     return severity
 
 
-def glob_matches(glob: str, path: str) -> bool:
+def matches_glob(glob: str, path: str) -> bool:
     """Whether a path relative to the root is meant by a glob: `*` and `?` stay within a folder, `**` spans folders,
     and a folder's name means everything below it.
 
     All ways through the glob are followed at once, as bits of a number that say where in the path one can be, so that
     no glob makes it slow.
     """
-    at_sign, slashes = _signs(path)
+    at_sign, slashes = _index_characters(path)
     everywhere = (2 << len(path)) - 1
     inner = everywhere >> 1 & ~slashes
     reached = 1
-    for piece in _pieces(glob):
+    for piece in _split_glob(glob):
         if not reached:
             return False
         behind = -(reached & -reached) & everywhere  # the first place and all after it
@@ -368,7 +368,7 @@ def glob_matches(glob: str, path: str) -> bool:
         elif piece == "?":
             reached = (reached & inner) << 1
         elif len(piece) > 2:
-            of_class = _glob_class(piece[1:-1])
+            of_class = _compile_glob_class(piece[1:-1])
             signs = of_class.sub("", path) if of_class is not None else path
             others = sum(mask for sign, mask in at_sign.items() if sign in signs)
             reached = (reached & (everywhere >> 1) & ~others) << 1
@@ -378,19 +378,19 @@ def glob_matches(glob: str, path: str) -> bool:
 
 
 @lru_cache(maxsize=512)
-def _pieces(glob: str) -> tuple[str, ...]:
+def _split_glob(glob: str) -> tuple[str, ...]:
     """A glob in pieces: `**/`, `/**`, `**`, `*`, `?`, classes such as `[ab]`, and single characters."""
     found: list[str] = []
     for piece in re.findall(
         r"\*\*/|/?\*\*$|\*\*|\*|\?|\[!?[^\]/]+\]|.", glob.removeprefix("./").rstrip("/"), re.DOTALL
     ):
         is_class = len(piece) > 2 and piece[0] == "["
-        found += piece if is_class and _glob_class(piece[1:-1]) is None else [piece]
+        found += piece if is_class and _compile_glob_class(piece[1:-1]) is None else [piece]
     return tuple(found)
 
 
 @lru_cache(maxsize=64)
-def _signs(path: str) -> tuple[dict[str, int], int]:
+def _index_characters(path: str) -> tuple[dict[str, int], int]:
     """Where each character stands in a path, as bits, and where the slashes do."""
     found: dict[str, int] = {}
     for place, sign in enumerate(path):
@@ -399,7 +399,7 @@ def _signs(path: str) -> tuple[dict[str, int], int]:
 
 
 @lru_cache(maxsize=512)
-def _glob_class(content: str) -> re.Pattern[str] | None:
+def _compile_glob_class(content: str) -> re.Pattern[str] | None:
     """`[ab]`, `[a-z]` or `[!a]` of a glob, for one character; None for what is no class (`[z-a]`)."""
     negated = content.startswith("!")
     signs = re.sub(r"[\\\[\]^&~|]", r"\\\g<0>", content[negated:])
@@ -433,7 +433,7 @@ def suppress(
             lines = reach.get(finding.path)
             if lines is None:
                 lines = reach[finding.path] = _reach(comments)
-            names = (*_names_of(finding, rules), *EVERYTHING)
+            names = (*_list_rule_names(finding, rules), *EVERYTHING)
             for line in (finding.line, 0):
                 there = lines.get(line)
                 found = [(*there[name], name) for name in names if name in there] if there else []
@@ -491,7 +491,7 @@ def format_baseline(findings: Iterable[Finding]) -> str:
         }
         for fingerprint, finding in sorted(facts.items(), key=lambda item: (*_sort_key(item[1]), item[0]))
     ]
-    return json_text({"schema": 1, "findings": entries}) + "\n"
+    return format_json({"schema": 1, "findings": entries}) + "\n"
 
 
 def read_baseline(text: str | bytes) -> Counter[str]:
@@ -525,7 +525,7 @@ def prune_baseline(known: Counter[str], findings: Iterable[Finding]) -> tuple[st
     return format_baseline(old), sum(known.values()) - len(old)
 
 
-def fails(findings: Iterable[Finding], fail_on: str = "error") -> bool:
+def has_failures(findings: Iterable[Finding], fail_on: str = "error") -> bool:
     """Whether a new finding is at or above a severity; `never` never fails."""
     if fail_on == "never":
         return False

@@ -86,7 +86,7 @@ def make_fixes(
                 wanted.setdefault((action.path, action.name), set()).add(action.tag)
     content: dict[str, bytes | None] = {}
 
-    def edits(fix: tuple[FixAction, ...]) -> tuple[Edit, ...]:
+    def build_edits(fix: tuple[FixAction, ...]) -> tuple[Edit, ...]:
         result: list[Edit] = []
         for action in fix:
             if action.path not in content:
@@ -94,19 +94,19 @@ def make_fixes(
                 if originals is not None and data is not None:
                     originals[action.path] = data
             data = content[action.path]
-            part = () if data is None else _made(action, data, wanted)
+            part = () if data is None else _make_edits(action, data, wanted)
             if not part:
                 return ()
             result += part
         return tuple(result)
 
-    return [finding._replace(fix=edits(finding.fix)) if finding.fix else finding for finding in findings]
+    return [finding._replace(fix=build_edits(finding.fix)) if finding.fix else finding for finding in findings]
 
 
-def _made(action: FixAction, data: bytes, wanted: dict[tuple[str, str], set[str]]) -> tuple[Edit, ...]:
+def _make_edits(action: FixAction, data: bytes, wanted: dict[tuple[str, str], set[str]]) -> tuple[Edit, ...]:
     if isinstance(action, Declare):
         tags = wanted.get((action.path, action.name), {action.tag})
-        return declare_dependency(data, action.name, _joint(action.tag, tags), action.path)
+        return declare_dependency(data, action.name, _select_tag(action.tag, tags), action.path)
     if isinstance(action, Remove):
         return remove_dependency(data, action.name, action.tag, action.path)
     if isinstance(action, Replace):
@@ -118,7 +118,7 @@ def _made(action: FixAction, data: bytes, wanted: dict[tuple[str, str], set[str]
     return (action,)
 
 
-def _joint(tag: str, tags: set[str]) -> str:
+def _select_tag(tag: str, tags: set[str]) -> str:
     """The tag to declare where several are wanted for one name: `depend` beside its own parts is an error (REP 140)."""
     parts = {*_COVERS["depend"], "depend"}
     if tag in parts and ("depend" in tags or parts - {"depend"} <= tags):
@@ -126,7 +126,7 @@ def _joint(tag: str, tags: set[str]) -> str:
     return "depend" if tag == "test_depend" and "depend" in tags else tag
 
 
-def fixes(findings: Iterable[Finding]) -> list[tuple[Edit, ...]]:
+def collect(findings: Iterable[Finding]) -> list[tuple[Edit, ...]]:
     """The fixes that findings offer as byte edits (see `made`), in their order, each once."""
     edits = (tuple(part for part in finding.fix if isinstance(part, Edit)) for finding in findings)
     return list(dict.fromkeys(fix for fix in edits if fix))
@@ -154,7 +154,7 @@ def apply(fixes: Iterable[Sequence[Edit]], read: Callable[[str], bytes | None]) 
             made = accepted.get(edit.path, []) + added.get(edit.path, [])
             if edit in made:
                 continue
-            reason = _refusal(edit, made, len(content[edit.path]))
+            reason = _explain_refusal(edit, made, len(content[edit.path]))
             if reason:
                 reasons.append((edit, reason))
             else:
@@ -164,11 +164,11 @@ def apply(fixes: Iterable[Sequence[Edit]], read: Callable[[str], bytes | None]) 
             continue
         for path, edits in added.items():
             accepted.setdefault(path, []).extend(edits)
-    files = {path: _edited(content[path], edits) for path, edits in accepted.items()}
+    files = {path: _apply_edits(content[path], edits) for path, edits in accepted.items()}
     return Applied({path: data for path, data in files.items() if data != content[path]}, refused)
 
 
-def _refusal(edit: Edit, made: Sequence[Edit], size: int) -> str:
+def _explain_refusal(edit: Edit, made: Sequence[Edit], size: int) -> str:
     if not 0 <= edit.start <= edit.end <= size:
         return "it reaches outside the file"
     for other in made:
@@ -178,7 +178,7 @@ def _refusal(edit: Edit, made: Sequence[Edit], size: int) -> str:
     return ""
 
 
-def _edited(data: bytes, edits: Iterable[Edit]) -> bytes:
+def _apply_edits(data: bytes, edits: Iterable[Edit]) -> bytes:
     pieces = []
     position = 0
     # Insertions go before a replacement that starts at the same place; sorting is stable, so they keep their order.
@@ -191,7 +191,7 @@ def _edited(data: bytes, edits: Iterable[Edit]) -> bytes:
     return b"".join((*pieces, data[position:]))
 
 
-def unified_diff(path: str, old: bytes, new: bytes) -> str:
+def make_unified_diff(path: str, old: bytes, new: bytes) -> str:
     """The change as `git apply` and `patch -p1` read it, empty when nothing changes. Bytes that are no UTF-8 come as
     surrogate escapes."""
     from difflib import unified_diff as diff
@@ -224,12 +224,12 @@ def write(root: Path, path: str, data: bytes, original: bytes) -> None:
     write_file(os.path.join(root, path), data, beneath=root, instead_of=original)
 
 
-def offset_of(data: bytes, line: int, column: int = 1) -> int:
+def compute_offset(data: bytes, line: int, column: int = 1) -> int:
     """Byte offset of a line and column, both counted from 1, columns in characters; a byte-order mark takes none.
 
     The column behind the last character is the line's end. Raises ValueError for a place outside the file.
     """
-    starts = _line_starts(data)
+    starts = _find_line_starts(data)
     if line > len(starts):
         raise ValueError(f"there is no line {line}")
     start = starts[max(line, 1) - 1]
@@ -241,7 +241,7 @@ def offset_of(data: bytes, line: int, column: int = 1) -> int:
 
 
 @lru_cache(maxsize=4)
-def _line_starts(data: bytes) -> array[int]:
+def _find_line_starts(data: bytes) -> array[int]:
     """The offset of each line; one file may have as many fixes as lines."""
     starts = array("q", (len(_BOM) if data.startswith(_BOM) else 0,))
     starts.extend(match.end() for match in re.finditer(rb"\n", data))
@@ -253,7 +253,7 @@ def replace_text(path: str, data: bytes, line: int, column: int, old: str, new: 
     when it does not stand there."""
     wanted = old.encode()
     try:
-        start = offset_of(data, line, max(column, 1))
+        start = compute_offset(data, line, max(column, 1))
     except ValueError:
         return None
     if column < 1:
@@ -269,22 +269,22 @@ def insert_lines(path: str, data: bytes, line: int, text: str) -> Edit | None:
     no such line. In CMake, where a command may span lines, they go behind the last line of the command, or nowhere when
     something else follows it there."""
     if line and (path.endswith(".cmake") or path.rpartition("/")[2] == "CMakeLists.txt"):
-        return _behind_command(path, data, line, text)
-    ending = _ending(data, 0)
+        return _insert_after_command(path, data, line, text)
+    ending = _find_line_ending(data, 0)
     if line == 0:
         start = len(_BOM) if data.startswith(_BOM) else 0
         return Edit(path, start, start, text.replace("\n", ending) + ending)
     try:
-        start = offset_of(data, line)
+        start = compute_offset(data, line)
     except ValueError:
         return None
     if start == len(data):
         return None
     end = data.find(b"\n", start)
-    return _behind(path, data, start, end, text, ending if end < 0 else _ending(data, start))
+    return _insert_lines_after(path, data, start, end, text, ending if end < 0 else _find_line_ending(data, start))
 
 
-def _behind(path: str, data: bytes, start: int, end: int, text: str, ending: str) -> Edit:
+def _insert_lines_after(path: str, data: bytes, start: int, end: int, text: str, ending: str) -> Edit:
     """The edit that puts lines behind those of a place, indented as the first of them is. end: of the last, or -1."""
     own = data[start : len(data) if end < 0 else end]
     indent = own[: len(own) - len(own.lstrip(b" \t"))].decode("ascii")
@@ -294,10 +294,10 @@ def _behind(path: str, data: bytes, start: int, end: int, text: str, ending: str
     return Edit(path, end + 1, end + 1, lines + ending)
 
 
-def _behind_command(path: str, data: bytes, line: int, text: str) -> Edit | None:
+def _insert_after_command(path: str, data: bytes, line: int, text: str) -> Edit | None:
     """As insert_lines, behind the CMake command that the first word of a line belongs to."""
     try:
-        start = offset_of(data, line)
+        start = compute_offset(data, line)
     except ValueError:
         return None
     depth, opened = 0, 0
@@ -312,7 +312,7 @@ def _behind_command(path: str, data: bytes, line: int, text: str) -> Edit | None
             end = data.find(b"\n", match.end())
             if not _CMAKE_REST.match(data[match.end() : len(data) if end < 0 else end]):
                 return None
-            return _behind(path, data, opened, end, text, _ending(data, opened))
+            return _insert_lines_after(path, data, opened, end, text, _find_line_ending(data, opened))
     return None
 
 
@@ -339,7 +339,7 @@ def declare_dependency(data: bytes, name: str, tag: str = "depend", path: str = 
     goes behind the last one of its tag, or to its place where they are sorted, with their indentation and line ending.
     Parts that are declared already are left out: `depend` beside a `build_depend` adds only what is missing.
     """
-    manifest = _manifest(data)
+    manifest = _parse_manifest(data)
     if manifest is None or not _NAME.match(name):
         return ()
     present = {child.tag for child in manifest.children if child.text == name}
@@ -356,24 +356,24 @@ def declare_dependency(data: bytes, name: str, tag: str = "depend", path: str = 
         covered = {"depend"} & present if tag == "test_depend" else set()
     if covered:
         return ()
-    return tuple(_insertion(data, manifest, name, each, path) for each in tags)
+    return tuple(_insert_dependency(data, manifest, name, each, path) for each in tags)
 
 
 def remove_dependency(data: bytes, name: str, tag: str = "", path: str = "package.xml") -> tuple[Edit, ...]:
     """Edits that take a dependency out of a manifest, of one tag or of all. A line that holds nothing else goes too."""
-    manifest = _manifest(data)
+    manifest = _parse_manifest(data)
     edits = []
     for child in manifest.children if manifest else ():
         if child.text != name or child.tag not in _TAG_ORDER or tag not in ("", child.tag):
             continue
-        start, end = _line(data, child.start, child.end)
+        start, end = _find_line_span(data, child.start, child.end)
         alone = not data[start : child.start].strip() and not data[child.end : end].strip()
         edits.append(Edit(path, start, end, "") if alone else Edit(path, child.start, child.end, ""))
     return tuple(edits)
 
 
 @lru_cache(maxsize=4)
-def _manifest(data: bytes) -> _Manifest | None:
+def _parse_manifest(data: bytes) -> _Manifest | None:
     """The children of <package> with their offsets, None when the file is no manifest that can be followed."""
     # In what is no XML, or has a DOCTYPE, the patterns take quadratic time, and mean something else.
     if b"<!DOCTYPE" in data or not _is_xml(data):
@@ -421,29 +421,33 @@ def _is_xml(data: bytes) -> bool:
     return True
 
 
-def _insertion(data: bytes, manifest: _Manifest, name: str, tag: str, path: str) -> Edit:
+def _insert_dependency(data: bytes, manifest: _Manifest, name: str, tag: str, path: str) -> Edit:
     element = f"<{tag}>{name}</{tag}>"
     siblings = [child for child in manifest.children if child.tag == tag]
     texts = [child.text for child in siblings]
     if len(siblings) > 1 and texts == sorted(texts):
         place = bisect_left(texts, name)
-        return _after(data, siblings[place - 1], element, path) if place else _before(data, siblings[0], element, path)
+        return (
+            _insert_after(data, siblings[place - 1], element, path)
+            if place
+            else _insert_before(data, siblings[0], element, path)
+        )
     if siblings:
-        return _after(data, siblings[-1], element, path)
+        return _insert_after(data, siblings[-1], element, path)
     rank = _TAG_ORDER.index(tag) if tag in _TAG_ORDER else len(_TAG_ORDER)
     related = [child for child in manifest.children if child.tag in _TAG_ORDER]
     earlier = [child for child in related if _TAG_ORDER.index(child.tag) < rank]
     if earlier:
-        return _after(data, earlier[-1], element, path)
+        return _insert_after(data, earlier[-1], element, path)
     for child in manifest.children:
         if child in related or child.tag in ("member_of_group", "group_depend", "export"):
-            return _before(data, child, element, path)
+            return _insert_before(data, child, element, path)
     if manifest.children:
-        return _after(data, manifest.children[-1], element, path)
+        return _insert_after(data, manifest.children[-1], element, path)
     return Edit(path, manifest.close, manifest.close, element)
 
 
-def _line(data: bytes, start: int, end: int) -> tuple[int, int]:
+def _find_line_span(data: bytes, start: int, end: int) -> tuple[int, int]:
     """Offsets of the whole lines around a piece, the last line's end included."""
     after = data.find(b"\n", end)
     return data.rfind(b"\n", 0, start) + 1, len(data) if after < 0 else after + 1
@@ -456,7 +460,7 @@ def _indent(data: bytes, child: _Element) -> tuple[int, str | None]:
     return start, before.decode("ascii", "replace") if not before.strip(b" \t") else None
 
 
-def _ending(data: bytes, offset: int) -> str:
+def _find_line_ending(data: bytes, offset: int) -> str:
     """The line ending behind an offset, or before it on the last line."""
     end = data.find(b"\n", offset)
     if end < 0:
@@ -464,7 +468,7 @@ def _ending(data: bytes, offset: int) -> str:
     return "\r\n" if end > 0 and data[end - 1 : end] == b"\r" else "\n"
 
 
-def _after(data: bytes, child: _Element, element: str, path: str) -> Edit:
+def _insert_after(data: bytes, child: _Element, element: str, path: str) -> Edit:
     _, indent = _indent(data, child)
     if indent is None:
         return Edit(path, child.end, child.end, element)
@@ -473,11 +477,11 @@ def _after(data: bytes, child: _Element, element: str, path: str) -> Edit:
     end -= data[end - 1 : end] == b"\r"
     # A remark on the sibling's own line stays with it.
     place = end if _COMMENTS_ONLY.match(data[child.end : end]) else child.end
-    return Edit(path, place, place, _ending(data, child.end) + indent + element)
+    return Edit(path, place, place, _find_line_ending(data, child.end) + indent + element)
 
 
-def _before(data: bytes, child: _Element, element: str, path: str) -> Edit:
+def _insert_before(data: bytes, child: _Element, element: str, path: str) -> Edit:
     start, indent = _indent(data, child)
     if indent is None:
         return Edit(path, child.start, child.start, element)
-    return Edit(path, start + len(indent), start + len(indent), element + _ending(data, child.end) + indent)
+    return Edit(path, start + len(indent), start + len(indent), element + _find_line_ending(data, child.end) + indent)

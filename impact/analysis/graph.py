@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from ..facts.store import Store
 from ..model.flow.graph import Graph
-from ..model.flow.workspace import graph_of, linked
+from ..model.flow.workspace import link_for_flow, make_graph
 from ..model.workspace import Workspace
 from ..tree import Tree
 from .session import CheckError, link_flow, open_tree
@@ -21,7 +21,7 @@ class Graphs(NamedTuple):
     notes: tuple[str, ...]
 
 
-def graphs(
+def build_graphs(
     path: Path, *, rev: str = "", base: Sequence[str] = (), launch: str = "",
     arguments: Mapping[str, str] | None = None, jobs: int | None = None,
     progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
@@ -36,24 +36,24 @@ def graphs(
     with Store() as store:
         file = _launch_file(path, tree, launch) if launch else ""
         workspace = link_flow(path, tree, store, jobs, progress)
-        now = graph_of(workspace, store, os.fspath(path), rev, file, arguments)
-        strangers = _undeclared(workspace, file, arguments) if file and arguments else ()
+        now = make_graph(workspace, store, os.fspath(path), rev, file, arguments)
+        strangers = _describe_undeclared(workspace, file, arguments) if file and arguments else ()
         if not base:
             return Graphs(now, None, strangers)
-        from .revision_compare import base_tree
+        from .revision_compare import open_base_tree
 
-        old_tree, notes = base_tree(tree, tuple(base))
+        old_tree, notes = open_base_tree(tree, tuple(base))
         had = not file or old_tree.exists(file)
-        old = linked(old_tree, store, jobs)
-        before = graph_of(old, store, os.fspath(path), " ".join(base), file if had else "", arguments)
+        old = link_for_flow(old_tree, store, jobs)
+        before = make_graph(old, store, os.fspath(path), " ".join(base), file if had else "", arguments)
         return Graphs(now, before, (*strangers, *notes))
 
 
-def _undeclared(workspace: Workspace, launch: str, arguments: Mapping[str, str]) -> tuple[str, ...]:
+def _describe_undeclared(workspace: Workspace, launch: str, arguments: Mapping[str, str]) -> tuple[str, ...]:
     """A note for each argument that neither the launch file nor any that it includes declares."""
-    from ..model.flow.started import launched  # of no use to a graph of code alone
+    from ..model.flow.started import follow_workspace_launch  # of no use to a graph of code alone
 
-    declared = sorted({argument.name for argument in launched(workspace, launch, arguments).arguments})
+    declared = sorted({argument.name for argument in follow_workspace_launch(workspace, launch, arguments).arguments})
     known = f"it declares {', '.join(f'`{name}`' for name in declared)}" if declared else "it declares none"
     return tuple(
         f"--set {name}: `{launch}` has no such argument; {known}" for name in arguments if name not in declared
@@ -66,7 +66,7 @@ def _launch_file(path: Path, tree: Tree, launch: str) -> str:
         inside = candidate.replace(os.sep, "/").removeprefix("./")
         if not inside.startswith("..") and tree.exists(inside) and not tree.is_dir(inside):
             return inside
-    found = [entry.path for entry in tree.entries() if entry.path == launch or entry.path.endswith(f"/{launch}")]
+    found = [entry.path for entry in tree.list_entries() if entry.path == launch or entry.path.endswith(f"/{launch}")]
     if len(found) == 1:
         return found[0]
     if found:

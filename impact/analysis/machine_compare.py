@@ -8,7 +8,7 @@ from ..config import load
 from ..model.build_order import build_order
 from ..model.view import TargetView
 from ..model.workspace import Package
-from ..targets.capture import MachineDifference, differences
+from ..targets.capture import MachineDifference, find_differences
 from ..targets.resolve import parse_target
 from .findings import rank
 from .report import Report, ReportedTarget
@@ -53,14 +53,14 @@ class Machines(NamedTuple):
     both: int = 0
 
 
-def machines(first: str, second: str, path: Path | None = None) -> Machines:
+def compare_machines(first: str, second: str, path: Path | None = None) -> Machines:
     """What differs between two targets, in any form that `--target` takes. path: a workspace; with it, what matters to
     that. Raises as check() does."""
     if path is not None:
-        return _beside(path, first, second)
+        return _compare_in_workspace(path, first, second)
     config = load(Path())
     one, other = (parse_target(text, config) for text in (first, second))
-    found = differences(one, other)
+    found = find_differences(one, other)
     return Machines(
         ReportedTarget(one.name, one.distro, one.date, one.platform, "", one.notes),
         ReportedTarget(other.name, other.distro, other.date, other.platform, "", other.notes),
@@ -69,11 +69,11 @@ def machines(first: str, second: str, path: Path | None = None) -> Machines:
     )
 
 
-def _beside(path: Path, first: str, second: str) -> Machines:
+def _compare_in_workspace(path: Path, first: str, second: str) -> Machines:
     with open_sides(path, first, second, Options()) as (opened, one, other):
         order = build_order(opened.views[0])
-        found = differences(opened.targets[0].target, opened.targets[1].target)
-        uses = _uses(opened.views)
+        found = find_differences(opened.targets[0].target, opened.targets[1].target)
+        uses = _collect_uses(opened.views)
     versions = [
         Used(each, uses[each.name])
         for each in found
@@ -88,7 +88,7 @@ def _beside(path: Path, first: str, second: str) -> Machines:
         one.report.targets[0],
         other.report.targets[0],
         machine,
-        tuple(sorted(versions, key=_harm)),
+        tuple(sorted(versions, key=_rank_difference)),
         len(found) - len(machine) - len(versions),
         report,
         tuple(sorted(harms, key=lambda item: -rank(item.severity))),
@@ -96,26 +96,26 @@ def _beside(path: Path, first: str, second: str) -> Machines:
     )
 
 
-def _harm(used: Used) -> tuple:
+def _rank_difference(used: Used) -> tuple:
     """Sort key: what one machine lacks, then the greater jump, then what more packages use."""
     one, other = used.difference.first, used.difference.second
-    numbers = [_significant(version) for version in (one, other)]
+    numbers = [_split_version(version) for version in (one, other)]
     jump = next((place for place, (a, b) in enumerate(zip(*numbers, strict=False)) if a != b), len(numbers[0]))
     return bool(one and other), jump, -len({use.package for use in used.uses}), used.difference.name
 
 
-def _significant(version: str) -> list[str]:
+def _split_version(version: str) -> list[str]:
     """Parts of a version without a leading zero, behind which the next part means what the first does elsewhere."""
     parts = version.split(".")
     return parts[1:] if parts[0] == "0" else parts
 
 
-def _uses(views: Iterable[TargetView]) -> dict[str, tuple[DependencyUse, ...]]:
+def _collect_uses(views: Iterable[TargetView]) -> dict[str, tuple[DependencyUse, ...]]:
     """Names of packages and libraries to who of the workspace uses them, and how, on any of the views."""
     found: dict[str, dict[tuple[str, str], dict[str, None]]] = {}
     for view in views:
         for package in view:
-            for name, how, subject in _uses_of(view, package):
+            for name, how, subject in _list_uses(view, package):
                 subjects = found.setdefault(name, {}).setdefault((package.name, how), {})
                 subjects.update({subject: None} if subject else {})
     return {
@@ -124,14 +124,14 @@ def _uses(views: Iterable[TargetView]) -> dict[str, tuple[DependencyUse, ...]]:
     }
 
 
-def _uses_of(view: TargetView, package: Package) -> Iterable[tuple[str, str, str]]:
+def _list_uses(view: TargetView, package: Package) -> Iterable[tuple[str, str, str]]:
     """(name, how, what of it) of all that a package uses."""
-    for need in view.needs(package):
+    for need in view.list_needs(package):
         for provider in need.providers[:1]:
-            for name in (provider.name, *view.libraries_of(provider.name)):
+            for name in (provider.name, *view.list_libraries(provider.name)):
                 yield name, need.how, need.subject
-    for declared in view.declared(package):
-        for name in (declared, *view.libraries_of(declared)):
+    for declared in view.collect_declared(package):
+        for name in (declared, *view.list_libraries(declared)):
             yield name, "declared", ""
     if package.build_type != "ament_python":
         yield "cmake", "built with", ""

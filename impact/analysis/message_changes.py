@@ -6,7 +6,7 @@ from typing import NamedTuple
 from ...edges.reach import walk
 from ..facts.interface import Section
 from ..model.workspace import Workspace
-from ..rules.interfaces.comparison import SectionPair, pairs, type_of
+from ..rules.interfaces.comparison import SectionPair, find_changed_sections, format_type
 
 
 class MessageChange(NamedTuple):
@@ -21,14 +21,14 @@ class MessageChange(NamedTuple):
     why: str
 
 
-def message_changes(workspace: Workspace, base: Workspace) -> Iterator[MessageChange]:
+def list_message_changes(workspace: Workspace, base: Workspace) -> Iterator[MessageChange]:
     """Definitions that both have and that differ for whoever sends or reads them, and those that are gone."""
     found: dict[tuple[str, str], list[tuple[int, str]]] = {}
     packages: dict[tuple[str, str], str] = {}
-    for pair in pairs(workspace, base):
+    for pair in find_changed_sections(workspace, base):
         key = (f"{pair.package.name}/{pair.file.name}", pair.file.path)
         packages[key] = pair.package.name
-        found.setdefault(key, []).extend(_differences(pair))
+        found.setdefault(key, []).extend(_compare_sections(pair))
     for (name, path), rows in found.items():
         if rows:
             why = "; ".join(dict.fromkeys(text for _, text in rows))
@@ -43,7 +43,7 @@ def message_changes(workspace: Workspace, base: Workspace) -> Iterator[MessageCh
                 )
 
 
-def holding(workspace: Workspace, name: str) -> set[str]:
+def find_containing_types(workspace: Workspace, name: str) -> set[str]:
     """A type and all of the workspace that have a field of it, or of one that has; as `package/Name`."""
     inside: dict[str, set[str]] = {}
     for package in workspace:
@@ -56,14 +56,14 @@ def holding(workspace: Workspace, name: str) -> set[str]:
     return set(walk([name], lambda one: inside.get(one, ())))
 
 
-def _differences(pair: SectionPair) -> Iterator[tuple[int, str]]:
+def _compare_sections(pair: SectionPair) -> Iterator[tuple[int, str]]:
     where = f" of the {pair.new.name}" if len(pair.file.definition.sections) > 1 else ""
     old, new = {f.name: f for f in pair.old.fields}, {f.name: f for f in pair.new.fields}
     for name, field in new.items():
         if name not in old:
-            yield field.line, f"field `{name}`{where} is new (`{type_of(field)}`)"
-        elif type_of(old[name]) != type_of(field):
-            yield field.line, f"field `{name}`{where} is `{type_of(field)}`, was `{type_of(old[name])}`"
+            yield field.line, f"field `{name}`{where} is new (`{format_type(field)}`)"
+        elif format_type(old[name]) != format_type(field):
+            yield field.line, f"field `{name}`{where} is `{format_type(field)}`, was `{format_type(old[name])}`"
         elif old[name].default != field.default:
             yield field.line, f"field `{name}`{where} is `{field.default}` by default, was `{old[name].default}`"
     for name in old:
@@ -71,10 +71,10 @@ def _differences(pair: SectionPair) -> Iterator[tuple[int, str]]:
             yield 1, f"field `{name}`{where} is gone"
     if [name for name in old if name in new] != [name for name in new if name in old]:
         yield 1, f"the fields{where} stand in another order"
-    yield from _constants(pair.old, pair.new, where)
+    yield from _compare_constants(pair.old, pair.new, where)
 
 
-def _constants(old: Section, new: Section, where: str) -> Iterator[tuple[int, str]]:
+def _compare_constants(old: Section, new: Section, where: str) -> Iterator[tuple[int, str]]:
     before, after = {c.name: c for c in old.constants}, {c.name: c for c in new.constants}
     for name, constant in after.items():
         if name not in before:

@@ -7,7 +7,7 @@ import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...edges.console import counted
+from ...edges.console import format_count
 from ..rules.rule import Finding, Rule
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class SourceLines:
         self._read = read
         self._files: dict[str, list[str]] = {}
 
-    def lines(self, path: str) -> list[str]:
+    def read_lines(self, path: str) -> list[str]:
         """Lines without their endings, empty when the file cannot be read. They end at LF or CRLF."""
         lines = self._files.pop(path, None)
         if lines is None:
@@ -116,14 +116,14 @@ class SourceLines:
         self._files[path] = lines
         return lines
 
-    def line(self, path: str, number: int) -> str:
+    def read_line(self, path: str, number: int) -> str:
         """One line counted from 1, empty when there is none."""
-        lines = self.lines(path)
+        lines = self.read_lines(path)
         return lines[number - 1] if 0 < number <= len(lines) else ""
 
-    def excerpt(self, path: str, number: int) -> list[str]:
+    def read_excerpt(self, path: str, number: int) -> list[str]:
         """The line and CONTEXT lines around it, empty when there is no such line."""
-        lines = self.lines(path)
+        lines = self.read_lines(path)
         return lines[max(0, number - 1 - CONTEXT) : number + CONTEXT] if 0 < number <= len(lines) else []
 
 
@@ -144,7 +144,7 @@ class Shown(NamedTuple):
     width: int
 
 
-def pointed(line: str, column: int, subject: str) -> Shown:
+def locate_subject(line: str, column: int, subject: str) -> Shown:
     """Where in a source line the finding points: the subject at its column, else the word there.
 
     column counts characters from 1; 0 means the whole line, then the subject is looked for.
@@ -163,14 +163,14 @@ def pointed(line: str, column: int, subject: str) -> Shown:
     return Shown(line, start, len(word.group()) if word else 1)
 
 
-def focus(finding: Finding, lines: list[str]) -> tuple[int, Shown | None]:
+def locate_in_excerpt(finding: Finding, lines: list[str]) -> tuple[int, Shown | None]:
     """(number of the first excerpt line, the finding's own line and caret), None without an excerpt."""
     first = max(1, finding.line - CONTEXT)
     index = finding.line - first
-    return first, pointed(lines[index], finding.column, finding.subject) if 0 <= index < len(lines) else None
+    return first, locate_subject(lines[index], finding.column, finding.subject) if 0 <= index < len(lines) else None
 
 
-def cells(text: str) -> int:
+def measure(text: str) -> int:
     """Terminal columns a text takes: wide characters count twice, combining ones not at all."""
     if text.isascii():
         return len(text)
@@ -179,7 +179,7 @@ def cells(text: str) -> int:
     )
 
 
-def fresh(report: Report) -> list[Finding]:
+def list_new(report: Report) -> list[Finding]:
     """What the run is about: all findings, or those new against the base."""
     return [finding for finding in report.findings if finding.new]
 
@@ -192,19 +192,19 @@ def count_by_severity(graded: Iterable[Finding | UpgradeItem]) -> dict[str, int]
     return counts
 
 
-def severities_text(graded: Iterable[Finding | UpgradeItem], between: str = ", ") -> str:
+def format_severities(graded: Iterable[Finding | UpgradeItem], between: str = ", ") -> str:
     """`2 errors, 1 note`; empty without any."""
-    return between.join(counted(number, name) for name, number in count_by_severity(graded).items() if number)
+    return between.join(format_count(number, name) for name, number in count_by_severity(graded).items() if number)
 
 
-def matrix(report: Report) -> dict[str, dict[str, dict[str, int]]]:
+def count_by_target(report: Report) -> dict[str, dict[str, dict[str, int]]]:
     """package → target → severity → count, of what is new. Every package and target is there; findings that name no
     package stand under the empty name, findings that name no target count for all."""
     names = [target.name for target in report.targets]
     table: dict[str, dict[str, dict[str, int]]] = {
         package.name: {name: {} for name in names} for package in report.packages
     }
-    for finding in fresh(report):
+    for finding in list_new(report):
         row = table.setdefault(finding.package, {name: {} for name in names})
         for name in finding.targets or names:
             cell = row.setdefault(name, {})
@@ -212,11 +212,11 @@ def matrix(report: Report) -> dict[str, dict[str, dict[str, int]]]:
     return table
 
 
-def coverage_text(coverage: Coverage) -> str:
+def format_coverage(coverage: Coverage) -> str:
     """Coverage as one clause: packages, files parsed of files, what stayed unresolved."""
-    unresolved = [counted(number, kind) for kind, number in sorted(coverage.unresolved.items()) if number]
-    files = counted(coverage.files, "file")
+    unresolved = [format_count(number, kind) for kind, number in sorted(coverage.unresolved.items()) if number]
+    files = format_count(coverage.files, "file")
     read = f"all of {files} read" if coverage.parsed == coverage.files else f"{coverage.parsed:,} of {files} read"
-    return ", ".join([counted(coverage.packages, "package"), read]) + (
+    return ", ".join([format_count(coverage.packages, "package"), read]) + (
         f", unresolved: {', '.join(unresolved)}" if unresolved else ""
     )

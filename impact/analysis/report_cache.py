@@ -15,12 +15,12 @@ import msgspec
 
 from ...edges.version import __version__
 from ..config import Config
-from ..facts.store import Store, encodable
-from ..rules.rule import Finding, all_rules
-from ..source_keys import code_stamp
-from ..targets.snapshot import data_stamp, updated_folder
+from ..facts.store import Store, encode_rows
+from ..rules.rule import Finding, load_rules
+from ..source_keys import compute_code_stamp
+from ..targets.snapshot import compute_data_stamp, find_updated_folder
 from ..tree import WorkingTree
-from ..tree.paths import blob_id
+from ..tree.paths import compute_blob_id
 from .report import Checked, Coverage, Report, ReportedPackage, SourceLines, report_target
 from .session import Options, Read, make_reader, select_rules
 
@@ -43,9 +43,9 @@ def asks_flow(config: Config, store: Store, options: Options) -> bool:
     select_rules() does."""
     if not (options.select or options.ignore or config.select or config.ignore):
         return options.preview  # all rules on the message flow are previews
-    asked = (code_stamp(), options.select, options.ignore, options.preview, config.select, config.ignore)
+    asked = (compute_code_stamp(), options.select, options.ignore, options.preview, config.select, config.ignore)
     key = hashlib.sha1(repr(asked).encode("utf-8", "surrogateescape")).digest()
-    known = store.memo("asks flow", key)
+    known = store.find_memo("asks flow", key)
     if known is None:
         known = b"1" if any(rule.reads_flow for rule in select_rules(options, config).values()) else b""
         store.remember("asks flow", [(key, known)])
@@ -60,29 +60,29 @@ def report_key(read: Read, options: Options) -> bytes | None:
     if any(outside) or not isinstance(tree, WorkingTree):
         return None
     asked = (options.select, options.ignore, options.preview, options.follow_links, options.baseline)
-    targets = [(chosen.target.identity(), chosen.target.name, chosen.reason) for chosen in read.targets]
+    targets = [(chosen.target.compute_identity(), chosen.target.name, chosen.reason) for chosen in read.targets]
     found = hashlib.sha1()
 
     def add(*parts: object) -> None:
         found.update(repr(parts).encode("utf-8", "backslashreplace"))
 
-    add(code_stamp(), data_stamp(), _updated_data(), asked, config, read.ros, targets, tree.root)
+    add(compute_code_stamp(), compute_data_stamp(), _list_updated_data(), asked, config, read.ros, targets, tree.root)
     add(tree.problems, tree.skipped, tree.aliases, tree.repositories, read.gathered.problems)
     add(read.discovered.packages, read.discovered.ignored, read.discovered.problems)
     ids = read.gathered.ids
     kinds = read.gathered.kinds
-    for entry in tree.entries():
+    for entry in tree.list_entries():
         content = ids.get(entry.path)
-        state = content or tree.state(entry.path)
+        state = content or tree.find_state(entry.path)
         if state is None:
             return None
         add(entry.path, kinds.get(entry.path), state)
     return found.digest()
 
 
-def _updated_data() -> list[tuple[str, int, int]]:
+def _list_updated_data() -> list[tuple[str, int, int]]:
     """The state of the data that a user has updated."""
-    with contextlib.suppress(OSError), os.scandir(updated_folder()) as entries:
+    with contextlib.suppress(OSError), os.scandir(find_updated_folder()) as entries:
         return sorted((entry.name, (status := entry.stat()).st_size, status.st_mtime_ns) for entry in entries)
     return []
 
@@ -90,7 +90,7 @@ def _updated_data() -> list[tuple[str, int, int]]:
 def load_report(path: str | os.PathLike[str], read: Read, key: bytes, started: float) -> Checked | None:
     """The check of an earlier run that rests on the same; None when there is none. key: a report_key(). started: when
     the work began, by time.perf_counter()."""
-    data = read.store.memo("report", key)
+    data = read.store.find_memo("report", key)
     if data is None:
         return None
     try:
@@ -98,7 +98,7 @@ def load_report(path: str | os.PathLike[str], read: Read, key: bytes, started: f
         originals = {file: read.tree.read(file) for file, _ in kept.originals}
     except (msgspec.MsgspecError, UnicodeDecodeError, OSError):
         return None
-    if any(blob_id(originals[file]) != content for file, content in kept.originals):
+    if any(compute_blob_id(originals[file]) != content for file, content in kept.originals):
         return None  # it has just been written to
     notes, targets = read.store.notes, read.targets
     report = Report(
@@ -110,9 +110,9 @@ def load_report(path: str | os.PathLike[str], read: Read, key: bytes, started: f
         packages=kept.packages,
         suppressed=kept.suppressed,
         known=kept.known,
-        rules=lambda: [all_rules()[name] for name in kept.rules],
+        rules=lambda: [load_rules()[name] for name in kept.rules],
         seconds=time.perf_counter() - started,
-        excerpt=SourceLines(make_reader(read.tree)).excerpt,
+        excerpt=SourceLines(make_reader(read.tree)).read_excerpt,
         root=os.fspath(path),
     )
     return Checked(report, read.config, read.tree, originals)
@@ -128,6 +128,6 @@ def store_report(read: Read, key: bytes, checked: Checked) -> None:
         report.coverage,
         report.packages,
         tuple(rule.name for rule in report.rules()),
-        tuple((file, blob_id(data)) for file, data in checked.originals.items()),
+        tuple((file, compute_blob_id(data)) for file, data in checked.originals.items()),
     )
-    read.store.remember("report", encodable([(key, kept)]))
+    read.store.remember("report", encode_rows([(key, kept)]))

@@ -13,21 +13,21 @@ from functools import lru_cache
 import msgspec
 from msgspec import structs
 
-from ..facts.store import Store, encodable
+from ..facts.store import Store, encode_rows
 from ..model import tracked_names as watch
 from ..model.cmake.build import At
-from ..model.flow.file_selection import stamp
+from ..model.flow.file_selection import compute_stamp
 from ..model.package import Watched
 from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
-from ..source_keys import code_stamp
-from ..targets.availability import horizons
-from ..targets.changes import looked_for
+from ..source_keys import compute_code_stamp
+from ..targets.availability import list_horizons
+from ..targets.changes import index_uses
 from ..targets.distro.distro import DistroTarget
-from ..targets.snapshot import data_stamp
-from ..targets.surface.fields import default_fields
-from ..targets.surface.store import shipped
+from ..targets.snapshot import compute_data_stamp
+from ..targets.surface.fields import load_fields
+from ..targets.surface.store import load_shipped
 from ..targets.target import ChangeInForce
 
 # (rule, what it yields)
@@ -49,15 +49,15 @@ class _Judgement(msgspec.Struct, frozen=True, array_like=True):
 
 def load_tracked_names(store: Store) -> Watched:
     """The names that rules look out for, as an earlier run gathered them from the same tables."""
-    name = hashlib.sha1(f"{code_stamp()} {data_stamp()}".encode()).digest()
-    data = store.memo("watched", name)
+    name = hashlib.sha1(f"{compute_code_stamp()} {compute_data_stamp()}".encode()).digest()
+    data = store.find_memo("watched", name)
     if data is not None:
         with contextlib.suppress(msgspec.MsgspecError):
             return _unpack_tracked(data)
-    names = watch.watched()
+    names = watch.load_watched()
     # The table of fields, the surfaces and the uses are read from files of their own, where they are asked.
     bare = structs.replace(names, fields=None, surfaces=None, uses=None)
-    store.remember("watched", encodable([(name, bare)]))
+    store.remember("watched", encode_rows([(name, bare)]))
     return names
 
 
@@ -65,17 +65,17 @@ def load_tracked_names(store: Store) -> Watched:
 def _unpack_tracked(data: bytes) -> Watched:
     """The names as they were stored. What is derived from them is made once in a process. Raises MsgspecError."""
     known = msgspec.msgpack.decode(data, type=Watched)
-    return structs.replace(known, fields=default_fields(), surfaces=shipped(), uses=looked_for)
+    return structs.replace(known, fields=load_fields(), surfaces=load_shipped(), uses=index_uses)
 
 
-def results_key(view: TargetView, rules: Iterable[str]) -> bytes:
+def make_results_key(view: TargetView, rules: Iterable[str]) -> bytes:
     """The key of a view's judgement by these rules."""
     found = hashlib.sha1(view.workspace.identity)
     config = view.config
     found.update(
         repr(
             (
-                *(code_stamp(), view.target.identity(), view.horizon, sorted(rules)),
+                *(compute_code_stamp(), view.target.compute_identity(), view.horizon, sorted(rules)),
                 *(config.private, config.installed, config.underlays, config.repos),
             )
         ).encode()
@@ -85,7 +85,7 @@ def results_key(view: TargetView, rules: Iterable[str]) -> bytes:
 
 def load_results(store: Store, view: TargetView, rules: Sequence[str]) -> list[Yielded] | None:
     """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
-    found = _recalled(store, results_key(view, rules))
+    found = _load_results(store, make_results_key(view, rules))
     if found is None:
         return None
     hits, unresolved = found
@@ -97,18 +97,18 @@ def load_results(store: Store, view: TargetView, rules: Sequence[str]) -> list[Y
 def store_results(store: Store, view: TargetView, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
     """Keeps what the rules yielded for later runs."""
     unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
-    _keep(store, results_key(view, rules), diagnostics, unresolved)
+    _keep(store, make_results_key(view, rules), diagnostics, unresolved)
 
 
-def flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
+def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
     """The key of what these rules say of a workspace's message flow. before: the workspace at the base."""
-    stamps = [stamp(each) for each in (workspace, before) if each is not None]
-    return hashlib.sha1(repr((stamps, data_stamp(), sorted(rules))).encode()).digest()
+    stamps = [compute_stamp(each) for each in (workspace, before) if each is not None]
+    return hashlib.sha1(repr((stamps, compute_data_stamp(), sorted(rules))).encode()).digest()
 
 
 def load_flow_results(store: Store, key: bytes) -> list[Yielded] | None:
-    """(rule, hit) on the message flow of an earlier run, None when there was none. key: a flow_key()."""
-    found = _recalled(store, key)
+    """(rule, hit) on the message flow of an earlier run, None when there was none. key: a make_flow_key()."""
+    found = _load_results(store, key)
     return found[0] if found is not None else None
 
 
@@ -119,11 +119,11 @@ def store_flow_results(store: Store, key: bytes, diagnostics: Iterable[Yielded])
 
 def _keep(store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]) -> None:
     stored = tuple(_Stored(rule, _place_of(one.at), one._replace(at=None)) for rule, one in diagnostics)
-    store.remember("judgement", encodable([(key, _Judgement(stored, unresolved))]))
+    store.remember("judgement", encode_rows([(key, _Judgement(stored, unresolved))]))
 
 
-def _recalled(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[str, ...]]] | None:
-    data = store.memo("judgement", key)
+def _load_results(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[str, ...]]] | None:
+    data = store.find_memo("judgement", key)
     if data is None:
         return None
     try:
@@ -136,18 +136,18 @@ def _recalled(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[
 
 def load_changes(store: Store, target: DistroTarget) -> None:
     """Gives a target, and what it is going to be, the changes an earlier run worked out."""
-    for one in (target, *(ahead.target for ahead in horizons(target))):
+    for one in (target, *(ahead.target for ahead in list_horizons(target))):
         if one.has_changes():
             continue
-        name = hashlib.sha1(one.identity().encode()).digest()
-        data = store.memo("changes", name)
+        name = hashlib.sha1(one.compute_identity().encode()).digest()
+        data = store.find_memo("changes", name)
         if data is not None:
             try:
                 one.set_changes(msgspec.msgpack.decode(data, type=tuple[ChangeInForce, ...]))
                 continue
             except msgspec.MsgspecError:
                 pass
-        store.remember("changes", encodable([(name, [tuple(change) for change in one.changes()])]))
+        store.remember("changes", encode_rows([(name, [tuple(change) for change in one.changes()])]))
 
 
 def _place_of(at: object) -> At:

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from ...edges import files
 from ...edges.documents import DocumentError, load_yaml
-from ...edges.limits import limits
-from ..facts.extract import gather
+from ...edges.limits import get_limits
+from ..facts.extract import extract_all
 from ..model.discovery import REPOSITORY_LISTS
-from ..model.flow.file_selection import code_kinds
+from ..model.flow.file_selection import make_code_selector
 from ..model.view import TargetView
 from ..model.workspace import link
-from ..tree import GitTree, Tree, TreeError, at_merge_bases, inside, shown
+from ..tree import GitTree, Tree, TreeError, normalize_path, open_merge_bases, shown
 from .result_cache import load_tracked_names
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ class BaseError(TreeError):
     """The base cannot be found; the text names what was asked for and what to write."""
 
 
-def base_tree(tree: Tree, base: Sequence[str]) -> tuple[Tree, list[str]]:
+def open_base_tree(tree: Tree, base: Sequence[str]) -> tuple[Tree, list[str]]:
     """The tree to compare with, every repository of the workspace at its merge base with the revision asked for; and
     what to know about it.
 
@@ -43,18 +43,18 @@ def base_tree(tree: Tree, base: Sequence[str]) -> tuple[Tree, list[str]]:
             path, _, revision = item.partition("=")
             if not revision:
                 raise BaseError(f"--base {item}: names no revision; write --base {path}=REV")
-            revisions[_repository(tree, path)] = revision
+            revisions[_find_repository(tree, path)] = revision
         elif everywhere and item != everywhere:
             raise BaseError(f"--base {item}: {everywhere} was given too; for single repositories write --base PATH=REV")
         else:
             everywhere = item
     if pinned and not isinstance(tree, GitTree):
-        found = {folder: rev for folder in tree.repositories if (rev := _pin_of(folder, pinned))}
+        found = {folder: rev for folder in tree.repositories if (rev := _find_pin(folder, pinned))}
         if not found:
             names = ", ".join(list(pinned)[:5])
             raise BaseError(f"--base: no repository of {tree.label} is one that the file pins ({names})")
         revisions = {**found, **revisions}
-    joined = at_merge_bases(tree, revisions, everywhere)
+    joined = open_merge_bases(tree, revisions, everywhere)
     left = [] if everywhere or isinstance(tree, GitTree) else [f for f in tree.repositories if f not in revisions]
     notes = [
         f"base: no revision was named for `{shown(folder or '.')}`, so nothing in it counts as new" for folder in left
@@ -62,9 +62,9 @@ def base_tree(tree: Tree, base: Sequence[str]) -> tuple[Tree, list[str]]:
     return joined, notes
 
 
-def _repository(tree: Tree, path: str) -> str:
+def _find_repository(tree: Tree, path: str) -> str:
     """The folder of the repository that a person means by a path: as written, or by its last parts where clear."""
-    folder = inside(path.rstrip("/"))
+    folder = normalize_path(path.rstrip("/"))
     known = tree.repositories
     if folder is None or folder in known:
         return folder if folder is not None else path
@@ -72,7 +72,7 @@ def _repository(tree: Tree, path: str) -> str:
     return ending[0] if len(ending) == 1 else folder
 
 
-def _pin_of(folder: str, pinned: dict[str, str]) -> str:
+def _find_pin(folder: str, pinned: dict[str, str]) -> str:
     """The version that a .repos file pins for a folder; its paths are relative to wherever it was imported."""
     matching = [name for name in pinned if folder == name or folder.endswith("/" + name)]
     return pinned[max(matching, key=len)] if matching else ""
@@ -84,7 +84,7 @@ def read_pinned(path: Path) -> dict[str, str]:
     Raises BaseError when there is no such file, or it is none of these.
     """
     try:
-        data: Any = load_yaml(files.read_file(path, limits().settings))
+        data: Any = load_yaml(files.read_file(path, get_limits().settings))
     except OSError as error:
         raise BaseError(f"{path}: cannot be read ({error.strerror}); give a revision or a .repos file") from None
     except DocumentError as error:
@@ -108,9 +108,9 @@ def read_pinned(path: Path) -> dict[str, str]:
 
 def open_base(tree: Tree, opened: OpenedWorkspace, *, jobs: int | None = None) -> OpenedWorkspace:
     """The workspace as it was in another tree, seen by the same targets."""
-    second = code_kinds(tree) if opened.gathered.second is not None else None
+    second = make_code_selector(tree) if opened.gathered.second is not None else None
     watched = load_tracked_names(opened.store)
-    gathered = gather(tree, opened.store, jobs=jobs, second=second, along=watched.searches)
+    gathered = extract_all(tree, opened.store, jobs=jobs, second=second, along=watched.make_searches)
     workspace = link(tree, gathered, opened.store, opened.workspace.ros, watched, jobs, asked=opened.asked)
     views = [TargetView(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
     # What is installed is of no revision.

@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import Any
 
 from ...edges import processes
-from ...edges.console import unforeseen
+from ...edges.console import describe_unforeseen
 from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic, Rule
@@ -64,7 +64,7 @@ def run_rules(
 
     with processes.meanwhile(run_on_all_targets()):
         by_target, on_flow = _run_remembered(
-            opened, target_rules, flow_rules, crashed, before, jobs or processes.cores()
+            opened, target_rules, flow_rules, crashed, before, jobs or processes.count_cores()
         )
     for _ in run_on_all_targets():
         pass  # those for which no process had to be waited for
@@ -107,7 +107,7 @@ def _run_remembered(
             found[view.target.name] = known
     key, on_flow = b"", None if flow_rules else []
     if flow_rules:
-        key = result_cache.flow_key(opened.workspace, before, [rule.name for rule in flow_rules])
+        key = result_cache.make_flow_key(opened.workspace, before, [rule.name for rule in flow_rules])
         on_flow = result_cache.load_flow_results(opened.store, key)
     asked = flow_rules if on_flow is None else ()
     failed: Crashes = {}
@@ -152,15 +152,15 @@ def _run_in_parts(
     families = [*(each for each in _LONGEST if each in asked), *sorted(asked.difference(_LONGEST))]
     parts = [(place, at, family) for place in places for family in families for at in range(0, len(packages), size)]
     if flow_rules:
-        from ..model.flow.workspace import flow_of
+        from ..model.flow.workspace import get_flow
 
-        flow_of(opened.workspace).jobs = jobs
+        get_flow(opened.workspace).jobs = jobs
     # The message flow takes longest.
     tasks = [_FLOW_TASK, *parts] if flow_rules else parts
     done = {}
     if tasks:
         opened.store.close()  # no other process may go on with a connection of this one
-    for task, result in processes.forked(_run_task, tasks, jobs, opened, rules, packages, size, flow_rules, before):
+    for task, result in processes.run_forked(_run_task, tasks, jobs, opened, rules, packages, size, flow_rules, before):
         if isinstance(result, processes.Died) and task != _FLOW_TASK:
             result = _run_singly(opened, rules, packages, size, task)
         done[task] = result
@@ -233,7 +233,7 @@ def _run_singly(
     hits: list[Yielded] = []
     unresolved: dict[str, set[str]] = {}
     crashed: Crashes = {}
-    found = dict(processes.forked(_run_part, singles, 1, opened, rules, packages, 1))
+    found = dict(processes.run_forked(_run_part, singles, 1, opened, rules, packages, 1))
     for single in singles:
         result = found[single]
         if isinstance(result, processes.Died):
@@ -298,7 +298,7 @@ def _run_safely(rule: Rule, target: str, crashed: Crashes, run: Callable[[], Ite
         raise  # no rule can do without the data
     except Exception as error:
         # The results of the other rules stay valid; the failure is reported and decides the exit status.
-        _record_failure(crashed, (rule.name, unforeseen(error)), target)
+        _record_failure(crashed, (rule.name, describe_unforeseen(error)), target)
 
 
 def _record_failure(crashed: Crashes, failure: tuple[str, str], target: str) -> None:

@@ -10,15 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...edges.console import UserError
-from ...edges.limits import limits
+from ...edges.limits import get_limits
 from ..config import Config, ConfigError, load, parse
-from ..facts.extract import ExtractedFacts, gather
+from ..facts.extract import ExtractedFacts, extract_all
 from ..facts.store import Store
-from ..model.discovery import Discovered, discover, generation
+from ..model.discovery import Discovered, detect_generation, discover
 from ..targets.resolve import Chosen, choose_targets
 from ..tree import LEAVES, GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
-from ..tree.ignore import Index, enclosing_repository
-from ..tree.paths import within
+from ..tree.ignore import Index, find_enclosing_repository
+from ..tree.paths import is_within
 
 if TYPE_CHECKING:
     from ..model.install_space import InstallSpace
@@ -77,7 +77,7 @@ class OpenedWorkspace(NamedTuple):
     installed: InstallSpace | None = None
     shelves: Sequence[Shelf] = ()
 
-    def one_by_one(self) -> Iterator[OpenedWorkspace]:
+    def split_by_target(self) -> Iterator[OpenedWorkspace]:
         """The same workspace on each of its targets alone."""
         for chosen, view in zip(self.targets, self.views, strict=True):
             yield self._replace(targets=[chosen], views=[view])
@@ -138,28 +138,28 @@ def read_workspace(
     with Store(options.cache) as store:
 
         @cache
-        def tracked_names() -> Watched:
+        def load_names() -> Watched:
             from .result_cache import load_tracked_names
 
             return load_tracked_names(store)
 
         second = None
         if asks_flow(config, store, options):
-            from ..model.flow.file_selection import code_kinds
+            from ..model.flow.file_selection import make_code_selector
 
-            second = code_kinds(tree)
-        gathered = gather(
+            second = make_code_selector(tree)
+        gathered = extract_all(
             tree,
             store,
             jobs=options.jobs,
             progress=progress,
             second=second,
-            along=lambda: tracked_names().searches(),
+            along=lambda: load_names().make_searches(),
         )
         discovered = discover(tree, gathered)
-        ros = generation(discovered, gathered)
+        ros = detect_generation(discovered, gathered)
         targets = choose_targets(options.targets, config, ros, tree)
-        yield Read(tree, store, gathered, discovered, ros, targets, config, tracked_names)
+        yield Read(tree, store, gathered, discovered, ros, targets, config, load_names)
 
 
 def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -> OpenedWorkspace:
@@ -167,7 +167,7 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
     from ..model.view import TargetView
     from ..model.workspace import link
     from ..targets.asked_versions import AskedVersions
-    from ..targets.providers.providers import default_providers
+    from ..targets.providers.providers import load_providers
 
     tree, store, gathered, discovered, ros, targets, config, tracked_names = read
     asked_versions = AskedVersions(chosen.target for chosen in targets)
@@ -175,20 +175,20 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
     if len(generations) == 1:
         (ros,) = generations  # packages for both are linked as the targets build them
     workspace = link(tree, gathered, store, ros, tracked_names(), options.jobs, discovered, asked_versions)
-    gathered.problems += [*workspace.discovered.problems, *_left_out(workspace)]
+    gathered.problems += [*workspace.discovered.problems, *_list_shadowed_packages(workspace)]
     asked = frozenset(chosen.target.distro for chosen in targets)
-    views = [TargetView(workspace, chosen.target, default_providers(), config, asked) for chosen in targets]
+    views = [TargetView(workspace, chosen.target, load_providers(), config, asked) for chosen in targets]
     installed, shelves = None, ()
     if options.install is not None:
         from ..model import install_space as built
 
-        installed = built.of_workspace(options.install, Path(path), workspace, store, options.jobs)
-        shelves = built.shelves(installed, targets, config)
-        gathered.problems += [*installed.problems, *built.of_other_machines(installed, shelves)]
+        installed = built.read_space(options.install, Path(path), workspace, store, options.jobs)
+        shelves = built.list_shelves(installed, targets, config)
+        gathered.problems += [*installed.problems, *built.list_foreign_files(installed, shelves)]
     return OpenedWorkspace(tree, store, gathered, workspace, targets, views, config, asked_versions, installed, shelves)
 
 
-def _left_out(workspace: Workspace) -> Iterator[PathProblem]:
+def _list_shadowed_packages(workspace: Workspace) -> Iterator[PathProblem]:
     """Packages that another of the same name stands for; build tools refuse such a workspace."""
     paths = {package.name: package.path for package in workspace}
     for place in workspace.hidden:
@@ -204,7 +204,7 @@ def load_settings(root: Path, tree: Tree, file: Path | None, *, follow_links: bo
     name = "rosimpact.toml"
     if config.path is None and not isinstance(tree, WorkingTree) and tree.exists(name) and not tree.is_dir(name):
         try:
-            data = tree.read(name, limits().settings)
+            data = tree.read(name, get_limits().settings)
         except OSError as error:
             raise ConfigError(f"{root / name}: cannot be read: {error.strerror}; correct the file") from None
         return parse(data, root / name, trusted=follow_links)
@@ -218,13 +218,13 @@ def open_tree(root: Path, rev: str, *, follow_links: bool = False) -> Tree:
     followed. Raises TreeError.
     """
     bare = (root / "objects").is_dir() and (root / "refs").is_dir() and (root / "HEAD").is_file()
-    if not follow_links and (link := _leaving_link(root)):
+    if not follow_links and (link := _find_leaving_link(root)):
         raise TreeError(
             f"`{shown(link)}` is a link that leads out of its repository, and is not followed; give the folder that "
             "it leads to, or --follow-links"
         )
     # A change can add all that makes a folder look like a bare repository, and show another workspace in it.
-    bare = bare and enclosing_repository(os.path.realpath(root)) is None
+    bare = bare and find_enclosing_repository(os.path.realpath(root)) is None
     if not root.exists() or not (rev or bare):
         return WorkingTree(root, follow_links=follow_links)
     if not root.is_dir():
@@ -238,16 +238,16 @@ def open_tree(root: Path, rev: str, *, follow_links: bool = False) -> Tree:
     return GitTree(root, rev or "HEAD", folder.replace(os.sep, "/"), follow_links=follow_links)
 
 
-def _leaving_link(root: Path) -> str:
+def _find_leaving_link(root: Path) -> str:
     """The first link on the way to a folder that a git repository tracks and that leads out of the repository; empty
     without one. A change can put such a link where the workspace was."""
     place = Path(os.path.abspath(root))
     for path in (*reversed(place.parents), place):
         if path.is_symlink():
             parent = os.path.realpath(path.parent)
-            repository = enclosing_repository(parent)
-            if repository is not None and not within(os.path.realpath(path), repository):
-                index = Index.of(repository)
+            repository = find_enclosing_repository(parent)
+            if repository is not None and not is_within(os.path.realpath(path), repository):
+                index = Index.open_index(repository)
                 if index is None or index.tracks(os.path.relpath(os.path.join(parent, path.name), repository)):
                     return os.fspath(path)
     return ""
@@ -284,21 +284,21 @@ def explain_nothing_analysed(path: str | os.PathLike[str], opened: OpenedWorkspa
     if unread:
         named = "; ".join(f"`{shown(problem.path)}`: {problem.message}" for problem in unread[:3])
         return f"{where}: no package could be read ({named}); make the files readable"
-    return _no_package(path)
+    return _describe_no_package(path)
 
 
-def _no_package(path: str | os.PathLike[str]) -> str:
+def _describe_no_package(path: str | os.PathLike[str]) -> str:
     where = shown(os.fspath(path))
     return f"{where}: no package was found (no package.xml outside of ignored folders); give the folder of a workspace"
 
 
 def link_flow(path: Path, tree: Tree, store: Store, jobs: int | None, progress: Progress | None) -> Workspace:
     """A workspace as far as message flow needs it. Raises CheckError when it has no package."""
-    from ..model.flow.workspace import linked
+    from ..model.flow.workspace import link_for_flow
 
-    workspace = linked(tree, store, jobs, progress)
+    workspace = link_for_flow(tree, store, jobs, progress)
     if not workspace.packages:
-        raise CheckError(_no_package(path))
+        raise CheckError(_describe_no_package(path))
     return workspace
 
 
@@ -307,10 +307,10 @@ def select_rules(options: Options, config: Config) -> dict[str, Rule]:
 
     Raises SettingsError for a name that is neither a rule nor a family.
     """
-    from ..rules.rule import all_rules
+    from ..rules.rule import load_rules
     from .findings import SettingsError, choose_rules
 
-    rules = all_rules()
+    rules = load_rules()
     select, ignore = options.select or config.select, options.ignore or config.ignore
     try:
         return choose_rules(rules, select=select, ignore=ignore, preview=options.preview)

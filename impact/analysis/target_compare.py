@@ -38,7 +38,7 @@ def open_sides(
     with open_workspace(path, options, progress, lambda config: select_rules(options, config)) as opened:
         if len(opened.targets) < 2:
             raise CheckError(f"{first} and {second} are the same target; give two")
-        one, other = (check_opened(path, options, alone) for alone in opened.one_by_one())
+        one, other = (check_opened(path, options, alone) for alone in opened.split_by_target())
         for checked in (one, other):
             if checked.report.failure:
                 raise CheckError(checked.report.failure)
@@ -56,15 +56,15 @@ def compare_findings(findings: Iterable[Finding], other: Iterable[Finding]) -> C
     """Findings of one side against those of the other, by rule, package, path, line and subject."""
     there: dict[tuple, int] = {}
     for finding in other:
-        there[_key(finding)] = max(there.get(_key(finding), 0), rank(finding.severity))
+        there[_make_key(finding)] = max(there.get(_make_key(finding), 0), rank(finding.severity))
     result = Compared([], [])
     for finding in findings:
-        as_grave = there.get(_key(finding), -1) >= rank(finding.severity)
+        as_grave = there.get(_make_key(finding), -1) >= rank(finding.severity)
         (result.both if as_grave else result.new).append(finding)
     return result
 
 
-def _key(finding: Finding) -> tuple[str, str, str, int, str]:
+def _make_key(finding: Finding) -> tuple[str, str, str, int, str]:
     return finding.rule, finding.package, finding.path, finding.line, finding.subject
 
 

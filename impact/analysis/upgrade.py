@@ -46,12 +46,12 @@ class Upgrade(NamedTuple):
         """The target that is moved to."""
         return self.report.targets[0]
 
-    def fixes(self, item: UpgradeItem) -> int:
+    def count_fixes(self, item: UpgradeItem) -> int:
         """How many findings of an item `check --fix` cures."""
         return sum(finding.fingerprint in self.fixable for finding in item.findings)
 
 
-def upgrade(
+def compare_upgrade(
     path: Path,
     old: str,
     new: str,
@@ -80,32 +80,32 @@ def upgrade(
         old=before.report.targets[0],
         report=report,
         packages=tuple(ReportedPackage(name, folders[name]) for name in order if name in wanted),
-        breaks=tuple(group_items((f for f in told.new if _grave(f) and f.rule not in warning), order)),
+        breaks=tuple(group_items((f for f in told.new if _is_grave(f) and f.rule not in warning), order)),
         deprecations=tuple(group_items((f for f in now if f.rule in warning), order)),
-        brought=tuple(f for f in told.new if _grave(f) or f.rule in warning),
-        both=tuple(f for f in told.both if _grave(f) and f.rule not in warning),
-        over=tuple(f for f in lost.new if _grave(f) and f.rule not in warning),
-        fixable=_fixable(report.findings, make_reader(after.tree)),
+        brought=tuple(f for f in told.new if _is_grave(f) or f.rule in warning),
+        both=tuple(f for f in told.both if _is_grave(f) and f.rule not in warning),
+        over=tuple(f for f in lost.new if _is_grave(f) and f.rule not in warning),
+        fixable=_find_fixable(report.findings, make_reader(after.tree)),
         # Of a revision, what would change is shown.
-        command=_command(path, new, options, "--diff" if options.rev else "--fix"),
-        check_old=_command(path, old, options),
+        command=_format_command(path, new, options, "--diff" if options.rev else "--fix"),
+        check_old=_format_command(path, old, options),
         fail_on=after.config.fail_on,
         seconds=time.perf_counter() - started,
     )
 
 
-def _grave(finding: Finding) -> bool:
+def _is_grave(finding: Finding) -> bool:
     return rank(finding.severity) >= rank("warning")
 
 
-def _fixable(findings: Iterable[Finding], read: Callable[[str], bytes | None]) -> frozenset[str]:
+def _find_fixable(findings: Iterable[Finding], read: Callable[[str], bytes | None]) -> frozenset[str]:
     """Fingerprints of the findings whose fixes can all be applied."""
     findings = [finding for finding in findings if finding.fix]
-    refused = {edit for edit, _ in fix.apply(fix.fixes(findings), read).refused}
+    refused = {edit for edit, _ in fix.apply(fix.collect(findings), read).refused}
     return frozenset(finding.fingerprint for finding in findings if refused.isdisjoint(finding.fix))
 
 
-def _command(path: Path, target: str, options: Options, *ends: str) -> str:
+def _format_command(path: Path, target: str, options: Options, *ends: str) -> str:
     """The check of one of the targets, as one types it."""
     words = ["rosimpact", "check", str(path), "--target", target]
     words += ["--config", str(options.config)] if options.config else []

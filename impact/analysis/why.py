@@ -7,7 +7,7 @@ from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
-from ...edges.console import counted, visible
+from ...edges.console import escape, format_count
 from ..model.view import TargetView
 from ..rules.rule import Finding
 from ..tree import JoinedTree
@@ -74,7 +74,9 @@ def is_workspace(folder: Path) -> bool:
     return False
 
 
-def answers(name: str, path: Path | None, targets: tuple[str, ...], *, follow_links: bool = False) -> list[WhyAnswer]:
+def find_answers(
+    name: str, path: Path | None, targets: tuple[str, ...], *, follow_links: bool = False
+) -> list[WhyAnswer]:
     """One answer a target and a meaning of the name. path: the workspace; None for answers without uses. Raises as
     check() does."""
     options = Options(targets=targets, follow_links=follow_links)
@@ -82,17 +84,17 @@ def answers(name: str, path: Path | None, targets: tuple[str, ...], *, follow_li
         found: Sequence[Finding] = ()
         if opened.workspace.packages:
             found = check_opened(path or Path(), options, opened).report.findings
-        return [answer for view in opened.views for answer in _answers(view, name, found)]
+        return [answer for view in opened.views for answer in _find_answers(view, name, found)]
 
 
-def _answers(view: TargetView, name: str, findings: Sequence[Finding]) -> list[WhyAnswer]:
+def _find_answers(view: TargetView, name: str, findings: Sequence[Finding]) -> list[WhyAnswer]:
     """findings: what check reports; those at a use of the name, and those that name it, are about it."""
     found = []
     for what, providers in (
-        ("header", view.header(name)),
-        ("CMake package", view.cmake(name)),
-        ("Python module", view.module(name)),
-        ("executable", tuple(view.providers.executable(name))),
+        ("header", view.find_header(name)),
+        ("CMake package", view.find_cmake(name)),
+        ("Python module", view.find_module(name)),
+        ("executable", tuple(view.providers.find_executable(name))),
     ):
         offers = tuple(dict.fromkeys(_offer(view, p.name, p.package) for p in providers if p.name))
         # What is not there is told only where nothing else is.
@@ -101,10 +103,10 @@ def _answers(view: TargetView, name: str, findings: Sequence[Finding]) -> list[W
             offers = (NameOffer("system", "", "", "", "comes with the compiler, CMake or Python"),)
         if offers:
             found.append((what, offers))
-    if view.available(name) or view.target.ever_released(name) or view.target.known_key(name):
-        kind = "package" if view.target.ever_released(name) or name in view.workspace.packages else "rosdep key"
-        found.insert(0, (kind, (_offer(view, name, ""),) if view.available(name) else ()))
-    used, undeclared = _uses(view, name)
+    if view.is_available(name) or view.target.was_ever_released(name) or view.target.knows_key(name):
+        kind = "package" if view.target.was_ever_released(name) or name in view.workspace.packages else "rosdep key"
+        found.insert(0, (kind, (_offer(view, name, ""),) if view.is_available(name) else ()))
+    used, undeclared = _find_uses(view, name)
     changes = tuple(
         f"{c.kind}: `{c.old}`"
         + (f" → `{c.new}`" if c.new else "")
@@ -112,7 +114,7 @@ def _answers(view: TargetView, name: str, findings: Sequence[Finding]) -> list[W
         for c in view.target.changes()
         if name in (c.old, c.new, c.package) or name == c.old.rsplit("::", 1)[-1]
     )
-    lost = view.lost_header(name)
+    lost = view.find_lost_header(name)
     if lost is not None:
         where = f" in {lost.package} {lost.version}".rstrip() if lost.package else ""
         instead = f"; include `{lost.replacement}`" if lost.replacement else ""
@@ -140,30 +142,30 @@ def _offer(view: TargetView, name: str, package: str) -> NameOffer:
     here = view.workspace.packages.get(name)
     if here is not None:
         return NameOffer("workspace", name, here.manifest.version, "", here.path)
-    version = target.version(name)
+    version = target.find_version(name)
     if version is not None:
-        return NameOffer("package", name, version, target.since(name), "")
+        return NameOffer("package", name, version, target.find_first_day(name), "")
     resolution = target.resolve(name)
     if resolution is not None:
-        known = ((library, target.library(library)) for library in view.libraries_of(name))
+        known = ((library, target.find_library(library)) for library in view.list_libraries(name))
         versions = ", ".join(f"{library} {version}" for library, version in known if version)
         note = f"{resolution.manager}: {' '.join(resolution.packages) or 'nothing to install'}"
         return NameOffer("key", name, versions, "", note)
-    last = target.last_distro(name)
+    last = target.find_last_distro(name)
     note = f"not there; last seen in {last}" if last else f"not there ({package})" if package else "not there"
     return NameOffer("absent", name, "", "", note)
 
 
-def _uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+def _find_uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     used, undeclared = [], []
     for package in view:
         closure = None
-        for need in view.needs(package):
+        for need in view.list_needs(package):
             if need.subject != name and all(p.name != name for p in need.providers):
                 continue
             used.append(f"{need.at.path}:{need.at.line}")
             closure = view.build_environment(package) if closure is None else closure
-            if not view.answered(need.providers, closure) and package.name not in undeclared:
+            if not view.is_met(need.providers, closure) and package.name not in undeclared:
                 undeclared.append(package.name)
         for dependency in package.manifest.dependencies:
             if dependency.name == name:
@@ -173,7 +175,7 @@ def _uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str, ...]
     return tuple(used), tuple(undeclared)
 
 
-def as_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
+def render_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
     """The answers for people. Meanings of a name that lead to the same offers are told together. looked: whether uses
     were looked for."""
     lines: list[str] = []
@@ -189,10 +191,10 @@ def as_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
     if not found:
         return ""
     if not looked:
-        lines.append(f"uses were not looked for, since this folder is no workspace: rosimpact why {visible(name)} PATH")
+        lines.append(f"uses were not looked for, since this folder is no workspace: rosimpact why {escape(name)} PATH")
         return "\n".join(lines)
     used = found[0].used
-    lines += [f"used at {counted(len(used), 'place')}" + (":" if used else ""), *_first(used)]
+    lines += [f"used at {format_count(len(used), 'place')}" + (":" if used else ""), *_format_first(used)]
     undeclared = sorted({package for answer in found for package in answer.undeclared})
     if undeclared:
         lines.append("not safe: used and not declared in " + ", ".join(undeclared))
@@ -201,15 +203,15 @@ def as_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:
         lines.append(f"not safe: `{name}` is gone on " + ", ".join(gone))
     reported = list(dict.fromkeys(line for answer in found for line in answer.findings))
     if reported:
-        lines += [f"not safe: check reports {counted(len(reported), 'finding')} on it:", *_first(reported)]
+        lines += [f"not safe: check reports {format_count(len(reported), 'finding')} on it:", *_format_first(reported)]
     elif used and not undeclared and not gone:
         lines.append(
             "safe: every package that uses it declares it, or something that brings it, and check reports nothing on it"
         )
-    return "\n".join(map(visible, lines))
+    return "\n".join(map(escape, lines))
 
 
-def _first(lines: Sequence[str]) -> list[str]:
+def _format_first(lines: Sequence[str]) -> list[str]:
     more = [f"and {len(lines) - _SHOWN} more"] if len(lines) > _SHOWN else []
     return [f"  {line}" for line in (*lines[:_SHOWN], *more)]
 

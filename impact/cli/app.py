@@ -21,7 +21,7 @@ from ...classifier.cli import app as classifier_app
 from ...classifier.cli import suggest_label, triage
 from ...corpus.cli import app as corpus_app
 from ...corpus.cli import set_suggester
-from ...edges.console import UserError, hold_streams, output_failed, say, visible, write
+from ...edges.console import UserError, escape, hold_streams, report_output_failure, say, write
 from .dev import app as dev_app
 
 app = typer.Typer(
@@ -51,27 +51,29 @@ study_app = _group("study", "The study: its notebooks, run anew.")
 app.add_typer(dev_app, name="dev", hidden=True)
 
 
-def _option(help: str, *names: str, default: Any = None, **further: Any) -> Any:
+def _make_option(help: str, *names: str, default: Any = None, **further: Any) -> Any:
     """An option of a command. names: as they are typed, where that is not the name of the argument."""
     return typer.Option(default, *names, help=help, **further)
 
 
-def _argument(help: str, *, default: Any = None, **further: Any) -> Any:
+def _make_argument(help: str, *, default: Any = None, **further: Any) -> Any:
     """An argument of a command."""
     return typer.Argument(default, help=help, **further)
 
 
-def _schema_option(report: str) -> Any:
+def _make_schema_option(report: str) -> Any:
     """The option that prints the JSON schema of a report. report: its module."""
 
     def show(value: bool) -> None:
         if value:
             from .output import print_answer
 
-            print_answer(import_module(f"...report.{report}", __name__).schema(), "json")
+            print_answer(import_module(f"...report.{report}", __name__).render_schema(), "json")
             raise typer.Exit()
 
-    return _option("Print the JSON schema of --format json.", "--schema", default=False, callback=show, is_eager=True)
+    return _make_option(
+        "Print the JSON schema of --format json.", "--schema", default=False, callback=show, is_eager=True
+    )
 
 
 _Workspace = Annotated[Path, typer.Argument(help="Workspace, package or git repository.")]
@@ -95,7 +97,7 @@ _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stan
 _WITH_COMMAS = frozenset(("target", "base", "set_", "names"))
 
 
-def _command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[..., None]], Callable[..., None]]:
+def _add_command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Registers a command, whose function holds its options and help alone. What they are given goes to the function of
     the same name in the module of the command, or of its group, which is imported when it runs."""
 
@@ -105,7 +107,7 @@ def _command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[
             given.pop("schema", None)
             for key, kind in get_type_hints(options).items():
                 if kind == list[str]:
-                    given[key] = tuple(given[key] or ()) if key in _WITH_COMMAS else _names(given[key])
+                    given[key] = tuple(given[key] or ()) if key in _WITH_COMMAS else _split_names(given[key])
             module = import_module(f".{options.__name__.partition('_')[0]}", __package__)
             raise typer.Exit(getattr(module, options.__name__)(**given))
 
@@ -114,45 +116,45 @@ def _command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[
     return register
 
 
-@_command(app)
+@_add_command(app)
 def check(
     path: _Workspace = Path("."),
-    target: list[str] = _option(
+    target: list[str] = _make_option(
         "jazzy, humble@2024-03-01, envs/laptop.json, a name of rosimpact.toml, robot.dpkg.txt, "
         "docker:ros:humble. May be repeated.",
         "--target",
         "-t",
     ),
-    format: str = _option("One of text, json, sarif, github, markdown, html.", "--format", "-f", default="text"),
+    format: str = _make_option("One of text, json, sarif, github, markdown, html.", "--format", "-f", default="text"),
     output: _Output = None,
-    rev: str = _option("Check this git revision instead of the files on disk.", default=""),
-    base: list[str] = _option(
+    rev: str = _make_option("Check this git revision instead of the files on disk.", default=""),
+    base: list[str] = _make_option(
         "Compare with the merge base of this revision (PATH=REV for one repository, or a pinned .repos file): only "
         "new findings fail."
     ),
-    install: Path | None = _option(
+    install: Path | None = _make_option(
         "Also check the built files of this install space (or devel space, or prefix of a package) for shared "
         "libraries that are missing, here or on a target."
     ),
-    select: list[str] = _option("Only these rules or families. May be repeated or comma-separated."),
-    ignore: list[str] = _option("Skip these rules or families."),
+    select: list[str] = _make_option("Only these rules or families. May be repeated or comma-separated."),
+    ignore: list[str] = _make_option("Skip these rules or families."),
     fail_on: _FailOn = "",
-    notes: bool = _option("Also show notes in the text report.", "--notes", default=False),
-    preview: bool = _option("Also run rules whose precision is not measured yet.", "--preview", default=False),
-    baseline: Path | None = _option("Leave out findings that this file contains."),
-    write_baseline: Path | None = _option("Write all current findings to this file, and exit with 0."),
-    prune_baseline: bool = _option(
+    notes: bool = _make_option("Also show notes in the text report.", "--notes", default=False),
+    preview: bool = _make_option("Also run rules whose precision is not measured yet.", "--preview", default=False),
+    baseline: Path | None = _make_option("Leave out findings that this file contains."),
+    write_baseline: Path | None = _make_option("Write all current findings to this file, and exit with 0."),
+    prune_baseline: bool = _make_option(
         "Remove fixed findings from the file given with --baseline.", "--prune-baseline", default=False
     ),
-    fix: bool = _option(
+    fix: bool = _make_option(
         "Apply fixes that are correct on all targets, and report what remains.", "--fix", default=False
     ),
-    diff: bool = _option("Print what --fix would change; change nothing.", "--diff", default=False),
+    diff: bool = _make_option("Print what --fix would change; change nothing.", "--diff", default=False),
     config: _Config = None,
     follow_links: _FollowLinks = False,
     jobs: _Jobs = None,
     quiet: _Quiet = False,
-    schema: bool = _schema_option("json"),
+    schema: bool = _make_schema_option("json"),
 ) -> None:
     """Report what breaks, on which machine, where, and what to do.
 
@@ -160,19 +162,19 @@ def check(
     """
 
 
-@_command(app)
+@_add_command(app)
 def upgrade(
-    from_: str = _option("The current target, in any form that --target accepts.", "--from", default=...),
-    to: str = _option("The new target.", "--to", default=...),
+    from_: str = _make_option("The current target, in any form that --target accepts.", "--from", default=...),
+    to: str = _make_option("The new target.", "--to", default=...),
     path: _Workspace = Path("."),
-    packages: list[str] = _option("Only these packages."),
+    packages: list[str] = _make_option("Only these packages."),
     rev: _Revision = "",
     config: _Config = None,
     follow_links: _FollowLinks = False,
-    format: str = _option("One of text, json, html.", "--format", "-f", default="text"),
+    format: str = _make_option("One of text, json, html.", "--format", "-f", default="text"),
     output: _Output = None,
     fail_on: _FailOn = "",
-    schema: bool = _schema_option("upgrade"),
+    schema: bool = _make_schema_option("upgrade"),
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
@@ -182,102 +184,102 @@ def upgrade(
     """
 
 
-@_command(app)
+@_add_command(app)
 def why(
-    name: str = _argument("A header, package, rosdep key, CMake name, Python module or executable.", default=...),
-    path: Path | None = _argument(
+    name: str = _make_argument("A header, package, rosdep key, CMake name, Python module or executable.", default=...),
+    path: Path | None = _make_argument(
         "Workspace whose uses are shown; default: the current folder, if it is a workspace.", show_default=False
     ),
-    target: list[str] = _option("As for check.", "--target", "-t"),
+    target: list[str] = _make_option("As for check.", "--target", "-t"),
     follow_links: _FollowLinks = False,
-    format: str = _option("text or json.", "--format", "-f", default="text"),
+    format: str = _make_option("text or json.", "--format", "-f", default="text"),
 ) -> None:
     """Show which package provides a name on a target, since when, and what uses it in the workspace."""
 
 
-@_command(app)
+@_add_command(app)
 def graph(
     path: _Workspace = Path("."),
-    launch: str = _option("Only what this launch file starts, with the names that it assigns.", default=""),
-    set_: list[str] = _option("An argument of the launch file, NAME:=VALUE. May be repeated.", "--set"),
-    node: list[str] = _option("Only this node and its neighbours; `*` matches any text."),
-    topic: list[str] = _option("Only this topic, service or action, and the nodes that use it."),
-    package: list[str] = _option("Only nodes of this package."),
-    around: str = _option("Only what is near this node or topic.", default=""),
-    hops: int = _option("With --around: the number of steps from node to node.", default=2, min=1),
+    launch: str = _make_option("Only what this launch file starts, with the names that it assigns.", default=""),
+    set_: list[str] = _make_option("An argument of the launch file, NAME:=VALUE. May be repeated.", "--set"),
+    node: list[str] = _make_option("Only this node and its neighbours; `*` matches any text."),
+    topic: list[str] = _make_option("Only this topic, service or action, and the nodes that use it."),
+    package: list[str] = _make_option("Only nodes of this package."),
+    around: str = _make_option("Only what is near this node or topic.", default=""),
+    hops: int = _make_option("With --around: the number of steps from node to node.", default=2, min=1),
     rev: _Revision = "",
-    base: list[str] = _option("Mark what was added, removed and changed since this revision, as for check."),
+    base: list[str] = _make_option("Mark what was added, removed and changed since this revision, as for check."),
     follow_links: _FollowLinks = False,
-    format: str = _option("One of text, json, graphml, dot, mermaid, html.", "--format", "-f", default="text"),
-    output: Path | None = _option("Write the graph to this file.", "--output", "-o"),
-    all: bool = _option("Also show hidden names and everything that was not resolved.", "--all", default=False),
-    schema: bool = _schema_option("graph.json"),
+    format: str = _make_option("One of text, json, graphml, dot, mermaid, html.", "--format", "-f", default="text"),
+    output: Path | None = _make_option("Write the graph to this file.", "--output", "-o"),
+    all: bool = _make_option("Also show hidden names and everything that was not resolved.", "--all", default=False),
+    schema: bool = _make_schema_option("graph.json"),
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
     """Show which nodes are connected by topics, services and actions, without building or running anything."""
 
 
-@_command(app)
+@_add_command(app)
 def impact(
     path: _Workspace = Path("."),
-    base: list[str] = _option(
+    base: list[str] = _make_option(
         "What changed since the merge base of this revision (PATH=REV for one repository, or a pinned .repos file)."
     ),
     rev: _Revision = "",
-    package: list[str] = _option("Only changes in this package. May be repeated."),
-    topic: list[str] = _option("Only what goes through this topic; `*` matches any text."),
-    node: list[str] = _option("Only changes in this node, or that affect it; `*` matches any text."),
+    package: list[str] = _make_option("Only changes in this package. May be repeated."),
+    topic: list[str] = _make_option("Only what goes through this topic; `*` matches any text."),
+    node: list[str] = _make_option("Only changes in this node, or that affect it; `*` matches any text."),
     follow_links: _FollowLinks = False,
-    format: str = _option("One of text, json, markdown.", "--format", "-f", default="text"),
+    format: str = _make_option("One of text, json, markdown.", "--format", "-f", default="text"),
     output: _Output = None,
-    all: bool = _option("List every affected node and all unresolved calls.", "--all", default=False),
-    schema: bool = _schema_option("impact"),
+    all: bool = _make_option("List every affected node and all unresolved calls.", "--all", default=False),
+    schema: bool = _make_schema_option("impact"),
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
     """Show which nodes are affected by changes since a base: of messages, topics, publish conditions and callbacks."""
 
 
-@_command(app)
+@_add_command(app)
 def logic(
-    repository: Path = _argument("Git repository, bare or not, or a folder in one.", default=Path(".")),
-    range: str = _option("Commits A..B, or all up to B; default: all up to HEAD.", default=""),
-    commits: int | None = _option("Only this many of the newest commits.", min=1),
-    since: str = _option("Only commits since this day, such as 2024-03-01.", default=""),
-    package: list[str] = _option("Only this package. May be repeated."),
-    topic: list[str] = _option("Only this topic. May be repeated."),
-    all: bool = _option("Also list conditions that were only reworded.", "--all", default=False),
-    format: str = _option("text, json or html (a timeline).", "--format", "-f", default="text"),
+    repository: Path = _make_argument("Git repository, bare or not, or a folder in one.", default=Path(".")),
+    range: str = _make_option("Commits A..B, or all up to B; default: all up to HEAD.", default=""),
+    commits: int | None = _make_option("Only this many of the newest commits.", min=1),
+    since: str = _make_option("Only commits since this day, such as 2024-03-01.", default=""),
+    package: list[str] = _make_option("Only this package. May be repeated."),
+    topic: list[str] = _make_option("Only this topic. May be repeated."),
+    all: bool = _make_option("Also list conditions that were only reworded.", "--all", default=False),
+    format: str = _make_option("text, json or html (a timeline).", "--format", "-f", default="text"),
     output: _Output = None,
-    jobs: int | None = _option("Number of processes.", "--jobs", "-j", min=1),
+    jobs: int | None = _make_option("Number of processes.", "--jobs", "-j", min=1),
     quiet: _Quiet = False,
 ) -> None:
     """List the commits that changed when messages are published: which condition or trigger, and whom it affects."""
 
 
-@_command(app)
+@_add_command(app)
 def explain(
-    rule: str | None = _argument("Name of a rule or group; default: list all rules."),
+    rule: str | None = _make_argument("Name of a rule or group; default: list all rules."),
 ) -> None:
     """Explain what a rule does, why it matters, and how to fix its findings."""
 
 
-@_command(env_app, "capture")
+@_add_command(env_app, "capture")
 def env_capture(
-    output: Path | None = _option("File to write; default: standard output.", "--output", "-o"),
+    output: Path | None = _make_option("File to write; default: standard output.", "--output", "-o"),
 ) -> None:
     """Write this machine as a target."""
 
 
-@_command(env_app, "diff")
+@_add_command(env_app, "diff")
 def env_diff(
-    first: str = _argument("A target, in any form that --target accepts.", default=...),
-    second: str = _argument("Another target.", default=...),
-    path: Path | None = _argument("A workspace: show which differences matter to it."),
-    format: str = _option("text or json.", "--format", "-f", default="text"),
-    output: Path | None = _option("Write to this file.", "--output", "-o"),
-    schema: bool = _schema_option("machines"),
+    first: str = _make_argument("A target, in any form that --target accepts.", default=...),
+    second: str = _make_argument("Another target.", default=...),
+    path: Path | None = _make_argument("A workspace: show which differences matter to it."),
+    format: str = _make_option("text or json.", "--format", "-f", default="text"),
+    output: Path | None = _make_option("Write to this file.", "--output", "-o"),
+    schema: bool = _make_schema_option("machines"),
 ) -> None:
     """Show the differences between two machines; with a workspace, also what breaks on only one of them."""
 
@@ -286,83 +288,85 @@ _REPOS_HELP = "Folder of git clones with their tags, called OWNER+NAME or NAME."
 _REPOS_OR_SHIPPED = f"{_REPOS_HELP} Default: the shipped data."
 
 
-@_command(surface_app, "show")
+@_add_command(surface_app, "show")
 def surface_show(
-    package: str = _argument(
+    package: str = _make_argument(
         "PACKAGE, PACKAGE@28.1.0, PACKAGE@jazzy, PACKAGE@jazzy@2024-08-01 or PACKAGE@/opt/ros/jazzy.", default=...
     ),
-    repos: Path | None = _option(_REPOS_OR_SHIPPED),
-    all: bool = _option("Also show members of classes, constants and macros.", "--all", default=False),
-    format: str = _option("One of text, json, markdown.", "--format", "-f", default="text"),
-    output: Path | None = _option("Write to this file.", "--output", "-o"),
+    repos: Path | None = _make_option(_REPOS_OR_SHIPPED),
+    all: bool = _make_option("Also show members of classes, constants and macros.", "--all", default=False),
+    format: str = _make_option("One of text, json, markdown.", "--format", "-f", default="text"),
+    output: Path | None = _make_option("Write to this file.", "--output", "-o"),
     jobs: _Jobs = None,
 ) -> None:
     """Show what a version of a package offers: headers, names, messages, targets, programs."""
 
 
-@_command(surface_app, "diff")
+@_add_command(surface_app, "diff")
 def surface_diff(
-    what: str = _argument("A package, or the path of a clone (then without --repos).", default=...),
-    old: str = _argument("A version, a distro, an installed prefix or a .deb; for a clone, a revision.", default=...),
-    new: str = _argument("The version to compare with, in the same forms.", default=...),
-    repos: Path | None = _option(_REPOS_OR_SHIPPED),
-    packages: list[str] = _option("For a clone: only these packages."),
-    all: bool = _option("Also list additions, and changes that do not break builds.", "--all", default=False),
-    format: str = _option("One of text, json, markdown.", "--format", "-f", default="text"),
-    output: Path | None = _option("Write to this file.", "--output", "-o"),
+    what: str = _make_argument("A package, or the path of a clone (then without --repos).", default=...),
+    old: str = _make_argument(
+        "A version, a distro, an installed prefix or a .deb; for a clone, a revision.", default=...
+    ),
+    new: str = _make_argument("The version to compare with, in the same forms.", default=...),
+    repos: Path | None = _make_option(_REPOS_OR_SHIPPED),
+    packages: list[str] = _make_option("For a clone: only these packages."),
+    all: bool = _make_option("Also list additions, and changes that do not break builds.", "--all", default=False),
+    format: str = _make_option("One of text, json, markdown.", "--format", "-f", default="text"),
+    output: Path | None = _make_option("Write to this file.", "--output", "-o"),
     jobs: _Jobs = None,
 ) -> None:
     """Show what changed between two versions: removed, moved and deprecated names, and changed signatures."""
 
 
-@_command(surface_app, "build")
+@_add_command(surface_app, "build")
 def surface_build(
-    distro: list[str] = _option("Read the packages of this distro. May be repeated.", default=...),
-    output: Path = _option("File to write, such as surfaces.sqlite.", "--output", "-o", default=...),
-    repos: Path = _option(_REPOS_HELP, default=Path(".")),
-    packages: list[str] = _option("Only these packages."),
-    all_versions: bool = _option(
+    distro: list[str] = _make_option("Read the packages of this distro. May be repeated.", default=...),
+    output: Path = _make_option("File to write, such as surfaces.sqlite.", "--output", "-o", default=...),
+    repos: Path = _make_option(_REPOS_HELP, default=Path(".")),
+    packages: list[str] = _make_option("Only these packages."),
+    all_versions: bool = _make_option(
         "Read all versions that the distros ever had, not only the current ones.", "--all-versions", default=False
     ),
-    onto: Path | None = _option("Also write what this file has of packages, where clones have no more versions."),
-    jobs: int | None = _option("Number of processes.", "--jobs", "-j", min=1),
-    dask: str | None = _option("Use the cluster of this Dask scheduler, such as tcp://host:8786."),
+    onto: Path | None = _make_option("Also write what this file has of packages, where clones have no more versions."),
+    jobs: int | None = _make_option("Number of processes.", "--jobs", "-j", min=1),
+    dask: str | None = _make_option("Use the cluster of this Dask scheduler, such as tcp://host:8786."),
     quiet: _Quiet = False,
 ) -> None:
     """Write what the released versions of packages offer to a file. A stopped run continues the next time."""
 
 
-@_command(data_app, "status")
+@_add_command(data_app, "status")
 def data_status(
-    format: str = _option("text or json.", "--format", "-f", default="text"),
+    format: str = _make_option("text or json.", "--format", "-f", default="text"),
 ) -> None:
     """Show the age and the sources of the distro data."""
 
 
-@_command(data_app, "build")
+@_add_command(data_app, "build")
 def data_build(
-    rosdistro: Path = _argument("Clone of the rosdistro git repository with its tags, bare or not.", default=...),
-    output: Path = _option("Folder to write the snapshot to.", "--output", "-o", default=...),
-    work: Path | None = _option("Folder for intermediate results; the next run continues from it."),
-    meta_ros: Path | None = _option("Clone of ros/meta-ros, for the dependencies of released packages."),
+    rosdistro: Path = _make_argument("Clone of the rosdistro git repository with its tags, bare or not.", default=...),
+    output: Path = _make_option("Folder to write the snapshot to.", "--output", "-o", default=...),
+    work: Path | None = _make_option("Folder for intermediate results; the next run continues from it."),
+    meta_ros: Path | None = _make_option("Clone of ros/meta-ros, for the dependencies of released packages."),
 ) -> None:
     """Rebuild the snapshot from git repositories."""
 
 
-@_command(data_app, "update")
+@_add_command(data_app, "update")
 def data_update() -> None:
     """Update the snapshot over the network, with the rosdistro library."""
 
 
-@_command(study_app, "run")
+@_add_command(study_app, "run")
 def study_run(
-    names: list[str] = _argument("Notebooks, such as 03_updates or 03; all by default."),
-    full: bool = _option("From the reports' texts and all distros, not the small form.", "--full", default=False),
-    reports: Path | None = _option("The reports' texts, JSON Lines; what reads reports needs them with --full."),
-    output: Path = _option(
+    names: list[str] = _make_argument("Notebooks, such as 03_updates or 03; all by default."),
+    full: bool = _make_option("From the reports' texts and all distros, not the small form.", "--full", default=False),
+    reports: Path | None = _make_option("The reports' texts, JSON Lines; what reads reports needs them with --full."),
+    output: Path = _make_option(
         "Folder for the executed notebooks, figures and tables.", "--output", "-o", default=Path("study")
     ),
-    notebooks: Path | None = _option("Folder of the notebooks, outside a checkout."),
+    notebooks: Path | None = _make_option("Folder of the notebooks, outside a checkout."),
     quiet: _Quiet = False,
 ) -> None:
     """Run the notebooks and write their figures and tables.
@@ -371,10 +375,10 @@ def study_run(
     """
 
 
-@_command(study_app, "predict")
+@_add_command(study_app, "predict")
 def study_predict(
-    reports: Path = _option("The reports' texts, JSON Lines.", default=...),
-    output: Path | None = _option("Folder for both files; that of the notebooks by default.", "--output", "-o"),
+    reports: Path = _make_option("The reports' texts, JSON Lines.", default=...),
+    output: Path | None = _make_option("Folder for both files; that of the notebooks by default.", "--output", "-o"),
     quiet: _Quiet = False,
 ) -> None:
     """Judge every labelled report by a model that has not seen its repository, for 02_triage; ids and numbers only.
@@ -383,7 +387,7 @@ def study_predict(
     """
 
 
-def _version(value: bool) -> None:
+def _print_version(value: bool) -> None:
     if value:
         from ...edges.version import __version__
 
@@ -393,12 +397,14 @@ def _version(value: bool) -> None:
 
 @app.callback()
 def root(
-    version: bool = _option("Print the version.", "--version", default=False, callback=_version, is_eager=True),
+    version: bool = _make_option(
+        "Print the version.", "--version", default=False, callback=_print_version, is_eager=True
+    ),
 ) -> None:
     pass
 
 
-def _names(values: list[str] | None) -> tuple[str, ...]:
+def _split_names(values: list[str] | None) -> tuple[str, ...]:
     return tuple(name.strip() for value in values or () for name in value.split(",") if name.strip())
 
 
@@ -410,7 +416,7 @@ def _print_usage_error(error: Any) -> None:
     """Prints what is wrong with the arguments, which are shown on one line: in CI they may hold names of branches."""
     context = getattr(error, "ctx", None)
     if context is None or error.message != context.get_help():
-        error.message = visible(error.message)
+        error.message = escape(error.message)
     text = io.StringIO()
     error.show(file=text)
     if sys.stderr is not None:
@@ -457,4 +463,4 @@ def main() -> None:
         raise SystemExit(2) from None
     except OSError as error:
         # The commands tell of their own; what is left is help that cannot be printed.
-        raise SystemExit(output_failed(error)) from None
+        raise SystemExit(report_output_failure(error)) from None

@@ -6,18 +6,18 @@ from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
-from ...edges.console import UserError, counted, is_obeyed, run_command, say
+from ...edges.console import UserError, format_count, is_obeyed, run_command, say
 from ...edges.files import read_file
-from ...edges.limits import limits
+from ...edges.limits import get_limits
 from ...edges.version import __version__
 from ..analysis.check import Checked
 from ..analysis.check import run as run_check
-from ..analysis.findings import SettingsError, fails
+from ..analysis.findings import SettingsError, has_failures
 from ..analysis.report import Coverage, Report
 from ..analysis.session import Options
-from ..report.style import PLAIN, style_for
+from ..report.style import PLAIN, choose_style
 from ..tree import WorkingTree, shown
-from .output import PARSED_SO_FAR, check_output, deliver, one_of, print_answer, progress_bar, save
+from .output import PARSED_SO_FAR, check_output, deliver, make_progress_bar, print_answer, save, validate_choice
 
 FORMATS = ("text", "json", "sarif", "github", "markdown", "html")
 FAIL_ON = ("error", "warning", "note", "never")
@@ -44,22 +44,22 @@ def check(
 ) -> int:  # fmt: skip
     """Runs the check and prints its report. Returns the exit status: 0, 1 (findings), 2 (failed) or 130."""
 
-    def work() -> int:
-        one_of("--format", format, FORMATS)
-        one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
+    def run_and_report() -> int:
+        validate_choice("--format", format, FORMATS)
+        validate_choice("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
         if prune_baseline and baseline is None:
             raise UserError("--prune-baseline: no baseline was given; name it with --baseline")
-        known = _baseline(baseline)
+        known = _read_baseline_text(baseline)
         for file in (output, write_baseline, baseline if prune_baseline else None):
             check_output(file, path)
         options = Options(
             target, rev, base, select, ignore, preview, jobs, config, known, install=install,
             follow_links=follow_links,
         )  # fmt: skip
-        checked = run_check(path, options, None if quiet else progress_bar())
+        checked = run_check(path, options, None if quiet else make_progress_bar())
         incomplete = False
         if fix and not diff:
-            incomplete = not _fixed(path, checked)
+            incomplete = not _write_fixes(path, checked)
             checked = run_check(path, options, None)
         report = checked.report
         if report.failure and (format != "text" or output or diff or write_baseline):
@@ -67,19 +67,19 @@ def check(
         if baseline is not None and prune_baseline and report.packages:
             _prune(baseline, known, report, path)
         if write_baseline:
-            return _new_baseline(write_baseline, report, path)
+            return _write_new_baseline(write_baseline, report, path)
         if diff:
             patch, incomplete = _patch(checked, output)
             deliver(patch, output, "patch", path)
         else:
-            deliver(render(report, format, notes, output, _prefix(path, checked)), output, format, path)
+            deliver(render(report, format, notes, output, _find_prefix(path, checked)), output, format, path)
         if format == "github" and not diff:
             _write_step_summary(report)
         if report.failure or incomplete:
             return 2
-        return int(fails(report.findings, fail_on or checked.config.fail_on or "error"))
+        return int(has_failures(report.findings, fail_on or checked.config.fail_on or "error"))
 
-    return run_command(work, PARSED_SO_FAR, path, lambda message: _fail(message, format, output, path))
+    return run_command(run_and_report, PARSED_SO_FAR, path, lambda message: _fail(message, format, output, path))
 
 
 def _write_step_summary(report: Report) -> None:
@@ -92,14 +92,14 @@ def _write_step_summary(report: Report) -> None:
         say(f"rosimpact: the step summary cannot be written: {error.strerror}; check GITHUB_STEP_SUMMARY")
 
 
-def _baseline(file: Path | None) -> str:
+def _read_baseline_text(file: Path | None) -> str:
     """The text of a baseline file, checked, so that a wrong one is named before the work starts."""
     if file is None:
         return ""
     from ..analysis.findings import read_baseline
 
     try:
-        text = read_file(file, limits().baseline)
+        text = read_file(file, get_limits().baseline)
         read_baseline(text)
         return text.decode("utf-8-sig")
     except OSError as error:
@@ -108,7 +108,7 @@ def _baseline(file: Path | None) -> str:
         raise UserError(f"{file}: {error}") from None
 
 
-def _new_baseline(file: Path, report: Report, path: Path) -> int:
+def _write_new_baseline(file: Path, report: Report, path: Path) -> int:
     """Writes all of today's findings, those that an older baseline knows included."""
     from ..analysis.findings import format_baseline, sort_findings
 
@@ -116,7 +116,7 @@ def _new_baseline(file: Path, report: Report, path: Path) -> int:
         raise UserError(f"{file}: not written, because nothing was analysed")
     found = sort_findings([*report.findings, *report.known])
     save(file, format_baseline(found), path)
-    say(f"rosimpact: {file}: {counted(len(found), 'finding')}")
+    say(f"rosimpact: {file}: {format_count(len(found), 'finding')}")
     return 2 if report.failure else 0
 
 
@@ -130,13 +130,13 @@ def _prune(file: Path, known: str, report: Report, path: Path) -> None:
     say(f"rosimpact: {file}: {gone} fixed, removed")
 
 
-def _fixed(path: Path, checked: Checked) -> bool:
+def _write_fixes(path: Path, checked: Checked) -> bool:
     """Writes the fixes of a check. Returns whether all that could be made were written."""
     from ..analysis import fix
 
     if not isinstance(checked.tree, WorkingTree):
         raise UserError("--fix: a revision cannot be changed; remove --rev, or print the changes with --diff")
-    applied = _applied(checked)
+    applied = _apply_fixes(checked)
     done = 0
     for name, data in applied.files.items():
         try:
@@ -146,14 +146,14 @@ def _fixed(path: Path, checked: Checked) -> bool:
             say(f"rosimpact: {shown(name)}: not fixed: {error.strerror}")
     for edit, reason in applied.refused:
         say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
-    say(f"{counted(done, 'file')} changed")
+    say(f"{format_count(done, 'file')} changed")
     return done == len(applied.files)
 
 
-def _applied(checked: Checked):
+def _apply_fixes(checked: Checked):
     from ..analysis import fix
 
-    return fix.apply(fix.fixes(finding for finding in checked.report.findings if finding.new), checked.originals.get)
+    return fix.apply(fix.collect(finding for finding in checked.report.findings if finding.new), checked.originals.get)
 
 
 def _patch(checked: Checked, output: Path | None) -> tuple[str, bool]:
@@ -161,13 +161,13 @@ def _patch(checked: Checked, output: Path | None) -> tuple[str, bool]:
     the workspace as they are, so that one which a terminal or CI would obey goes to a file alone."""
     from ..analysis import fix
 
-    applied = _applied(checked)
+    applied = _apply_fixes(checked)
     for edit, reason in applied.refused:
         say(f"rosimpact: {shown(edit.path)}: not changed: {reason}")
     parts: list[str] = []
     incomplete = False
     for name, data in applied.files.items():
-        part = fix.unified_diff(name, checked.originals[name], data)
+        part = fix.make_unified_diff(name, checked.originals[name], data)
         if output is None and is_obeyed(part):
             incomplete = True
             say(
@@ -179,7 +179,7 @@ def _patch(checked: Checked, output: Path | None) -> tuple[str, bool]:
     return "".join(parts), incomplete
 
 
-def _prefix(path: Path, checked: Checked) -> str:
+def _find_prefix(path: Path, checked: Checked) -> str:
     """The workspace's folder relative to the repository's root, which annotations need."""
     root = os.environ.get("GITHUB_WORKSPACE") or checked.tree.repositories.get("")
     if not root:
@@ -195,7 +195,7 @@ def render(report: Report, format: str, notes: bool, output: Path | None = None,
 
         severities = ("error", "warning", "note") if notes else ("error", "warning")
         style = (
-            PLAIN._replace(severities=severities) if output else style_for(sys.stdout, severities=severities)
+            PLAIN._replace(severities=severities) if output else choose_style(sys.stdout, severities=severities)
         )
         return text.render(report, style)
     reporter = import_module(f"...report.{format}", __name__)

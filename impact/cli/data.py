@@ -2,16 +2,16 @@
 
 from pathlib import Path
 
-from ...edges.console import counted, escape_json, run_command, say, steps
-from .output import READ_SO_FAR, answers, print_answer
+from ...edges.console import escape_json, format_count, make_step_reporter, run_command, say
+from .output import READ_SO_FAR, make_command, print_answer
 
 
-@answers("text", "json")
+@make_command("text", "json")
 def data_status(format: str) -> str:
     """Date, origin and contents of the distro data in use."""
-    from ...databuild.snapshot import status
+    from ...databuild.snapshot import read_status
 
-    found = status()
+    found = read_status()
     if format == "json":
         import json
 
@@ -23,7 +23,7 @@ def data_status(format: str) -> str:
         newest = ", ".join(f"{name} {day}" for name, day in sorted(found.last_syncs.items()))
         lines.append(f"newest syncs: {newest}")
     kept = found.surfaces
-    told_of = f"{counted(kept['packages'], 'package')}, {counted(kept['versions'], 'version')}"
+    told_of = f"{format_count(kept['packages'], 'package')}, {format_count(kept['versions'], 'version')}"
     lines.append(f"surfaces of {told_of}, as of {kept['date']}, of {kept['distros']}")
     return "\n".join(lines)
 
@@ -35,15 +35,15 @@ def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path 
         from ...databuild.snapshot import build
         from ..cache import cache_folder
 
-        built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, steps())
+        built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, make_step_reporter())
         print_answer(
-            f"data of {built.date} in {output}: {counted(built.releases, 'release')}, "
-            f"{counted(built.manifests, 'manifest')}, {counted(built.rules, 'rosdep rule')}, "
+            f"data of {built.date} in {output}: {format_count(built.releases, 'release')}, "
+            f"{format_count(built.manifests, 'manifest')}, {format_count(built.rules, 'rosdep rule')}, "
             f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)",
             "text",
         )
         for name, count in built.unreadable.items():
-            say(f"rosimpact: {name}: {counted(count, 'version')} of its distribution file could not be read")
+            say(f"rosimpact: {name}: {format_count(count, 'version')} of its distribution file could not be read")
         return 0
 
     return run_command(build_it, READ_SO_FAR, rosdistro)
@@ -52,18 +52,18 @@ def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path 
 def data_update() -> int:
     """Refreshes the snapshot over the network."""
 
-    def work() -> int:
+    def update_data() -> int:
         from ...databuild.snapshot import update
 
-        found = update(report=steps())
+        found = update(report=make_step_reporter())
         for failure in found.failures:
             say(f"rosimpact: not updated: {failure}")
         print_answer(
-            f"data of {found.date} in {found.folder}: {counted(len(found.syncs), 'new sync')}, "
-            f"{counted(found.releases, 'release')}, {counted(found.manifests, 'manifest')}, "
-            f"{counted(found.rules, 'rosdep rule')}",
+            f"data of {found.date} in {found.folder}: {format_count(len(found.syncs), 'new sync')}, "
+            f"{format_count(found.releases, 'release')}, {format_count(found.manifests, 'manifest')}, "
+            f"{format_count(found.rules, 'rosdep rule')}",
             "text",
         )
         return 0
 
-    return run_command(work, "interrupted; the data in use stays", "the distro data")
+    return run_command(update_data, "interrupted; the data in use stays", "the distro data")

@@ -1,16 +1,16 @@
 """rosimpact explain."""
 
 from ...edges.console import UserError
-from .output import answers
+from .output import make_command
 
 
-@answers()
+@make_command()
 def explain(rule: str | None) -> str:
     """The documentation of a rule or group, or the list of them."""
     from ..rules import explain as pages
-    from ..rules.rule import all_rules
+    from ..rules.rule import load_rules
 
-    rules = all_rules()
+    rules = load_rules()
     try:
         return pages.list_rules(rules) if rule is None else pages.explain(rule, rules)
     except KeyError as error:

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from ...edges.console import UserError
-from .output import answers, progress_bar, say_notes, style_of
+from .output import find_style, make_command, make_progress_bar, say_notes
 
 
-@answers("text", "json", "graphml", "dot", "mermaid", "html")
+@make_command("text", "json", "graphml", "dot", "mermaid", "html")
 def graph(
     path: Path, *, launch, set_, node, topic, package, around, hops, rev, base, format, output, all, jobs, quiet,
     follow_links,
@@ -17,15 +17,15 @@ def graph(
         raise UserError("--set: write NAME:=VALUE")
     if given and not launch:
         raise UserError("--set: arguments belong to a launch file; name it with --launch")
-    from ..analysis.graph import graphs
+    from ..analysis.graph import build_graphs
     from ..report.graph import draw
 
-    found = graphs(
+    found = build_graphs(
         path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
-        progress=None if quiet else progress_bar(), follow_links=follow_links,
+        progress=None if quiet else make_progress_bar(), follow_links=follow_links,
     )  # fmt: skip
     say_notes(found.notes)
     return draw(
         found.now, format, found.before, nodes=node, topics=topic, packages=package, around=around,
-        hops=hops, everything=all, style=style_of(output),
+        hops=hops, everything=all, style=find_style(output),
     )  # fmt: skip

@@ -3,12 +3,12 @@
 import os
 from pathlib import Path
 
-from ...edges.console import UserError, steps
+from ...edges.console import UserError, make_step_reporter
 from ...edges.version import __version__
-from .output import answers, say_notes, style_of
+from .output import find_style, make_command, say_notes
 
 
-@answers("text", "json", "html", about="repository")
+@make_command("text", "json", "html", about="repository")
 def logic(
     repository: Path, *, range, commits, since, package, topic, all, format, output, jobs, quiet
 ) -> str:  # fmt: skip
@@ -21,13 +21,17 @@ def logic(
     with Store() as store:
         try:
             asked = history.Range(range, commits, since)
-            found = history.read(os.fspath(repository), asked, store, jobs, None if quiet else steps())
+            found = history.read(os.fspath(repository), asked, store, jobs, None if quiet else make_step_reporter())
         except ValueError as error:
             raise UserError(f"--since: {error}") from None
         say_notes(store.notes)
-    all_of_it, found = found, history.chosen(found, package, topic, all)
-    missed = logic_report.missed(all_of_it, found, package, topic)
+    all_of_it, found = found, history.select(found, package, topic, all)
+    missed = logic_report.describe_missed(all_of_it, found, package, topic)
     say_notes([missed] if missed else [])
     if format == "html":
         return timeline.render(found, __version__)
-    return logic_report.as_json(found, __version__) if format == "json" else logic_report.text(found, style_of(output))
+    return (
+        logic_report.render_json(found, __version__)
+        if format == "json"
+        else logic_report.render_text(found, find_style(output))
+    )

@@ -8,15 +8,15 @@ from functools import wraps
 from pathlib import Path
 from typing import Any
 
-from ...edges.console import UserError, rewrite, run_command, say, visible, write, write_exactly, write_json
-from ...edges.files import check_writable_path, outermost, write_file
-from ..report.style import PLAIN, Style, style_for
+from ...edges.console import UserError, escape, rewrite, run_command, say, write, write_exactly, write_json
+from ...edges.files import check_writable_path, find_outermost, write_file
+from ..report.style import PLAIN, Style, choose_style
 
 READ_SO_FAR = "interrupted; what was read is kept, and the next run continues from there"
 PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run continues from there"
 
 
-def answers(
+def make_command(
     *formats: str, about: str = "path"
 ) -> Callable[[Callable[..., str | tuple[str, int]]], Callable[..., int]]:
     """Makes a command of a function that gives its answer, or the answer and the exit status: the answer is delivered,
@@ -25,27 +25,27 @@ def answers(
     formats: those of the command. about: the argument that an error without a file of its own is about.
     """
 
-    def command_of(answer: Callable[..., str | tuple[str, int]]) -> Callable[..., int]:
+    def wrap_answer(answer: Callable[..., str | tuple[str, int]]) -> Callable[..., int]:
         @wraps(answer)
-        def command(**given: Any) -> int:
+        def run_answer(**given: Any) -> int:
             format, output, path = given.get("format", "text"), given.get("output"), given.get(about) or ""
 
-            def work() -> int:
-                one_of("--format", format, formats or ("text",))
+            def write_answer() -> int:
+                validate_choice("--format", format, formats or ("text",))
                 check_output(output, path)
                 found = answer(**given)
                 text, status = (found, 0) if isinstance(found, str) else found
                 deliver(text, output, format, path)
                 return status
 
-            return run_command(work, READ_SO_FAR, path)
+            return run_command(write_answer, READ_SO_FAR, path)
 
-        return command
+        return run_answer
 
-    return command_of
+    return wrap_answer
 
 
-def one_of(option: str, given: str, known: Sequence[str]) -> None:
+def validate_choice(option: str, given: str, known: Sequence[str]) -> None:
     """Raises UserError when an option has a value that it does not know."""
     if given not in known:
         raise UserError(f"{option} {given}: unknown; choose one of {', '.join(known)}")
@@ -68,9 +68,9 @@ def save(file: Path, text: str, path: object) -> None:
     """Writes a file that the user named. path: the workspace. Raises UserError."""
     place, beneath = _place_of(file, path)
     try:
-        write_file(place, _bytes(text), beneath=beneath)
+        write_file(place, _encode(text), beneath=beneath)
     except OSError as error:
-        raise _cannot_write(file, error) from None
+        raise _make_write_error(file, error) from None
 
 
 def check_output(file: Path | None, path: object) -> None:
@@ -80,11 +80,11 @@ def check_output(file: Path | None, path: object) -> None:
         try:
             check_writable_path(place, beneath=beneath)
         except OSError as error:
-            raise _cannot_write(file, error) from None
+            raise _make_write_error(file, error) from None
 
 
-def _cannot_write(file: Path, error: OSError) -> UserError:
-    return UserError(f"{visible(str(file))}: cannot be written: {error.strerror}; give another file")
+def _make_write_error(file: Path, error: OSError) -> UserError:
+    return UserError(f"{escape(str(file))}: cannot be written: {error.strerror}; give another file")
 
 
 def _place_of(file: Path, path: object) -> tuple[str, str | None]:
@@ -98,13 +98,13 @@ def _place_of(file: Path, path: object) -> tuple[str, str | None]:
     if not os.path.isabs(name):
         name = os.path.join(os.getcwd(), name)
     folders = [os.fspath(path)] if isinstance(path, str | os.PathLike) and path != "" else []
-    folders += [found for folder in (*folders, ".") if (found := _repository_of(os.path.realpath(folder)))]
-    folders += [found] if (found := _repository_of(os.path.dirname(os.path.abspath(name)))) else []
-    beneath = outermost(name, folders)
+    folders += [found for folder in (*folders, ".") if (found := _find_repository(os.path.realpath(folder)))]
+    folders += [found] if (found := _find_repository(os.path.dirname(os.path.abspath(name)))) else []
+    beneath = find_outermost(name, folders)
     return (name, None) if beneath is None else (os.path.abspath(name), beneath)
 
 
-def _repository_of(place: str) -> str:
+def _find_repository(place: str) -> str:
     """The nearest folder with a `.git` in it, from an absolute path upwards; empty when there is none."""
     while not os.path.lexists(os.path.join(place, ".git")):
         place, last = os.path.dirname(place), place
@@ -113,7 +113,7 @@ def _repository_of(place: str) -> str:
     return place
 
 
-def _bytes(text: str) -> bytes:
+def _encode(text: str) -> bytes:
     return (text if text.endswith("\n") or not text else text + "\n").encode("utf-8", "surrogateescape")
 
 
@@ -131,7 +131,7 @@ def print_answer(text: str, format: str) -> None:
         _PRINTERS.get(format, write)(text)
 
 
-def progress_bar() -> Callable[[int, int], None] | None:
+def make_progress_bar() -> Callable[[int, int], None] | None:
     """A line on standard error that is rewritten while files are parsed; None when nobody watches."""
     if sys.stderr is None or not sys.stderr.isatty():
         return None
@@ -143,11 +143,11 @@ def progress_bar() -> Callable[[int, int], None] | None:
     return show
 
 
-def style_of(output: Path | None) -> Style:
+def find_style(output: Path | None) -> Style:
     """How text is written: for the terminal that reads it; in a file or a pipe, lines are as long as they are."""
     from ..report.columns import UNBROKEN
 
     if output is not None:
         return PLAIN._replace(width=UNBROKEN)
-    style = style_for(sys.stdout)
+    style = choose_style(sys.stdout)
     return style if sys.stdout.isatty() else style._replace(width=UNBROKEN)

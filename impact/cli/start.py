@@ -31,7 +31,7 @@ def main() -> None:
     except Exception as error:
         if os.environ.get("ROSIMPACT_DEBUG"):
             raise
-        _say(_description(error))
+        _say(_describe_error(error))
     interrupts.finish(status)
     _flush()
     if interrupts.was_interrupted() or status == 2:
@@ -42,7 +42,7 @@ def main() -> None:
     raise SystemExit(status)
 
 
-def _description(error: Exception) -> str:
+def _describe_error(error: Exception) -> str:
     try:
         from ...edges.console import describe
 

@@ -5,38 +5,38 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ...edges.console import UserError, counted, run_command, steps
+from ...edges.console import UserError, format_count, make_step_reporter, run_command
 from ...edges.version import __version__
-from .output import READ_SO_FAR, answers, check_output, print_answer, say_notes, style_of
+from .output import READ_SO_FAR, check_output, find_style, make_command, print_answer, say_notes
 
 
-@answers("text", "json", "markdown")
+@make_command("text", "json", "markdown")
 def surface_show(package: str, *, repos, all, format, output, jobs) -> str:
     """What a version of a package offers."""
     from ..report import surface as report
 
-    with _opened_store() as store:
+    with _open_store() as store:
         name, _, asked = package.partition("@")
-        source, state = _surface(name, asked, repos, store, jobs)
-        surface, hashes = state.surfaces[name], _hashes(name, source.asked, state)
+        source, state = _find_surface(name, asked, repos, store, jobs)
+        surface, hashes = state.surfaces[name], _list_hashes(name, source.asked, state)
         if format == "json":
             return report.show_json(surface, source, __version__, hashes)
         if format == "markdown":
             return report.show_markdown(surface, source, hashes)
-        return report.show_text(surface, source, style_of(output), all, hashes)
+        return report.show_text(surface, source, find_style(output), all, hashes)
 
 
-@answers("text", "json", "markdown")
+@make_command("text", "json", "markdown")
 def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format, output, jobs) -> str:
     """What changed between two versions of a package, or of all packages of a clone."""
     from ...databuild.surface.clones import Clone
     from ...databuild.surface.compare import RepositorySurfaces, compare, compare_states
     from ..report import surface as report
 
-    with _opened_store() as store:
+    with _open_store() as store:
         if os.path.isdir(what) and repos is None:
             clone = Clone(Path(what))
-            states = [RepositorySurfaces(clone.surfaces(revision, store, jobs)) for revision in (old, new)]
+            states = [RepositorySurfaces(clone.read_surfaces(revision, store, jobs)) for revision in (old, new)]
             changes = compare_states(*states)
             unknown = [name for name in packages if name not in changes]
             if unknown:
@@ -44,42 +44,42 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format,
             changes = {name: each for name, each in changes.items() if (name in packages if packages else each)}
             sources = [report.VersionSource(revision, "", clone.name, revision) for revision in (old, new)]
         else:
-            (first, before), (second, after) = (_surface(what, asked, repos, store, jobs) for asked in (old, new))
+            (first, before), (second, after) = (_find_surface(what, asked, repos, store, jobs) for asked in (old, new))
             changes = {what: compare(before.surfaces[what], after.surfaces[what], before, after)}
             sources = [first, second]
-            old_hashes, new_hashes = _hashes(what, first.asked, before), _hashes(what, second.asked, after)
+            old_hashes, new_hashes = _list_hashes(what, first.asked, before), _list_hashes(what, second.asked, after)
             changes[what] = tuple(
-                report.with_hashes(change, old_hashes, new_hashes) if change.kind == "wire" else change
+                report.add_hashes(change, old_hashes, new_hashes) if change.kind == "wire" else change
                 for change in changes[what]
             )
         found = report.SurfaceDifference(sources[0], sources[1], changes)
         if format == "json":
-            return report.diff_json(found, __version__)
+            return report.render_diff_json(found, __version__)
         if format == "markdown":
-            return report.diff_markdown(found)
-        return report.diff_text(found, style_of(output), all)
+            return report.render_diff_markdown(found)
+        return report.render_diff_text(found, find_style(output), all)
 
 
 def surface_build(*, distro, repos, packages, all_versions, output, onto, jobs, dask, quiet) -> int:
     """Writes the surfaces of released packages to a file. Returns the exit status: 0, or 2 (failed)."""
 
-    def work() -> int:
+    def build_surfaces() -> int:
         from ...databuild.surface.clones import Clones
-        from ...databuild.surfaces import all_distros, build
+        from ...databuild.surfaces import build, list_distros
 
         if not distro:
             raise UserError("--distro: missing; name the distros to read, such as --distro humble --distro jazzy")
         if dask is not None and jobs is not None:
             raise UserError("--jobs: has no effect with --dask, which uses a cluster; give only one of the two")
         check_output(output, "")
-        report = None if quiet else steps()
+        report = None if quiet else make_step_reporter()
         versions = "all" if all_versions else "newest"
-        names = all_distros(distro)
+        names = list_distros(distro)
         built = build(Clones(repos), names, output, packages, jobs, report, versions=versions, dask=dask, onto=onto)
         if not built.packages:
             raise UserError(f"{repos}: no clone has a package asked for; clone repositories there, with their tags")
         say_notes(built.failed)
-        told_of = f"{counted(built.packages, 'package')}, {counted(built.versions, 'version')}"
+        told_of = f"{format_count(built.packages, 'package')}, {format_count(built.versions, 'version')}"
         print_answer(
             f"{output}: {told_of}, {output.stat().st_size:,} bytes; "
             f"{built.approximate} with a branch for a missing tag, {len(built.missing)} without a clone",
@@ -87,47 +87,47 @@ def surface_build(*, distro, repos, packages, all_versions, output, onto, jobs, 
         )
         return 0
 
-    return run_command(work, READ_SO_FAR, output)
+    return run_command(build_surfaces, READ_SO_FAR, output)
 
 
-def _surface(package: str, asked: str, repos: Path | None, store, jobs):
+def _find_surface(package: str, asked: str, repos: Path | None, store, jobs):
     """Where a version of a package was found, and its state: in clones, else in what is shipped."""
     from ...databuild.surface.clones import Clones
-    from ...databuild.surface.installed import is_installed, surface_at
+    from ...databuild.surface.installed import is_installed, read_surface
     from ...databuild.surface.stored_versions import StoredVersions
     from ..report.surface import VersionSource
-    from ..targets.surface.store import shipped
+    from ..targets.surface.store import load_shipped
 
     if is_installed(asked):
-        surface, state = surface_at(package, asked)
+        surface, state = read_surface(package, asked)
         return VersionSource(asked, surface.version, asked, "installed"), state
     if repos is None:
-        versions = StoredVersions(shipped())
-        asked = asked or versions.newest(package)
-        stored, state = versions.surface(package, asked)
+        versions = StoredVersions(load_shipped())
+        asked = asked or versions.find_newest(package)
+        stored, state = versions.find_surface(package, asked)
         return VersionSource(asked, stored.version, "the shipped surfaces", stored.stored, stored.approximate), state
     clones = Clones(repos)
-    asked = asked or clones.newest(package)
-    found, state = clones.surface(package, asked, store, jobs)
+    asked = asked or clones.find_newest(package)
+    found, state = clones.find_surface(package, asked, store, jobs)
     revision = found.revision.removeprefix("refs/").partition("/")[2] or found.revision
     return VersionSource(asked, found.version, found.clone.name, revision, found.approximate), state
 
 
-def _hashes(package: str, asked: str, state) -> dict[str, str]:
+def _list_hashes(package: str, asked: str, state) -> dict[str, str]:
     """The hashes of a package's interfaces, by `msg/Name`, as far as all that is in them is known: in the state of its
     repository, or of other packages of the distro that was asked for."""
     from ...databuild.surface.hashes import hash_of
     from ...databuild.surface.installed import is_installed
     from ...databuild.surface.stored_versions import StoredVersions
-    from ..targets.surface.store import shipped
+    from ..targets.surface.store import load_shipped
 
-    others = None if asked[:1].isdigit() or is_installed(asked) else StoredVersions(shipped())
+    others = None if asked[:1].isdigit() or is_installed(asked) else StoredVersions(load_shipped())
 
     def find(name: str):
         owner, _, short = name.partition("/")
         if owner in state.surfaces:
             return dict(state.surfaces[owner].interfaces).get(f"msg/{short}")
-        return others.message(asked, name) if others is not None else None
+        return others.find_message(asked, name) if others is not None else None
 
     surface = state.surfaces[package]
     ros = 2 if surface.build.build_type.startswith("ament") else 1
@@ -136,7 +136,7 @@ def _hashes(package: str, asked: str, state) -> dict[str, str]:
 
 
 @contextmanager
-def _opened_store() -> Iterator:
+def _open_store() -> Iterator:
     """The store of facts, what went wrong with which is said at the end."""
     from ..facts.store import Store
 

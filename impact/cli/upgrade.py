@@ -2,24 +2,24 @@
 
 from pathlib import Path
 
-from ..analysis.findings import fails
+from ..analysis.findings import has_failures
 from ..analysis.session import Options
 from .check import FAIL_ON
-from .output import answers, one_of, progress_bar, style_of
+from .output import find_style, make_command, make_progress_bar, validate_choice
 
 
-@answers("text", "json", "html")
+@make_command("text", "json", "html")
 def upgrade(
     path: Path, from_: str, to: str, *, packages, rev, config, format, output, fail_on, jobs, quiet, follow_links
 ) -> tuple[str, int]:  # fmt: skip
     """What an upgrade breaks; the status is 1 where something does."""
-    one_of("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
-    from ..analysis.upgrade import upgrade as compare
+    validate_choice("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
+    from ..analysis.upgrade import compare_upgrade as compare
     from ..report import upgrade as report
 
     options = Options(rev=rev, config=config, jobs=jobs, follow_links=follow_links)
-    found = compare(path, from_, to, options, packages, None if quiet else progress_bar())
-    status = int(fails(found.brought, fail_on or found.fail_on or "error"))
+    found = compare(path, from_, to, options, packages, None if quiet else make_progress_bar())
+    status = int(has_failures(found.brought, fail_on or found.fail_on or "error"))
     if format == "json":
-        return report.as_json(found), status
-    return report.as_html(found) if format == "html" else report.text(found, style_of(output)), status
+        return report.render_json(found), status
+    return report.render_html(found) if format == "html" else report.render_text(found, find_style(output)), status

@@ -13,7 +13,7 @@ from ..facts.condition import Condition
 from . import cmake, manifest, preprocessor, python
 from .environment import Environment
 
-__all__ = ["Environment", "all_hold", "holds"]
+__all__ = ["Environment", "evaluate_all", "holds"]
 
 _LANGUAGES = {
     "cpp": preprocessor.evaluate,
@@ -39,7 +39,7 @@ def holds(condition: Condition, environment: Environment) -> bool | None:
     return (not value) if condition.negated else value
 
 
-def all_hold(conditions: Iterable[Condition], environment: Environment) -> bool | None:
+def evaluate_all(conditions: Iterable[Condition], environment: Environment) -> bool | None:
     """Whether all conditions hold; False as soon as one surely does not."""
     result: bool | None = True
     for condition in conditions:

@@ -8,8 +8,8 @@ from collections.abc import Callable, Collection, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from .environment import PARTS, Environment, against, numbers_of, version_of
-from .logic import both, either, negation
+from .environment import PARTS, Environment, compare_version, find_version, parse_version_numbers
+from .logic import combine_and, combine_or, negate
 
 _CMAKE_TOKEN = re.compile(r'\s*(?:"((?:[^"\\]|\\.)*)"|([()])|((?:[^\s()"\\]|\\.)+))', re.DOTALL)
 # Environment variables that a shell, a build tool or the setup files of ROS set; any other is unset where nobody says
@@ -60,7 +60,7 @@ class Token(NamedTuple):
     written: bool = True
 
 
-def constant(text: str) -> bool | None:
+def parse_constant(text: str) -> bool | None:
     """The truth of a constant, None when the text is no constant."""
     upper = text.upper()
     if upper in _TRUE:
@@ -78,69 +78,69 @@ class CMakeTest:
         self.tokens = tokens
         self.at = 0
 
-    def whole(self) -> bool | None:
+    def evaluate_tokens(self) -> bool | None:
         """The value of all tokens, of which there is at least one; None where they are no test."""
-        value = self.disjunction(0)
+        value = self.evaluate_and_or(0)
         return value if self.at == len(self.tokens) else None
 
-    def word(self, offset: int = 0) -> str:
+    def peek_word(self, offset: int = 0) -> str:
         """The unquoted word ahead, which alone can be an operator."""
         index = self.at + offset
         return self.tokens[index].text if index < len(self.tokens) and not self.tokens[index].quoted else ""
 
-    def disjunction(self, depth: int) -> bool | None:
-        value = self.negation(depth)
-        while self.word() in ("AND", "OR"):
-            join = both if self.word() == "AND" else either
+    def evaluate_and_or(self, depth: int) -> bool | None:
+        value = self.evaluate_not(depth)
+        while self.peek_word() in ("AND", "OR"):
+            join = combine_and if self.peek_word() == "AND" else combine_or
             self.at += 1
-            value = join(value, self.negation(depth))
+            value = join(value, self.evaluate_not(depth))
         return value
 
-    def negation(self, depth: int) -> bool | None:
+    def evaluate_not(self, depth: int) -> bool | None:
         negated = False
-        while self.word() == "NOT":
+        while self.peek_word() == "NOT":
             self.at += 1
             negated = not negated
-        value = self.test(depth)
-        return negation(value) if negated else value
+        value = self.evaluate_test(depth)
+        return negate(value) if negated else value
 
-    def test(self, depth: int) -> bool | None:
+    def evaluate_test(self, depth: int) -> bool | None:
         if self.at >= len(self.tokens):
             return None
-        token, word = self.tokens[self.at], self.word()
+        token, word = self.tokens[self.at], self.peek_word()
         self.at += 1
         if word == "(":
-            value = self.disjunction(depth + 1) if depth < _MAX_DEPTH else None
+            value = self.evaluate_and_or(depth + 1) if depth < _MAX_DEPTH else None
             # what no parenthesis closes is no test
-            self.at = self.at + 1 if self.word() == ")" else len(self.tokens) + 1
-            if self.word() in _BINARY:
+            self.at = self.at + 1 if self.peek_word() == ")" else len(self.tokens) + 1
+            if self.peek_word() in _BINARY:
                 # `(X) STREQUAL Y`: legal, and nobody's meaning.
                 self.at += 2
                 return None
             return value
-        if word in _UNARY and self.at < len(self.tokens) and self.word() not in _BINARY:
+        if word in _UNARY and self.at < len(self.tokens) and self.peek_word() not in _BINARY:
             self.at += 1
-            return self.unary(word, self.tokens[self.at - 1])
-        if self.word() in _BINARY and self.at + 1 < len(self.tokens):
+            return self.evaluate_unary(word, self.tokens[self.at - 1])
+        if self.peek_word() in _BINARY and self.at + 1 < len(self.tokens):
             self.at += 2
-            return self.binary(token, self.word(-2), self.tokens[self.at - 1])
-        return self.truth(token)
+            return self.evaluate_comparison(token, self.peek_word(-2), self.tokens[self.at - 1])
+        return self.evaluate_argument(token)
 
-    def truth(self, token: Token) -> bool | None:
+    def evaluate_argument(self, token: Token) -> bool | None:
         """Whether one argument is true."""
         raise NotImplementedError
 
-    def unary(self, kind: str, operand: Token) -> bool | None:
+    def evaluate_unary(self, kind: str, operand: Token) -> bool | None:
         """The value of `EXISTS path` and its kin."""
         raise NotImplementedError
 
-    def binary(self, left: Token, kind: str, right: Token) -> bool | None:
+    def evaluate_comparison(self, left: Token, kind: str, right: Token) -> bool | None:
         """The value of a comparison."""
         raise NotImplementedError
 
 
 @lru_cache(4096)
-def _tokens(text: str) -> tuple[Token, ...]:
+def _split_tokens(text: str) -> tuple[Token, ...]:
     """Every argument of a test; empty when the text is none."""
     tokens: list[Token] = []
     position, text = 0, text.strip()
@@ -157,25 +157,25 @@ class _OnMachine(CMakeTest):
     """A test on somebody's machine."""
 
     def __init__(self, text: str, environment: Environment, declared: Collection[str]) -> None:
-        super().__init__(_tokens(text))
+        super().__init__(_split_tokens(text))
         self.environment = environment
         self.declared = declared
 
-    def truth(self, token: Token) -> bool | None:
+    def evaluate_argument(self, token: Token) -> bool | None:
         expanded = self.expand(token.text)
         if expanded is None:
             return None
-        value = constant(expanded)
+        value = parse_constant(expanded)
         if value is not None or token.quoted:
             return value
         if expanded in ("BUILD_TESTING", "CATKIN_ENABLE_TESTING"):
             return self.environment.testing
         if expanded.endswith("_FOUND"):
-            return self.found(expanded.removesuffix("_FOUND"))
-        held = self.variable(expanded)
+            return self.is_found(expanded.removesuffix("_FOUND"))
+        held = self.resolve_variable(expanded)
         return None if held is None else held.upper() not in _FALSE
 
-    def found(self, package: str) -> bool | None:
+    def is_found(self, package: str) -> bool | None:
         """Packages that exist in one generation of ROS alone, what is declared and there, and what was taken out of ROS
         or renamed: what else is installed is not known."""
         if self.environment.ros_version and package in _ROS1_ONLY | _ROS2_ONLY:
@@ -184,7 +184,7 @@ class _OnMachine(CMakeTest):
             return True if self.environment.packages(package) else None
         return False if self.environment.gone("package", package) else None
 
-    def unary(self, kind: str, operand: Token) -> bool | None:
+    def evaluate_unary(self, kind: str, operand: Token) -> bool | None:
         argument = operand.text
         if kind == "DEFINED":
             environment = re.fullmatch(r"ENV\{(ROS_DISTRO|ROS_VERSION|ROS_PYTHON_VERSION)\}", argument)
@@ -214,7 +214,7 @@ class _OnMachine(CMakeTest):
 
         def replace(match: re.Match[str]) -> str:
             nonlocal unknown
-            value = self.variable(match.group(2))
+            value = self.resolve_variable(match.group(2))
             if value is None and match.group(1) and not _USUALLY_SET.match(match.group(2)):
                 return ""
             unknown |= value is None
@@ -227,7 +227,7 @@ class _OnMachine(CMakeTest):
             text = expanded
         return None if unknown or "${" in text or "$<" in text else text
 
-    def variable(self, name: str) -> str | None:
+    def resolve_variable(self, name: str) -> str | None:
         environment = self.environment
         if name in _SYSTEM:
             return _SYSTEM[name]
@@ -242,44 +242,44 @@ class _OnMachine(CMakeTest):
         )
         if match is None:
             return None
-        version = version_of(match.group(1), environment)
+        version = find_version(match.group(1), environment)
         part = match.group(2) or match.group(3)
         if version is None:
             return None
-        numbers = numbers_of(version)
+        numbers = parse_version_numbers(version)
         if part and part != "STRING":
             index = PARTS[part]
             return str(numbers[index]) if index < len(numbers) else None
         return ".".join(map(str, numbers)) or None
 
-    def operand(self, token: Token, literal: bool) -> str | None:
+    def resolve_operand(self, token: Token, literal: bool) -> str | None:
         """The value compared: a variable's when unquoted and known, else the text, when it can be one."""
         expanded = self.expand(token.text)
         if expanded is None or token.quoted or _REFERENCE.fullmatch(token.text):
             return expanded
-        value = self.variable(expanded)
+        value = self.resolve_variable(expanded)
         if value is not None:
             return value
         # A name that nothing here knows is a variable of the project, unless it looks like a value.
         return expanded if literal or not re.search(r"[A-Z_]", expanded) else None
 
-    def binary(self, left: Token, kind: str, right: Token) -> bool | None:
+    def evaluate_comparison(self, left: Token, kind: str, right: Token) -> bool | None:
         if kind in ("IN_LIST", "IS_NEWER_THAN", "PATH_EQUAL"):
             return None
-        known = self.operand(left, False)
-        wanted = self.operand(right, True)
+        known = self.resolve_operand(left, False)
+        wanted = self.resolve_operand(right, True)
         if known is None or wanted is None:
             return None
         if kind == "MATCHES":
             return re.search(wanted, known) is not None if len(wanted) < 200 else None
         if kind.startswith("VERSION_"):
-            order = against(known, numbers_of(wanted)) if numbers_of(wanted) else None
+            order = compare_version(known, parse_version_numbers(wanted)) if parse_version_numbers(wanted) else None
             return None if order is None else COMPARISONS[kind.removeprefix("VERSION_")](order, 0)
         if kind.startswith("STR"):
             return COMPARISONS[kind.removeprefix("STR")](known, wanted)
         if left.text.strip("${}") == "Boost_VERSION":
             # Before policy CMP0093 it was the number of the macro; compared with a number, it is meant so.
-            numbers = (*numbers_of(known), 0, 0)
+            numbers = (*parse_version_numbers(known), 0, 0)
             known = str(numbers[0] * 100000 + numbers[1] * 100 + numbers[2])
         return COMPARISONS[kind](float(known), float(wanted))
 
@@ -287,13 +287,13 @@ class _OnMachine(CMakeTest):
 def evaluate(text: str, environment: Environment, declared: Collection[str] = ()) -> bool | None:
     """The value of a test; None where it cannot be told. declared: as in Condition. Raises ValueError where what are no
     numbers are compared as such."""
-    return _OnMachine(text, environment, declared).whole() if _tokens(text) else None
+    return _OnMachine(text, environment, declared).evaluate_tokens() if _split_tokens(text) else None
 
 
 _FOUND = re.compile(r"(?<![\w}])(\w+)_FOUND\b")
 
 
-def packages_asked(text: str) -> tuple[str, ...]:
+def list_tested_packages(text: str) -> tuple[str, ...]:
     """The packages whose `X_FOUND` a test reads."""
     return tuple(dict.fromkeys(_FOUND.findall(text)))
 
@@ -306,4 +306,4 @@ def asks_only_for_packages(text: str) -> bool:
 
 def lacks(text: str, environment: Environment) -> bool:
     """Whether a package that a test asks for is one that the machine does not have."""
-    return any(environment.packages(name) is False for name in packages_asked(text))
+    return any(environment.packages(name) is False for name in list_tested_packages(text))

@@ -62,7 +62,7 @@ _LIBRARY_NAMES = {
 }
 
 
-def version_of(name: str, environment: Environment) -> str | None:
+def find_version(name: str, environment: Environment) -> str | None:
     """The version of what a macro or variable prefix stands for: `CV`, `rclcpp`, `OpenCV`, `Python3`."""
     lower = name.lower()
     if lower in ("python", "python3", "py", "pythoninterp", "pythonlibs", "python_interpreter"):
@@ -74,15 +74,15 @@ def version_of(name: str, environment: Environment) -> str | None:
     return None
 
 
-def numbers_of(version: str) -> tuple[int, ...]:
+def parse_version_numbers(version: str) -> tuple[int, ...]:
     """The leading numbers of a version: `1.12.1+dfsg-3` gives (1, 12, 1), `1:4.5` the part after the epoch."""
     found = re.match(r"(?:\d{1,9}:)?v?(\d{1,9}(?:\.\d{1,9})*)", version.strip())
     return tuple(int(part) for part in found.group(1).split(".")) if found else ()
 
 
-def against(version: str | None, wanted: tuple[int, ...]) -> int | None:
+def compare_version(version: str | None, wanted: tuple[int, ...]) -> int | None:
     """How a version compares with numbers asked for: -1, 0, 1, or None where it is not known finely enough."""
-    known = numbers_of(version) if version else ()
+    known = parse_version_numbers(version) if version else ()
     if not known:
         return None
     if len(known) < len(wanted) and known == wanted[: len(known)] and any(wanted[len(known) :]):

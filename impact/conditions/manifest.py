@@ -7,14 +7,14 @@ import re
 from functools import lru_cache
 
 from .environment import Environment
-from .python import parsed, truth_of
+from .python import evaluate_truth, parse_expression
 
 _TOKEN = re.compile(r"\s*(?:(==|!=|<=|>=|<|>|\(|\))|\$([A-Za-z_]\w*)|\"([^\"]*)\"|'([^']*)'|([\w.-]+))")
 _KNOWN = frozenset(("ROS_DISTRO", "ROS_VERSION", "ROS_PYTHON_VERSION"))
 
 
 @lru_cache(1024)
-def _expression(text: str) -> ast.expr | None:
+def _parse_expression(text: str) -> ast.expr | None:
     """A condition as an expression of Python, where comparisons, `and` and `or` mean the same; None for what is none.
 
     REP 149: a variable that is not set is the empty text."""
@@ -30,7 +30,7 @@ def _expression(text: str) -> ast.expr | None:
             words.append(f"os.environ[{word!r}]" if word in _KNOWN else "''")
         else:
             words.append(word if match.lastindex == 1 or match.group(5) in ("and", "or") else repr(word))
-    node = parsed(" ".join(words))
+    node = parse_expression(" ".join(words))
     return node if node is not None and _is_condition(node) else None
 
 
@@ -47,5 +47,5 @@ def evaluate(text: str, environment: Environment) -> bool | None:
     """Whether a condition holds; None where it cannot be told."""
     if not text.strip():
         return True
-    node = _expression(text)
-    return None if node is None else truth_of(node, environment)
+    node = _parse_expression(text)
+    return None if node is None else evaluate_truth(node, environment)

@@ -11,8 +11,8 @@ import operator
 import re
 from functools import lru_cache
 
-from .environment import COMPARISONS, PARTS, Environment, against, numbers_of, version_of
-from .logic import both, either, negation
+from .environment import COMPARISONS, PARTS, Environment, compare_version, find_version, parse_version_numbers
+from .logic import combine_and, combine_or, negate
 
 _CPP_TOKEN = re.compile(
     r"\s*(?:(?P<include>__has_include(?:_next)?\s*\(\s*(?:<[^>\n]*>|\"[^\"\n]*\")\s*\))"
@@ -69,7 +69,7 @@ _LESS_THAN = re.compile(r"(\w+?)_VERSION_(?:LT|LESS)")
 
 
 @lru_cache(4096)
-def _tokens(text: str) -> tuple[tuple[str, str], ...]:
+def _split_tokens(text: str) -> tuple[tuple[str, str], ...]:
     """(kind, text) of every token, an end behind them; none of a text that is no expression."""
     tokens: list[tuple[str, str]] = []
     position, text = 0, text.strip()
@@ -91,7 +91,7 @@ class _Cpp:
     told. Raises ValueError or LookupError where the tokens are no expression."""
 
     def __init__(self, text: str, environment: Environment) -> None:
-        self.tokens = _tokens(text)
+        self.tokens = _split_tokens(text)
         self.environment = environment
         self.at = 0
 
@@ -110,40 +110,40 @@ class _Cpp:
         if not self.takes(value):
             raise ValueError(f"`{value}` expected")
 
-    def whole(self) -> int | None:
-        value = self.ternary()
+    def evaluate_tokens(self) -> int | None:
+        value = self.evaluate_ternary()
         if self.tokens[self.at][0] != "end":
             raise ValueError("more than an expression")
         return value
 
-    def ternary(self) -> int | None:
-        value = self.binary(1)
+    def evaluate_ternary(self) -> int | None:
+        value = self.evaluate_binary(1)
         if not self.takes("?"):
             return value
-        test, yes = _truth(value), self.ternary()
+        test, yes = _convert_to_bool(value), self.evaluate_ternary()
         self.expect(":")
-        no = self.ternary()
+        no = self.evaluate_ternary()
         return (yes if yes == no else None) if test is None else yes if test else no
 
-    def binary(self, least: int) -> int | None:
-        left = self.unary()
+    def evaluate_binary(self, least: int) -> int | None:
+        left = self.evaluate_unary()
         while True:
             kind, value = self.tokens[self.at]
             strength = _PRECEDENCE.get(value, 0) if kind == "operator" else 0
             if strength < least:
                 return left
             self.at += 1
-            left = _combined(value, left, self.binary(strength + 1))
+            left = _apply_operator(value, left, self.evaluate_binary(strength + 1))
 
-    def unary(self) -> int | None:
+    def evaluate_unary(self) -> int | None:
         kind, value = self.take()
         if kind == "operator" and value in ("!", "-", "+", "~"):
-            operand = self.unary()
+            operand = self.evaluate_unary()
             if value == "!":
-                return negation(_truth(operand))
+                return negate(_convert_to_bool(operand))
             return None if operand is None else -operand if value == "-" else ~operand if value == "~" else operand
         if kind == "operator" and value == "(":
-            inside = self.ternary()
+            inside = self.evaluate_ternary()
             self.expect(")")
             return inside
         if kind == "number":
@@ -163,57 +163,57 @@ class _Cpp:
                 raise ValueError("name expected")
             if opened:
                 self.expect(")")
-            return _defined(value, self.environment)
+            return _is_defined(value, self.environment)
         if self.takes("("):
-            return _macro_call(value, self.arguments(), self.environment)
-        return _macro(value, self.environment)
+            return _evaluate_macro_call(value, self.evaluate_arguments(), self.environment)
+        return _evaluate_macro(value, self.environment)
 
-    def arguments(self) -> list[int | str | None]:
+    def evaluate_arguments(self) -> list[int | str | None]:
         """Arguments of a macro: expressions, or one operator as PCL_VERSION_COMPARE takes it."""
         arguments: list[int | str | None] = []
         while not self.takes(")"):
             if self.tokens[self.at][1] in COMPARISONS and self.tokens[self.at + 1] == ("operator", ","):
                 arguments.append(self.take()[1])
             else:
-                arguments.append(self.ternary())
+                arguments.append(self.evaluate_ternary())
             if not self.takes(",") and self.tokens[self.at] != ("operator", ")"):
                 raise ValueError("`,` expected")
         return arguments
 
 
-def _value(text: str, environment: Environment) -> int | None:
+def _evaluate(text: str, environment: Environment) -> int | None:
     try:
-        return _Cpp(text, environment).whole()
+        return _Cpp(text, environment).evaluate_tokens()
     except (ValueError, LookupError, RecursionError):
         return None
 
 
 def evaluate(text: str, environment: Environment) -> bool | None:
-    return _truth(_value(text, environment))
+    return _convert_to_bool(_evaluate(text, environment))
 
 
-def number_of(text: str) -> int | None:
+def evaluate_number(text: str) -> int | None:
     """The value of an expression of numbers alone; None for what is none, or compares them."""
-    value = _value(text, Environment())
+    value = _evaluate(text, Environment())
     return None if isinstance(value, bool) else value
 
 
-def _truth(value: int | None) -> bool | None:
+def _convert_to_bool(value: int | None) -> bool | None:
     return None if value is None else value != 0
 
 
-def _combined(kind: str, left: int | None, right: int | None) -> int | None:
+def _apply_operator(kind: str, left: int | None, right: int | None) -> int | None:
     """The value of a binary operator."""
     if kind == "&&":
-        return both(_truth(left), _truth(right))
+        return combine_and(_convert_to_bool(left), _convert_to_bool(right))
     if kind == "||":
-        return either(_truth(left), _truth(right))
+        return combine_or(_convert_to_bool(left), _convert_to_bool(right))
     if left is None or right is None:
         return None
-    return COMPARISONS[kind](left, right) if kind in COMPARISONS else _arithmetic(kind, left, right)
+    return COMPARISONS[kind](left, right) if kind in COMPARISONS else _compute(kind, left, right)
 
 
-def _arithmetic(kind: str, left: int, right: int) -> int | None:
+def _compute(kind: str, left: int, right: int) -> int | None:
     if kind in ("<<", ">>"):
         if not 0 <= right < 64:
             return None
@@ -230,19 +230,19 @@ def _arithmetic(kind: str, left: int, right: int) -> int | None:
     return value if abs(value) < 1 << 64 else None
 
 
-def _defined(name: str, environment: Environment) -> bool | None:
+def _is_defined(name: str, environment: Environment) -> bool | None:
     if name in _PRESENT:
         return True
     if name in _ABSENT:
         return False
     if name == "CV_VERSION_EPOCH":
         # OpenCV 2 alone has it.
-        order = against(version_of("opencv", environment), (3,))
+        order = compare_version(find_version("opencv", environment), (3,))
         return None if order is None else order < 0
     return None
 
 
-def _macro(name: str, environment: Environment) -> int | None:
+def _evaluate_macro(name: str, environment: Environment) -> int | None:
     """The number a macro stands for; 0 for one that is surely not defined."""
     if name in _ABSENT or name == "false":
         return 0
@@ -253,7 +253,7 @@ def _macro(name: str, environment: Environment) -> int | None:
     weights = _WEIGHTS.get(name)
     if weights is not None:
         prefix = "py" if name == "PY_VERSION_HEX" else name.partition("_VERSION")[0]
-        known = numbers_of(version_of(prefix, environment) or "")
+        known = parse_version_numbers(find_version(prefix, environment) or "")
         if len(known) < 2:
             return None
         return sum(weight * part for weight, part in zip(weights, (*known, 0, 0), strict=False))
@@ -263,22 +263,22 @@ def _macro(name: str, environment: Environment) -> int | None:
         library, index = part[1], PARTS[part[2] or part[3]]
     else:
         return None
-    known = numbers_of(version_of(library, environment) or "")
+    known = parse_version_numbers(find_version(library, environment) or "")
     return known[index] if index < len(known) else None
 
 
-def _macro_call(name: str, arguments: list[int | str | None], environment: Environment) -> int | None:
+def _evaluate_macro_call(name: str, arguments: list[int | str | None], environment: Environment) -> int | None:
     wanted = tuple(argument for argument in arguments if isinstance(argument, int))
     if not wanted or None in arguments:
         return None
     if name in _MAKERS:
         return sum(weight * part for weight, part in zip(_MAKERS[name], (*wanted, 0, 0), strict=False))
     if name == "PCL_VERSION_COMPARE" and isinstance(arguments[0], str):
-        order = against(version_of("pcl", environment), wanted)
+        order = compare_version(find_version("pcl", environment), wanted)
         return None if order is None else COMPARISONS[arguments[0]](order, 0)
     for pattern, compare in ((_AT_LEAST, operator.ge), (_LESS_THAN, operator.lt)):
         match = pattern.fullmatch(name)
         if match:
-            order = against(version_of(match.group(1), environment), wanted)
+            order = compare_version(find_version(match.group(1), environment), wanted)
             return None if order is None else compare(order, 0)
     return None

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
-from ..facts.python.text import COMPARISONS, dotted
+from ..facts.python.text import COMPARISONS, format_dotted
 from .environment import Environment
-from .logic import both, either, negation
+from .logic import combine_and, combine_or, negate
 
 _UNKNOWN = object()
 _ON_LINUX = {"sys.platform": "linux", "platform": "linux", "os.name": "posix"}
@@ -21,7 +21,7 @@ class _VersionInfo(tuple):
 
 
 @lru_cache(2048)
-def parsed(text: str) -> ast.expr | None:
+def parse_expression(text: str) -> ast.expr | None:
     """The expression that a text is, None for what is none."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -34,52 +34,52 @@ def parsed(text: str) -> ast.expr | None:
 def evaluate(text: str, environment: Environment) -> bool | None:
     if text == "TYPE_CHECKING":
         return False
-    node = None if text == "try" else parsed(text)
-    return None if node is None else truth_of(node, environment)
+    node = None if text == "try" else parse_expression(text)
+    return None if node is None else evaluate_truth(node, environment)
 
 
-def truth_of(node: ast.expr, environment: Environment) -> bool | None:
+def evaluate_truth(node: ast.expr, environment: Environment) -> bool | None:
     """Whether an expression is true on a machine, None where that cannot be told."""
     if isinstance(node, ast.BoolOp):
-        join = both if isinstance(node.op, ast.And) else either
-        value = truth_of(node.values[0], environment)
+        join = combine_and if isinstance(node.op, ast.And) else combine_or
+        value = evaluate_truth(node.values[0], environment)
         for other in node.values[1:]:
-            value = join(value, truth_of(other, environment))
+            value = join(value, evaluate_truth(other, environment))
         return value
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        return negation(truth_of(node.operand, environment))
-    value = _python_value(node, environment)
+        return negate(evaluate_truth(node.operand, environment))
+    value = _evaluate(node, environment)
     return None if value is _UNKNOWN else bool(value)
 
 
-def _python_value(node: ast.expr, environment: Environment) -> Any:
+def _evaluate(node: ast.expr, environment: Environment) -> Any:
     if isinstance(node, ast.Constant):
         return node.value
     if isinstance(node, ast.Tuple | ast.List | ast.Set):
-        values = tuple(_python_value(item, environment) for item in node.elts)
+        values = tuple(_evaluate(item, environment) for item in node.elts)
         return _UNKNOWN if any(value is _UNKNOWN for value in values) else values
     if isinstance(node, ast.Compare):
-        return _python_compare(node, environment)
+        return _evaluate_comparison(node, environment)
     if isinstance(node, ast.Name | ast.Attribute):
-        return _python_name(dotted(node), environment)
+        return _evaluate_name(format_dotted(node), environment)
     if isinstance(node, ast.Subscript):
-        return _python_subscript(node, environment)
+        return _evaluate_subscript(node, environment)
     if isinstance(node, ast.Call):
-        return _python_call(node, environment)
+        return _evaluate_call(node, environment)
     if isinstance(node, ast.BoolOp | ast.UnaryOp):
         known = not isinstance(node, ast.UnaryOp) or isinstance(node.op, ast.Not)
-        value = truth_of(node, environment) if known else None
+        value = evaluate_truth(node, environment) if known else None
         return _UNKNOWN if value is None else value
     return _UNKNOWN
 
 
-def _python_name(name: str, environment: Environment) -> Any:
+def _evaluate_name(name: str, environment: Environment) -> Any:
     if name.endswith("TYPE_CHECKING"):
         return False
     if name in _ON_LINUX:
         return _ON_LINUX[name]
     if name in ("ROS_DISTRO", "ROS_VERSION"):
-        return _environment_variable(name, environment)
+        return _evaluate_variable(name, environment)
     if environment.python is None:
         return _UNKNOWN
     major, minor = environment.python
@@ -102,12 +102,12 @@ def _python_name(name: str, environment: Environment) -> Any:
     return _UNKNOWN
 
 
-def _python_subscript(node: ast.Subscript, environment: Environment) -> Any:
+def _evaluate_subscript(node: ast.Subscript, environment: Environment) -> Any:
     key = node.slice
-    name = dotted(node.value)
+    name = format_dotted(node.value)
     if name.endswith("environ") and isinstance(key, ast.Constant):
-        return _environment_variable(key.value, environment)
-    value = _python_value(node.value, environment)
+        return _evaluate_variable(key.value, environment)
+    value = _evaluate(node.value, environment)
     if value is _UNKNOWN:
         return _UNKNOWN
     if isinstance(key, ast.Slice):
@@ -121,7 +121,7 @@ def _python_subscript(node: ast.Subscript, environment: Environment) -> Any:
     return value[index] if isinstance(index, int) and 0 <= index < len(value) else _UNKNOWN
 
 
-def _environment_variable(name: object, environment: Environment) -> Any:
+def _evaluate_variable(name: object, environment: Environment) -> Any:
     if name == "ROS_DISTRO":
         return environment.ros_distro or _UNKNOWN
     if name == "ROS_VERSION":
@@ -131,11 +131,11 @@ def _environment_variable(name: object, environment: Environment) -> Any:
     return _UNKNOWN
 
 
-def _python_call(node: ast.Call, environment: Environment) -> Any:
-    name = dotted(node.func)
-    arguments = [_python_value(argument, environment) for argument in node.args]
+def _evaluate_call(node: ast.Call, environment: Environment) -> Any:
+    name = format_dotted(node.func)
+    arguments = [_evaluate(argument, environment) for argument in node.args]
     if name.endswith(("environ.get", "getenv")) and arguments:
-        return _environment_variable(arguments[0], environment)
+        return _evaluate_variable(arguments[0], environment)
     if name == "platform.system":
         return "Linux"
     if name in ("platform.python_version", "platform.python_version_tuple") and environment.python:
@@ -144,7 +144,7 @@ def _python_call(node: ast.Call, environment: Environment) -> Any:
     if name in ("int", "float", "str", "bool") and len(arguments) == 1 and arguments[0] is not _UNKNOWN:
         return {"int": int, "float": float, "str": str, "bool": bool}[name](arguments[0])
     if isinstance(node.func, ast.Attribute) and node.func.attr in ("startswith", "lower") and len(arguments) < 2:
-        value = _python_value(node.func.value, environment)
+        value = _evaluate(node.func.value, environment)
         if isinstance(value, str) and node.func.attr == "lower":
             return value.lower()
         if isinstance(value, str) and isinstance(arguments[0], str):
@@ -152,18 +152,18 @@ def _python_call(node: ast.Call, environment: Environment) -> Any:
     return _UNKNOWN
 
 
-def _python_compare(node: ast.Compare, environment: Environment) -> Any:
+def _evaluate_comparison(node: ast.Compare, environment: Environment) -> Any:
     result: bool | None = True
-    left = _python_value(node.left, environment)
+    left = _evaluate(node.left, environment)
     for kind, right_node in zip(node.ops, node.comparators, strict=True):
-        right = _python_value(right_node, environment)
+        right = _evaluate(right_node, environment)
         compare = COMPARISONS.get(type(kind))
         if left is _UNKNOWN or right is _UNKNOWN or compare is None:
-            result = both(result, None)
+            result = combine_and(result, None)
         elif isinstance(left, _VersionInfo) or isinstance(right, _VersionInfo):
-            result = both(result, _compare_version_info(left, right, compare))
+            result = combine_and(result, _compare_version_info(left, right, compare))
         else:
-            result = both(result, bool(compare(left, right)))
+            result = combine_and(result, bool(compare(left, right)))
         left = right
     return _UNKNOWN if result is None else result
 

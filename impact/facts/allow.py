@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from ...edges.limits import limits
+from ...edges.limits import get_limits
 from .place import Allow
 
 MARK = b"rosimpact:"
@@ -23,7 +23,7 @@ def allows(data: bytes) -> tuple[Allow, ...]:
         return ()
     found: list[Allow] = []
     line, counted = 1, 0
-    most = limits().items
+    most = get_limits().items
     while at != -1 and len(found) < most:
         start = data.rfind(b"\n", 0, at) + 1
         end = data.find(b"\n", at)

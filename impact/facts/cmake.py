@@ -74,7 +74,7 @@ class _Open(NamedTuple):
     column: int
     arguments: list[CMakeArgument]
 
-    def closed(self, end_line: int) -> Command:
+    def build_command(self, end_line: int) -> Command:
         return Command(self.name, tuple(self.arguments), self.line, self.column, end_line)
 
 
@@ -144,26 +144,26 @@ def _scan(text: str, position: int, line: int, commands: list[Command], problems
 
         if depth == 0:
             if pending is not None and kind != "open":
-                lacking = f"`{_short(pending.name)}` is no command: no parenthesis follows"
+                lacking = f"`{_shorten(pending.name)}` is no command: no parenthesis follows"
                 problems.append(Problem(pending.line, lacking))
                 pending = None
             if kind == "unquoted":
                 word = token.group("unquoted")
                 if _NAME.match(word):
                     if last_command_line == line:
-                        problems.append(Problem(line, f"`{_short(word)}` follows a command on the same line"))
+                        problems.append(Problem(line, f"`{_shorten(word)}` follows a command on the same line"))
                     pending = _Open(word, line, column, [])
                 else:
-                    problems.append(Problem(line, f"`{_short(word)}` is no command"))
+                    problems.append(Problem(line, f"`{_shorten(word)}` is no command"))
             elif kind == "open" and pending is not None:
                 opened, pending = pending._replace(name=pending.name.lower()), None
                 depth = 1
             elif kind == "end":
                 return None
             elif kind == "bracket" and token.group("bracket")[0] == "#":
-                position = _bracket_end(text, token, line, problems)[1]
+                position = _read_bracket(text, token, line, problems)[1]
             else:
-                problems.append(Problem(line, f"`{_short(token.group(kind))}` where a command was expected"))  # type: ignore[arg-type]
+                problems.append(Problem(line, f"`{_shorten(token.group(kind))}` where a command was expected"))  # type: ignore[arg-type]
                 end = text.find("\n", start)
                 if end < 0:
                     return None
@@ -179,26 +179,26 @@ def _scan(text: str, position: int, line: int, commands: list[Command], problems
             if depth:
                 opened.arguments.append(CMakeArgument(")", "", line, column))
             else:
-                commands.append(opened.closed(line))
+                commands.append(opened.build_command(line))
                 last_command_line = line
         elif kind == "open":
             depth += 1
             opened.arguments.append(CMakeArgument("(", "", line, column))
         elif kind == "bracket":
-            content, position = _bracket_end(text, token, line, problems)
+            content, position = _read_bracket(text, token, line, problems)
             if token.group("bracket")[0] != "#":
                 opened.arguments.append(CMakeArgument(content, "[", line, column))
         elif kind == "other" and token.group("other") != '"':
-            problems.append(Problem(line, f"`{_short(token.group('other'))}` in the arguments of {opened.name}()"))
+            problems.append(Problem(line, f"`{_shorten(token.group('other'))}` in the arguments of {opened.name}()"))
         elif kind == "other":
             problems.append(Problem(line, f"a string in {opened.name}() is never closed"))
             return _close_early(text, start, line, column, opened, commands)
         else:
             problems.append(Problem(opened.line, f"{opened.name}() is never closed"))
-            return _cut(text, _offset_after(text, opened.line, start), start, opened, commands)
+            return _cut(text, _find_next_line(text, opened.line, start), start, opened, commands)
 
 
-def _bracket_end(text: str, token: re.Match[str], line: int, problems: list[Problem]) -> tuple[str, int]:
+def _read_bracket(text: str, token: re.Match[str], line: int, problems: list[Problem]) -> tuple[str, int]:
     """Content of a bracket argument or comment and where it ends. An unclosed one is its first line."""
     closing = "]" + token.group("level") + "]"
     begin = token.end()
@@ -216,12 +216,12 @@ def _close_early(text: str, start: int, line: int, column: int, opened: _Open, c
     end = text.find("\n", start)
     end = len(text) if end < 0 else end
     opened.arguments.append(CMakeArgument(text[start + 1 : end].rstrip().rstrip(")"), '"', line, column))
-    commands.append(opened.closed(line))
+    commands.append(opened.build_command(line))
     following = _COMMAND_LINE.search(text, end)
     return following.start(1) if following else len(text)
 
 
-def _offset_after(text: str, line: int, end: int) -> int:
+def _find_next_line(text: str, line: int, end: int) -> int:
     """Offset of the line that follows line number `line`, or `end` when there is none."""
     position = -1
     for _ in range(line):
@@ -239,12 +239,12 @@ def _cut(text: str, begin: int, end: int, opened: _Open, commands: list[Command]
         stop = following.start(1)
         last = text.count("\n", 0, stop) + 1
         kept = [argument for argument in opened.arguments if argument.line < last]
-        commands.append(opened._replace(arguments=kept).closed(last - 1))
+        commands.append(opened._replace(arguments=kept).build_command(last - 1))
         return stop
-    commands.append(opened.closed(text.count("\n", 0, end) + 1))
+    commands.append(opened.build_command(text.count("\n", 0, end) + 1))
     return end
 
 
-def _short(text: str) -> str:
+def _shorten(text: str) -> str:
     printable = "".join(letter if letter.isprintable() else "?" for letter in text[:30])
     return printable + ("…" if len(text) > 30 else "")

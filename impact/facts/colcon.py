@@ -37,18 +37,18 @@ def extract(data: bytes, kind: str) -> ColconFile:
     problem of settings is a clause that says why they are no YAML."""
     text = data.decode("utf-8", "replace")
     if kind == "colcon_settings":
-        return _settings(text)
+        return _parse_settings(text)
     if kind == "colcon_cmake":
         match = _PROJECT.search(_COMMENT.sub("", text))
         name = match[2] if match else ""
         return ColconFile(name, name == "Project" and "catkin_workspace()" in _COMMENT.sub("", text))
     if kind == "colcon_setup_py":
-        return ColconFile(_name_in_setup(text))
+        return ColconFile(_find_name_in_setup(text))
     match = (_CFG_NAME if kind == "colcon_setup_cfg" else _TOML_NAME).search(text)
     return ColconFile(match[1] if match else "")
 
 
-def _settings(text: str) -> ColconFile:
+def _parse_settings(text: str) -> ColconFile:
     try:
         found = load_yaml(text)
         # As it is read back from the store: dates become text.
@@ -60,7 +60,7 @@ def _settings(text: str) -> ColconFile:
     return ColconFile(settings={name: value for name, value in pairs if isinstance(name, str)})
 
 
-def _name_in_setup(text: str) -> str:
+def _find_name_in_setup(text: str) -> str:
     call = _SETUP_CALL.search(text)
     match = _SETUP_NAME.search(text, call.end() - 1) if call else None
     if match is None or match[1]:

@@ -80,7 +80,7 @@ def read(data: bytes | IO[bytes]) -> Elf | None:
     except (OSError, MemoryError):
         raise
     except Exception as error:  # pyelftools raises whatever its parsers meet in damaged bytes
-        found["problem"] = f"no ELF file that can be read to its end ({_clause(error)})"
+        found["problem"] = f"no ELF file that can be read to its end ({_format_error(error)})"
     return Elf(**found)
 
 
@@ -104,11 +104,11 @@ class _Bounded:
         return self._stream.read(size)
 
 
-def _bounded(stream: IO[bytes]) -> Any:
+def _limit_stream(stream: IO[bytes]) -> Any:
     return _Bounded(stream)
 
 
-def _piece(stream: IO[bytes], start: int, size: int) -> bytes:
+def _read_piece(stream: IO[bytes], start: int, size: int) -> bytes:
     """A part of a file. Raises ValueError where the file ends before it does."""
     whole = stream.seek(0, io.SEEK_END)
     if start < 0 or size < 0 or start + size > whole:
@@ -123,7 +123,7 @@ def _read(stream: IO[bytes], found: dict[str, Any]) -> None:
     from elftools.elf.gnuversions import GNUVerDefSection, GNUVerNeedSection, GNUVerSymSection
     from elftools.elf.sections import SymbolTableSection
 
-    file = ELFFile(_bounded(stream))
+    file = ELFFile(_limit_stream(stream))
     found["machine"], found["bits"] = str(file["e_machine"]), file.elfclass
     found["program"] = file["e_type"] == "ET_EXEC"
     if file["e_type"] not in ("ET_EXEC", "ET_DYN"):
@@ -133,7 +133,7 @@ def _read(stream: IO[bytes], found: dict[str, Any]) -> None:
             found["program"] = True
         elif isinstance(segment, DynamicSegment):
             found["dynamic"] = True
-            _dynamic(segment, found)
+            _read_dynamic(segment, found)
     names: dict[int, str] = {}
     table, versions = None, None
     for section in file.iter_sections():
@@ -156,10 +156,10 @@ def _read(stream: IO[bytes], found: dict[str, Any]) -> None:
         elif isinstance(section, SymbolTableSection) and section["sh_type"] == "SHT_DYNSYM":
             table = section
     if table is not None:
-        _symbols(stream, file, table, versions, names, found)
+        _read_symbols(stream, file, table, versions, names, found)
 
 
-def _dynamic(segment: Any, found: dict[str, Any]) -> None:
+def _read_dynamic(segment: Any, found: dict[str, Any]) -> None:
     needed, run, old = [], [], []
     for tag in segment.iter_tags():
         kind = tag.entry.d_tag
@@ -178,30 +178,30 @@ def _dynamic(segment: Any, found: dict[str, Any]) -> None:
         raise _TooMuch("more libraries or folders than any file asks for")
 
 
-def _symbols(
+def _read_symbols(
     stream: IO[bytes], file: Any, table: Any, versions: Any, names: dict[int, str], found: dict[str, Any]
 ) -> None:
     import numpy
 
-    symbols, text = _table(stream, file, table)
+    symbols, text = _read_table(stream, file, table)
     count = len(symbols)
     given = numpy.zeros(count, "u2")
     if versions is not None and versions["sh_size"] // 2 >= count:
         order = "<" if file.little_endian else ">"
-        given = numpy.frombuffer(_piece(stream, versions["sh_offset"], 2 * count), order + "u2")
-    found["defined"] = int(_for_others(symbols).sum())
+        given = numpy.frombuffer(_read_piece(stream, versions["sh_offset"], 2 * count), order + "u2")
+    found["defined"] = int(_select_exported(symbols).sum())
     undefined = []
     places = numpy.flatnonzero((symbols["name"] != 0) & (symbols["section"] == 0))
     if len(places) > _UNDEFINED:
         raise _TooMuch("more symbols than any file asks for")
-    for index, raw in zip(places.tolist(), _names(text, symbols["name"][places].tolist()), strict=True):
+    for index, raw in zip(places.tolist(), _iterate_names(text, symbols["name"][places].tolist()), strict=True):
         name = raw.decode("utf-8", "replace")
         weak = int(symbols["info"][index]) >> 4 == _WEAK
         undefined.append(Undefined(name, names.get(int(given[index]) & 0x7FFF, ""), weak))
     found["undefined"] = tuple(undefined)
 
 
-def _table(stream: IO[bytes], file: Any, table: Any) -> tuple[Any, bytes]:
+def _read_table(stream: IO[bytes], file: Any, table: Any) -> tuple[Any, bytes]:
     """The symbols of a table as a numpy array, and the text that has their names."""
     import numpy
 
@@ -215,16 +215,16 @@ def _table(stream: IO[bytes], file: Any, table: Any) -> tuple[Any, bytes]:
     strings = file.get_section(table["sh_link"])
     if count > _SYMBOLS or strings["sh_size"] > _NAME_BYTES:
         raise _TooMuch("more symbols than any file has")
-    text = _piece(stream, strings["sh_offset"], strings["sh_size"])
-    return numpy.frombuffer(_piece(stream, table["sh_offset"], count * kind.itemsize), kind), text
+    text = _read_piece(stream, strings["sh_offset"], strings["sh_size"])
+    return numpy.frombuffer(_read_piece(stream, table["sh_offset"], count * kind.itemsize), kind), text
 
 
-def _for_others(symbols: Any) -> Any:
+def _select_exported(symbols: Any) -> Any:
     """Which of them are defined here and not local."""
     return (symbols["name"] != 0) & (symbols["section"] != 0) & ((symbols["info"] >> 4) != 0)
 
 
-def _names(text: bytes, starts: Iterable[int]) -> Iterator[bytes]:
+def _iterate_names(text: bytes, starts: Iterable[int]) -> Iterator[bytes]:
     """The names that begin at some places of a text. Raises _TooMuch when they overlap so that they are endless."""
     left = _NAME_BYTES
     for start in starts:
@@ -235,18 +235,18 @@ def _names(text: bytes, starts: Iterable[int]) -> Iterator[bytes]:
         yield name
 
 
-def defined(data: bytes | IO[bytes]) -> frozenset[str] | None:
+def read_defined_symbols(data: bytes | IO[bytes]) -> frozenset[str] | None:
     """The C++ symbols that a file has for others; None for one that is no ELF file, or cannot be read to its end."""
     from elftools.elf.elffile import ELFFile
 
     stream = io.BytesIO(data) if isinstance(data, bytes) else data
     try:
-        file = ELFFile(_bounded(stream))
+        file = ELFFile(_limit_stream(stream))
         section = next(file.iter_sections("SHT_DYNSYM"), None)  # a file has at most one
         if section is None:
             return frozenset()
-        symbols, text = _table(stream, file, section)
-        names = _names(text, symbols["name"][_for_others(symbols)].tolist())
+        symbols, text = _read_table(stream, file, section)
+        names = _iterate_names(text, symbols["name"][_select_exported(symbols)].tolist())
         return frozenset(name.decode("utf-8", "replace") for name in names if name.startswith(b"_Z"))
     except Exception:  # as in read()
         return None
@@ -263,7 +263,7 @@ class SymbolName(NamedTuple):
     scope: str
 
 
-def member(symbol: str) -> SymbolName | None:
+def parse_symbol(symbol: str) -> SymbolName | None:
     """What a mangled name of C++ is a member of; None for names that do not begin with plain identifiers.
 
     Source: the Itanium C++ ABI, section 5.1 (nested names, special names)."""
@@ -282,14 +282,14 @@ def member(symbol: str) -> SymbolName | None:
     return SymbolName("::".join(names), rest[:before] if nested else "") if names else None
 
 
-def _clause(error: Exception) -> str:
+def _format_error(error: Exception) -> str:
     return " ".join(str(error).split())[:80] or type(error).__name__
 
 
 _SONAME = re.compile(r"(.+?\.so)\.(.+)\Z")
 
 
-def stem_and_version(soname: str) -> tuple[str, str]:
+def split_soname(soname: str) -> tuple[str, str]:
     """`libpcl_common.so.1.12` gives (`libpcl_common.so`, `1.12`); without a version the second is empty."""
     match = _SONAME.match(soname)
     return (match[1], match[2]) if match else (soname, "")

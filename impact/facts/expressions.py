@@ -20,19 +20,19 @@ _ANY_CASE = re.compile(r"\(\?[a-zA-Z]*i")
 
 
 @lru_cache(maxsize=4096)
-def needed_words(expression: str, shortest: int = 4) -> tuple[tuple[str, ...], ...]:
+def find_needed(expression: str, shortest: int = 4) -> tuple[tuple[str, ...], ...]:
     """Words, or parts of them, that stand in whatever a regular expression matches: one of each tuple. shortest: the
     least number of characters of those that are told."""
-    return tuple(dict.fromkeys(_needed(_parse(expression), shortest)))
+    return tuple(dict.fromkeys(_find_needed(_parse(expression), shortest)))
 
 
 def has_needed(expression: str, text: str) -> bool:
     """False where a text shows at once that an expression is not found in it."""
-    return all(any(word in text for word in words) for words in needed_words(expression, 2))
+    return all(any(word in text for word in words) for words in find_needed(expression, 2))
 
 
 @lru_cache(maxsize=4096)
-def last_literals(expression: str) -> tuple[str, ...]:
+def find_last_literals(expression: str) -> tuple[str, ...]:
     """Strings with one of which whatever a regular expression matches ends, blanks behind it aside; empty where they
     are not known."""
     return _ends(_parse(expression))
@@ -43,7 +43,7 @@ def _parse(expression: str) -> Sequence[Any]:
     return [] if _ANY_CASE.search(expression) else [*parser.parse(expression)]
 
 
-def _needed(parts: Sequence[_Part], shortest: int) -> Iterator[tuple[str, ...]]:
+def _find_needed(parts: Sequence[_Part], shortest: int) -> Iterator[tuple[str, ...]]:
     run = ""
     for code, value in [*parts, (None, None)]:
         if code is codes.LITERAL:
@@ -54,13 +54,13 @@ def _needed(parts: Sequence[_Part], shortest: int) -> Iterator[tuple[str, ...]]:
         yield from ((word,) for word in _WORD.findall(run) if len(word) >= shortest)
         run = ""
         if code is codes.SUBPATTERN:
-            yield from _needed(value[-1], shortest)
+            yield from _find_needed(value[-1], shortest)
         elif code is codes.ASSERT:
-            yield from _needed(value[1], shortest)
+            yield from _find_needed(value[1], shortest)
         elif code in _REPEATS and value[0]:
-            yield from _needed(value[2], shortest)
+            yield from _find_needed(value[2], shortest)
         elif code is codes.BRANCH:
-            ways = [next(_needed(way, shortest), ()) for way in value[1]]
+            ways = [next(_find_needed(way, shortest), ()) for way in value[1]]
             if all(ways):
                 yield tuple(word for words in ways for word in words)
 

@@ -20,11 +20,11 @@ from typing import Any
 import msgspec
 
 from ...edges import processes
-from ...edges.limits import size_text
+from ...edges.limits import format_size
 from ..tree import PathProblem, Tree
 from . import kinds
 from .place import Problem
-from .store import Store, fact_key, pack, unpack
+from .store import Store, make_fact_key, pack, unpack
 
 # Starting workers and importing the parsers in each costs about as much as parsing this many bytes here.
 ALONE_BYTES = 400_000
@@ -65,11 +65,11 @@ class ExtractedFacts:
         self._fresh: list[tuple[bytes, bytes]] = []
         self._deferring = False
 
-    def paths(self, *wanted: str) -> list[str]:
+    def list_paths(self, *wanted: str) -> list[str]:
         """Paths of these kinds, sorted; of every kind when none is given."""
         return [path for path, kind in self.kinds.items() if not wanted or kind in wanted]
 
-    def facts(self, path: str) -> Any:
+    def get_facts(self, path: str) -> Any:
         """The facts of a file. Raises KeyError when the path is not in `kinds`.
 
         Files of equal content and kind share one object."""
@@ -91,17 +91,17 @@ class ExtractedFacts:
         kinds.EXTRACTORS. table: of kinds.SEARCHES, whose files have facts, what to look for; its `stamp` differs
         whenever it does.
         """
-        version = _version(kind) + (table.stamp if table is not None else "")
+        version = _find_version(kind) + (table.stamp if table is not None else "")
         rows: dict[str, bytes] = {}
         for path in paths:
             content = self.ids.get(path) or self._others.get(path)
             if content is None:  # of a file that no kind was asked of before
                 try:
-                    content = self._others[path] = self.tree.content_id(path)
+                    content = self._others[path] = self.tree.find_content_id(path)
                 except OSError as error:
                     on_error(path, error)
                     continue
-            rows[path] = fact_key(content, version)
+            rows[path] = make_fact_key(content, version)
         known = self._looked
         for row, packed in self.store.get({row for row in rows.values() if row not in known}):
             with contextlib.suppress(ValueError, msgspec.MsgspecError):
@@ -116,11 +116,11 @@ class ExtractedFacts:
                 on_error(path, error)
                 continue
             if kind in kinds.SEARCHES:
-                found = kinds.search(kind, data, self.facts(path).facts, table)
+                found = kinds.search(kind, data, self.get_facts(path).facts, table)
             else:
                 found = kinds.extract(kind, data)
             known[row] = found.facts
-            if row == fact_key(content, version):  # else it has just been written to
+            if row == make_fact_key(content, version):  # else it has just been written to
                 with contextlib.suppress(UnicodeEncodeError, OverflowError, RecursionError):
                     fresh.append((row, pack(kinds.encode(found))))
         self._fresh += fresh
@@ -129,7 +129,7 @@ class ExtractedFacts:
         return {path: known[row] for path, row in rows.items() if row in known}
 
     @contextlib.contextmanager
-    def deferring(self) -> Iterator[None]:
+    def defer_storing(self) -> Iterator[None]:
         """Stores what look() makes meanwhile at once, at the end."""
         self._deferring = True
         try:
@@ -152,7 +152,7 @@ class ExtractedFacts:
             if kind is not None:
                 key = (self.ids[path], kind)
                 if key not in self._decoded and key not in self._packed:
-                    wanted[_key(*key)] = key
+                    wanted[_make_key(*key)] = key
         for row, data in self.store.get(wanted):
             self._packed[wanted[row]] = data
 
@@ -172,16 +172,16 @@ class ExtractedFacts:
                 pass
         # The store lost it, or holds something else under its name: the file is still there.
         data, content = self.tree.read_with_id(path, _largest(key[1]))
-        ((_, ((_, kind, made, failure),)),) = _extracted(iter([[(path, content, (key[1],), data)]]), 1, {})
+        ((_, ((_, kind, made, failure),)),) = _extract_chunks(iter([[(path, content, (key[1],), data)]]), 1, {})
         if failure:
-            return kinds.FileFacts(kind, kinds.empty(kind, Problem(1, failure)))
-        self.store.put([(_key(content, kind), made)])
+            return kinds.FileFacts(kind, kinds.make_empty(kind, Problem(1, failure)))
+        self.store.put([(_make_key(content, kind), made)])
         return kinds.decode(kind, unpack(made))
 
 
-def gather(
+def extract_all(
     tree: Tree, store: Store, *, jobs: int | None = None, progress: Callable[[int, int], None] | None = None,
-    kind_of: Callable[[str], str | None] = kinds.kind_of, second: Callable[[str], str | None] | None = None,
+    kind_of: Callable[[str], str | None] = kinds.find_kind, second: Callable[[str], str | None] | None = None,
     along: Callable[[], Searches] = dict,
 ) -> ExtractedFacts:  # fmt: skip
     """Finds or makes the facts of every file whose kind is known.
@@ -194,17 +194,17 @@ def gather(
     """
     gathered = ExtractedFacts(tree, store)
     beside = gathered.second = ExtractedFacts(tree, store) if second is not None else None
-    key = tree.memory_key()
-    entries = tree.entries()
+    key = tree.make_memory_key()
+    entries = tree.list_entries()
     if key is not None:
-        memory = store.memo("stat", key)
+        memory = store.find_memo("stat", key)
         if memory is not None:
             tree.recall(memory)
     gathered.problems.extend(tree.problems)
 
     unread: list[_Unread] = []
     known: dict[bytes, tuple[int, str, str]] = {}
-    known_id = tree.known_id
+    known_id = tree.find_known_id
     for entry in entries:
         path, size = entry.path, entry.size
         kind = kind_of(path)
@@ -213,7 +213,7 @@ def gather(
             continue
         largest = max(_largest(each) for each in (kind, other) if each is not None)
         if size > largest:
-            message = f"larger than {size_text(largest)} ({size_text(size)}), taken for generated and not read"
+            message = f"larger than {format_size(largest)} ({format_size(size)}), taken for generated and not read"
             gathered.problems.append(PathProblem(path, message))
             continue
         content = known_id(path)
@@ -224,7 +224,7 @@ def gather(
                 look.kinds[path] = each
                 if content is not None:
                     look.ids[path] = content
-                    known.setdefault(_key(content, each), (size, path, each))
+                    known.setdefault(_make_key(content, each), (size, path, each))
     present = store.find(known)
     lacking: dict[str, tuple[int, list[str]]] = {}
     for row, (size, path, kind) in known.items():
@@ -234,7 +234,7 @@ def gather(
 
     if unread:
         try:
-            _make(gathered, unread, jobs or processes.cores(), progress, along())
+            _make(gathered, unread, jobs or processes.count_cores(), progress, along())
         finally:
             _remember(tree, store, key)
             gathered.problems.sort()
@@ -243,20 +243,20 @@ def gather(
     return gathered
 
 
-def _key(content: str, kind: str) -> bytes:
-    return fact_key(content, _version(kind))
+def _make_key(content: str, kind: str) -> bytes:
+    return make_fact_key(content, _find_version(kind))
 
 
-_largest = cache(kinds.largest)
+_largest = cache(kinds.find_size_limit)
 
 
 @cache
-def _version(kind: str) -> str:
-    return kinds.version_of(kind)
+def _find_version(kind: str) -> str:
+    return kinds.make_version(kind)
 
 
 def _remember(tree: Tree, store: Store, key: bytes | None) -> None:
-    memory = tree.memory() if key is not None else None
+    memory = tree.make_memory() if key is not None else None
     if key is not None and memory is not None:
         store.remember("stat", [(key, memory)])
 
@@ -271,19 +271,19 @@ def _make(
     total = sum(size for size, _, _ in unread)
     done = 0
     paths_of: dict[tuple[str, str], list[tuple[ExtractedFacts, str]]] = {}
-    for look in _looks(gathered):
+    for look in _list_looks(gathered):
         for path, content in look.ids.items():
             paths_of.setdefault((content, look.kinds[path]), []).append((look, path))
 
-    def advance(size: int) -> None:
+    def report_progress(size: int) -> None:
         nonlocal done
         done += size
         if progress is not None:
             progress(min(done, total), total)
 
-    chunks = _chunks(gathered, unread, paths_of, advance)
+    chunks = _iterate_chunks(gathered, unread, paths_of, report_progress)
     stamps = {kind: table.stamp for kind, table in along.values()}
-    with closing(_extracted(chunks, jobs, along)) as finished:  # an interrupt must reach the workers at once
+    with closing(_extract_chunks(chunks, jobs, along)) as finished:  # an interrupt must reach the workers at once
         for chunk, results in finished:
             rows = []
             for content, kind, packed, failure in results:
@@ -291,28 +291,28 @@ def _make(
                     for look, path in paths_of[content, kind]:
                         _drop(look, path, failure)
                 else:
-                    rows.append((fact_key(content, _version(kind) + stamps.get(kind, "")), packed))
+                    rows.append((make_fact_key(content, _find_version(kind) + stamps.get(kind, "")), packed))
                     gathered.extracted += kind not in stamps
             gathered.store.put(rows)
-            advance(sum(len(item[3]) for item in chunk))
+            report_progress(sum(len(item[3]) for item in chunk))
 
 
-def _looks(gathered: ExtractedFacts) -> list[ExtractedFacts]:
+def _list_looks(gathered: ExtractedFacts) -> list[ExtractedFacts]:
     return [gathered] if gathered.second is None else [gathered, gathered.second]
 
 
-def _chunks(
+def _iterate_chunks(
     gathered: ExtractedFacts,
     unread: list[_Unread],
     paths_of: dict[tuple[str, str], list[tuple[ExtractedFacts, str]]],
     advance: Callable[[int], None],
 ) -> Iterator[list[_Item]]:
     """Reads files as they are needed and yields those whose content has no facts yet, about _CHUNK_BYTES at a time."""
-    looks = _looks(gathered)
+    looks = _list_looks(gathered)
     seen: set[tuple[str, str]] = set()
     chunk: list[_Item] = []
     size = 0
-    for batch in _batches(unread):
+    for batch in _iterate_batches(unread):
         rows: set[bytes] = set()
         items: list[tuple[str, str, dict[str, bytes], bytes]] = []
         for expected, path, those in batch:
@@ -320,18 +320,18 @@ def _chunks(
                 data, content = gathered.tree.read_with_id(path, max(map(_largest, those)))
             except OSError as error:
                 reason = error.strerror or type(error).__name__
-                _unreadable(looks, path, f"cannot be read: {reason[:1].lower()}{reason[1:]}")
+                _mark_unreadable(looks, path, f"cannot be read: {reason[:1].lower()}{reason[1:]}")
                 advance(expected)
                 continue
             if data.startswith(_LFS_POINTER):
-                _unreadable(looks, path, "a Git LFS pointer, its content is not here (git lfs pull)")
+                _mark_unreadable(looks, path, "a Git LFS pointer, its content is not here (git lfs pull)")
                 advance(expected)
                 continue
             for look in looks:
                 if path in look.kinds and look.ids.get(path) != content:
                     look.ids[path] = content
                     paths_of.setdefault((content, look.kinds[path]), []).append((look, path))
-            fresh = {kind: _key(content, kind) for kind in those if (content, kind) not in seen}
+            fresh = {kind: _make_key(content, kind) for kind in those if (content, kind) not in seen}
             if not fresh:
                 advance(expected)
                 continue
@@ -353,7 +353,7 @@ def _chunks(
         yield chunk
 
 
-def _batches(unread: list[_Unread]) -> Iterator[list[_Unread]]:
+def _iterate_batches(unread: list[_Unread]) -> Iterator[list[_Unread]]:
     batch: list[_Unread] = []
     size = 0
     for file in unread:
@@ -366,7 +366,7 @@ def _batches(unread: list[_Unread]) -> Iterator[list[_Unread]]:
         yield batch
 
 
-def _unreadable(looks: list[ExtractedFacts], path: str, message: str) -> None:
+def _mark_unreadable(looks: list[ExtractedFacts], path: str, message: str) -> None:
     """Leaves a path out of every look; the first names it."""
     _drop(looks[0], path, message)
     for look in looks[1:]:
@@ -403,7 +403,7 @@ def _extract(along: Searches, chunk: list[_Item]) -> list[_Result]:
     return results
 
 
-def _extracted(
+def _extract_chunks(
     chunks: Iterator[list[_Item]], jobs: int, along: Searches
 ) -> Generator[tuple[list[_Item], list[_Result]], None, None]:
     """Chunks with their results, from one process when there is little to do, else from several."""
@@ -417,17 +417,17 @@ def _extracted(
     else:
         jobs = 1
     everything = chain(first, chunks)
-    if processes.may_fork() and not (jobs > 1 and _scheduler_chosen()):
-        yield from _in_workers(everything, jobs, partial(_extract, along))
+    if processes.may_fork() and not (jobs > 1 and _is_in_joblib_context()):
+        yield from _extract_in_workers(everything, jobs, partial(_extract, along))
     elif jobs > 1:
-        yield from _by_joblib(everything, jobs, partial(_extract, along))
+        yield from _extract_by_joblib(everything, jobs, partial(_extract, along))
     else:
         for chunk in everything:
             for item in chunk:
                 yield [item], _extract(along, [item])
 
 
-def _scheduler_chosen() -> bool:
+def _is_in_joblib_context() -> bool:
     """True inside joblib.parallel_config(...): whoever calls us has decided where work runs."""
     if "joblib" not in sys.modules:
         return False
@@ -436,14 +436,14 @@ def _scheduler_chosen() -> bool:
     return type(get_active_backend()[0]).__name__ not in ("LokyBackend", "SequentialBackend")
 
 
-def _by_joblib(
+def _extract_by_joblib(
     chunks: Iterator[list[_Item]], jobs: int, extract: _Extract
 ) -> Iterator[tuple[list[_Item], list[_Result]]]:
     """Chunks in whatever joblib runs. In waves: joblib would take from the iterator in a thread of its own, and reading
     and storing belong to this one."""
     from joblib import Parallel, delayed, effective_n_jobs
 
-    if _scheduler_chosen():
+    if _is_in_joblib_context():
         jobs = effective_n_jobs(-1)
     with Parallel(n_jobs=jobs) as parallel:
         while wave := list(islice(chunks, _WAVE_PER_JOB * jobs)):
@@ -451,7 +451,7 @@ def _by_joblib(
             yield from zip(wave, results, strict=True)
 
 
-def _in_workers(
+def _extract_in_workers(
     chunks: Iterator[list[_Item]], jobs: int, extract: _Extract
 ) -> Iterator[tuple[list[_Item], list[_Result]]]:
     """Chunks in forked processes. A file that kills its process, or that takes too much time or memory, is found, named
@@ -469,7 +469,7 @@ def _in_workers(
                 workers.give(alone.popleft(), fresh=True)
             if not workers.busy:
                 return
-            for chunk, results in workers.finished():
+            for chunk, results in workers.wait_for_finished():
                 if not isinstance(results, processes.Died):
                     yield chunk, results
                     continue
@@ -478,23 +478,23 @@ def _in_workers(
                 if not 0 <= results.part < len(parts) or not (results.timed or first):
                     suspects = parts if results.part < 0 else parts[results.part : results.part + 1]
                     if len(parts) == 1 and results.fresh:
-                        yield chunk, [_failure(*parts[0], results.why)]
+                        yield chunk, [_make_failure(*parts[0], results.why)]
                         continue
                     alone.extend([(*item[:2], (kind,), item[3])] for item, kind in suspects)
                 else:
                     suspects = parts[results.part : results.part + 1]
                     item, kind = suspects[0]
-                    yield [(*item[:2], (kind,), b"")], [_failure(item, kind, results.why)]
-                rest = _without(chunk, suspects)
+                    yield [(*item[:2], (kind,), b"")], [_make_failure(item, kind, results.why)]
+                rest = _drop_kinds(chunk, suspects)
                 if rest:
                     waiting.append(rest)
 
 
-def _failure(item: _Item, kind: str, why: str) -> _Result:
+def _make_failure(item: _Item, kind: str, why: str) -> _Result:
     return item[1], kind, b"", f"the {kind} extractor {why} on this file"
 
 
-def _without(chunk: list[_Item], parts: list[tuple[_Item, str]]) -> list[_Item]:
+def _drop_kinds(chunk: list[_Item], parts: list[tuple[_Item, str]]) -> list[_Item]:
     """A chunk without some kinds of facts of its files."""
     done = {(item[1], kind) for item, kind in parts}
     rest = ((*item[:2], tuple(kind for kind in item[2] if (item[1], kind) not in done), item[3]) for item in chunk)

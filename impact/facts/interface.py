@@ -70,7 +70,7 @@ TIMES = frozenset(("time", "duration"))
 SECTIONS = {"msg": ("message",), "srv": ("request", "response"), "action": ("goal", "result", "feedback")}
 
 
-def full_name(type_: str, package: str) -> str:
+def make_full_name(type_: str, package: str) -> str:
     """`package/Name` of the message that a field's type names, as either generation of ROS writes it. type_: no
     primitive type, without bounds. package: whose definition it stands in."""
     if type_ == "Header":
@@ -95,10 +95,10 @@ def extract(data: bytes, kind: str) -> Interface:
     """Facts of a definition of the kind msg, srv, action or idl; never raises. A line that is neither a field nor a
     constant is a problem, the others count."""
     text = decode(data)
-    return _idl(text) if kind == "idl" else _ros(text, kind)
+    return _parse_idl(text) if kind == "idl" else _parse_ros(text, kind)
 
 
-def _ros(text: str, kind: str) -> Interface:
+def _parse_ros(text: str, kind: str) -> Interface:
     names = SECTIONS[kind]
     sections: list[Section] = []
     fields: list[Field] = []
@@ -137,7 +137,7 @@ def _ros(text: str, kind: str) -> Interface:
             continue
         found = DECLARATION.match(line)
         if found is None:
-            problems.append(Problem(number, f"`{_shortened(line)}` is neither a field nor a constant"))
+            problems.append(Problem(number, f"`{_shorten(line)}` is neither a field nor a constant"))
             unread.append((number, line))
             above.clear()
             annotations.clear()
@@ -145,7 +145,7 @@ def _ros(text: str, kind: str) -> Interface:
         type_, name = found["type"], found["name"]
         value = found["constant"]
         if value is not None:
-            constants.append(Constant(name, type_, _constant(type_, value), number, column))
+            constants.append(Constant(name, type_, _normalize_constant(type_, value), number, column))
         else:
             default, comment = "", line[found.end("name") :].strip()
             if found["default"] is not None:
@@ -169,11 +169,11 @@ def _ros(text: str, kind: str) -> Interface:
     return Interface(kind, tuple(sections), "", tuple(problems), unread=tuple(unread))
 
 
-def _shortened(text: str) -> str:
+def _shorten(text: str) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _constant(type_: str, value: str) -> str:
+def _normalize_constant(type_: str, value: str) -> str:
     if type_.startswith(("string", "wstring")):
         quoted = QUOTED.match(value)
         return quoted.group(1) if quoted is not None else value.strip()
@@ -244,7 +244,7 @@ class _Idl:
     def peek(self) -> str:
         return self.tokens[self.at].text if self.at < len(self.tokens) else ""
 
-    def next(self) -> _Token:
+    def take_token(self) -> _Token:
         if self.at >= len(self.tokens):
             raise _Unreadable("ends in the middle")
         self.at += 1
@@ -257,87 +257,87 @@ class _Idl:
         return self.tokens[self.at].offset
 
     def expect(self, text: str) -> None:
-        token = self.next()
+        token = self.take_token()
         if token.text != text:
-            raise _Unreadable(f"`{_shortened(token.text)}` stands where `{text}` should")
+            raise _Unreadable(f"`{_shorten(token.text)}` stands where `{text}` should")
 
-    def word(self) -> _Token:
-        token = self.next()
+    def take_word(self) -> _Token:
+        token = self.take_token()
         if token.kind != "name":
-            raise _Unreadable(f"`{_shortened(token.text)}` stands where a name should")
+            raise _Unreadable(f"`{_shorten(token.text)}` stands where a name should")
         return token
 
-    def line(self) -> int:
+    def get_line(self) -> int:
         at = min(self.at, len(self.tokens)) - 1
         return self.place(self.tokens[at].offset)[0] if self.tokens else 1
 
 
-def _idl(text: str) -> Interface:
+def _parse_idl(text: str) -> Interface:
     idl = _Idl(text)
     annotations: list[str] = []
     while idl.at < len(idl.tokens):
         try:
-            _idl_item(idl, annotations)
+            _parse_idl_item(idl, annotations)
         except _Unreadable as error:
-            idl.problems.append(Problem(idl.line(), str(error)))
+            idl.problems.append(Problem(idl.get_line(), str(error)))
             annotations.clear()
-            while idl.at < len(idl.tokens) and idl.next().text not in (";", "}"):
+            while idl.at < len(idl.tokens) and idl.take_token().text not in (";", "}"):
                 pass
     if idl.modules and not idl.problems:
-        idl.problems.append(Problem(idl.line(), "ends in the middle"))
+        idl.problems.append(Problem(idl.get_line(), "ends in the middle"))
     return _assemble(idl)
 
 
-def _idl_item(idl: _Idl, annotations: list[str]) -> None:
+def _parse_idl_item(idl: _Idl, annotations: list[str]) -> None:
     """One step at module level: opens or closes a module, or reads a struct, constant or typedef."""
     token = idl.tokens[idl.at]
     if token.kind == "annotation":
-        annotations.append(_annotation(idl))
+        annotations.append(_parse_annotation(idl))
         return
-    idl.next()
+    idl.take_token()
     if token.text == "module":
-        idl.modules.append(idl.word().text)
+        idl.modules.append(idl.take_word().text)
         idl.expect("{")
     elif token.text == "}":
         if idl.modules:
             idl.modules.pop()
     elif token.text == "struct":
-        _struct(idl)
+        _parse_struct(idl)
     elif token.text == "const":
         start = idl.start()
-        type_ = _type(idl)[0]
-        name = idl.word()
+        type_ = _parse_type(idl)[0]
+        name = idl.take_word()
         idl.expect("=")
-        first = idl.next()
+        first = idl.take_token()
         last = first
         while idl.peek() not in (";", ""):
-            last = idl.next()
+            last = idl.take_token()
         value = idl.text[first.offset : last.offset + len(last.text)]
         idl.expect(";")
         owner = idl.modules[-1] if idl.modules else ""
         idl.constants.setdefault(owner, []).append(Constant(name.text, type_, value, *idl.place(start)))
     elif token.text == "typedef":
-        type_, array = _type(idl)
-        name = idl.word().text
-        own = _bounds(idl)
+        type_, array = _parse_type(idl)
+        name = idl.take_word().text
+        own = _parse_bounds(idl)
         idl.typedefs[name] = (type_, own or array)
         idl.expect(";")
     elif token.text == "enum":
-        idl.word()
-        while idl.next().text != "}":
+        idl.take_word()
+        while idl.take_token().text != "}":
             pass
     elif token.text != ";":
-        raise _Unreadable(f"`{_shortened(token.text)}` opens nothing that ROS interfaces are made of")
+        raise _Unreadable(f"`{_shorten(token.text)}` opens nothing that ROS interfaces are made of")
     annotations.clear()
 
 
-def _annotation(idl: _Idl) -> str:
-    first = idl.next()
+def _parse_annotation(idl: _Idl) -> str:
+    first = idl.take_token()
     end = first.offset + len(first.text)
     if idl.peek() == "(":
         depth = 0
         while True:
-            token = idl.next()
+            token = idl.take_token()
             depth += (token.text == "(") - (token.text == ")")
             if depth == 0:
                 end = token.offset + 1
@@ -345,29 +345,29 @@ def _annotation(idl: _Idl) -> str:
     return idl.text[first.offset : end]
 
 
-def _struct(idl: _Idl) -> None:
-    name = idl.word().text
+def _parse_struct(idl: _Idl) -> None:
+    name = idl.take_word().text
     fields: list[Field] = []
     idl.structs.append((name, tuple(idl.modules), fields))
     idl.expect("{")
     annotations: list[str] = []
     while idl.peek() != "}":
         if idl.at < len(idl.tokens) and idl.tokens[idl.at].kind == "annotation":
-            annotations.append(_annotation(idl))
+            annotations.append(_parse_annotation(idl))
             continue
         start = idl.start()
-        type_, array = _type(idl)
+        type_, array = _parse_type(idl)
         while True:
-            field = idl.word()
-            own = _bounds(idl)
-            default = next((_argument(a) for a in annotations if a.startswith("@default")), "")
-            comment = next((_argument(a) for a in annotations if a.startswith("@verbatim")), "")
+            field = idl.take_word()
+            own = _parse_bounds(idl)
+            default = next((_parse_argument(a) for a in annotations if a.startswith("@default")), "")
+            comment = next((_parse_argument(a) for a in annotations if a.startswith("@verbatim")), "")
             fields.append(
                 Field(field.text, type_, own or array, default, *idl.place(start), comment, tuple(annotations))
             )
             if idl.peek() != ",":
                 break
-            idl.next()
+            idl.take_token()
         annotations.clear()
         idl.expect(";")
     idl.expect("}")
@@ -376,23 +376,23 @@ def _struct(idl: _Idl) -> None:
 STRINGS = re.compile(r"\"((?:[^\"\\]|\\.)*)(?:\"|\\?\Z)")
 
 
-def _argument(annotation: str) -> str:
+def _parse_argument(annotation: str) -> str:
     """The value of `@default (value=1)`, or the text of `@verbatim (language="comment", text="a" "b")`."""
     if annotation.startswith("@verbatim"):
         return "".join(STRINGS.findall(annotation.partition("text")[2])).replace("\\n", "\n")
     return annotation.partition("=")[2].rstrip(") \t\n").strip()
 
 
-def _type(idl: _Idl) -> tuple[str, str]:
+def _parse_type(idl: _Idl) -> tuple[str, str]:
     """A type in the words of .msg files, and its array part."""
-    word = idl.word().text
+    word = idl.take_word().text
     if word == "sequence":
         idl.expect("<")
-        inner, array = _type(idl)
+        inner, array = _parse_type(idl)
         bound = ""
         if idl.peek() == ",":
-            idl.next()
-            bound = "<=" + idl.next().text
+            idl.take_token()
+            bound = "<=" + idl.take_token().text
         idl.expect(">")
         if array:
             raise _Unreadable("a sequence of sequences has no place in ROS interfaces")
@@ -400,13 +400,13 @@ def _type(idl: _Idl) -> tuple[str, str]:
     if word in ("string", "wstring"):
         if idl.peek() != "<":
             return word, ""
-        idl.next()
-        bound = idl.next().text
+        idl.take_token()
+        bound = idl.take_token().text
         idl.expect(">")
         return f"{word}<={bound}", ""
     if word in ("unsigned", "long"):
         while idl.peek() in ("long", "short", "double"):
-            word += " " + idl.next().text
+            word += " " + idl.take_token().text
     if word in IDL_TYPES:
         return IDL_TYPES[word], ""
     if word in idl.typedefs:
@@ -414,12 +414,12 @@ def _type(idl: _Idl) -> tuple[str, str]:
     return re.sub(r"\s*::\s*", "/", word).lstrip("/"), ""
 
 
-def _bounds(idl: _Idl) -> str:
+def _parse_bounds(idl: _Idl) -> str:
     """The `[3]` behind a name; of several dimensions the product, as that many values are sent."""
     sizes: list[str] = []
     while idl.peek() == "[":
-        idl.next()
-        sizes.append(idl.next().text)
+        idl.take_token()
+        sizes.append(idl.take_token().text)
         idl.expect("]")
     if len(sizes) < 2:
         return f"[{sizes[0]}]" if sizes else ""

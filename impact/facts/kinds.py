@@ -10,8 +10,8 @@ from typing import Any, Generic, TypeVar
 
 import msgspec
 
-from ...edges.limits import limits, limits_stamp, size_text
-from ..source_keys import source_key
+from ...edges.limits import format_limits, format_size, get_limits
+from ..source_keys import compute_source_key
 from .allow import allows
 from .distros import DistroFile, find_distros
 from .place import Allow, Problem
@@ -105,7 +105,7 @@ PROSE = frozenset({
 })  # fmt: skip
 
 
-def kind_of(path: str) -> str | None:
+def find_kind(path: str) -> str | None:
     """The kind of facts a file holds, by its name alone; None for files that are of no interest. Upper and lower case
     count the same, as on machines where a workspace was written on another file system."""
     name = path.rpartition("/")[2].lower()
@@ -136,9 +136,9 @@ def kind_of(path: str) -> str | None:
     return BY_ENDING.get(ending)
 
 
-def largest(kind: str) -> int:
+def find_size_limit(kind: str) -> int:
     """Bytes above which a file of a kind is taken for generated, or for an attack, and not read."""
-    budget = limits()
+    budget = get_limits()
     if "." in kind:
         return getattr(budget, import_module(_module_of(kind)).LIMITS[kind.partition(":")[2]])
     module = EXTRACTORS[kind][0]
@@ -162,15 +162,15 @@ _BUDGETS = {
 }
 
 
-def version_of(kind: str) -> str:
+def make_version(kind: str) -> str:
     """The part of a store key that changes when the code of an extractor does, or what it may read at most."""
     modules = {_module_of(each) for each in (kind, *_OTHERS_READ_TOO.get(kind, ()))} - {""}
-    return f"{kind}.{source_key(_HERE, *sorted(modules))}{limits_stamp()}"
+    return f"{kind}.{compute_source_key(_HERE, *sorted(modules))}{format_limits()}"
 
 
-def version_of_all() -> str:
+def make_overall_version() -> str:
     """The same for all extractors together."""
-    return source_key(_HERE, *sorted({_module_of(kind) for kind in EXTRACTORS} - {""}))
+    return compute_source_key(_HERE, *sorted({_module_of(kind) for kind in EXTRACTORS} - {""}))
 
 
 def _module_of(kind: str) -> str:
@@ -188,7 +188,7 @@ SHELLS = re.compile(rb"#!.*\b(?:ba|z|da|k)?sh\b")
 PYTHONS = re.compile(rb"#!.*python")
 
 
-def script_kind(data: bytes) -> str:
+def find_script_kind(data: bytes) -> str:
     """`python` or `shell` by the first line, `script` when it is neither. A dynamic_reconfigure .cfg is Python even
     where the first line was forgotten."""
     first = data[:256].partition(b"\n")[0]
@@ -205,54 +205,54 @@ def script_kind(data: bytes) -> str:
 def extract(kind: str, data: bytes) -> FileFacts[Any]:
     """Facts of a file of a kind as given by kind_of(); never raises: what fails is a Problem of empty facts."""
     if kind == "script":
-        kind = script_kind(data)
+        kind = find_script_kind(data)
         if kind == "script":
             return FileFacts(kind, None)
     if kind == "flow_script":
-        if script_kind(data) != "python":
+        if find_script_kind(data) != "python":
             return FileFacts(kind, None)
         kind = "flow_python"
-    if len(data) > largest(kind):
-        return FileFacts(kind, empty(kind, Problem(1, f"larger than {size_text(largest(kind))}")))
-    return FileFacts(kind, _contained(kind, lambda: _extracted(kind, data)), allows(data), find_distros(data))
+    if len(data) > find_size_limit(kind):
+        return FileFacts(kind, make_empty(kind, Problem(1, f"larger than {format_size(find_size_limit(kind))}")))
+    return FileFacts(kind, _catch_errors(kind, lambda: _extract_content(kind, data)), allows(data), find_distros(data))
 
 
 def search(kind: str, data: bytes, facts: Any, table: Any) -> FileFacts[Any]:
     """What one of the SEARCHES finds in a file; never raises, as extract(). facts: those of the file, as extracted by
     its name. table: what to look for; a store key names it beside the kind."""
-    return FileFacts(kind, _contained(kind, lambda: _extractor(kind)(data, facts, table)))
+    return FileFacts(kind, _catch_errors(kind, lambda: _load_extractor(kind)(data, facts, table)))
 
 
-def _extractor(kind: str) -> Callable[..., Any]:
+def _load_extractor(kind: str) -> Callable[..., Any]:
     return getattr(import_module(_module_of(kind)), kind if kind in SEARCHES else "extract")
 
 
-def _extracted(kind: str, data: bytes) -> Any:
-    read = _extractor(kind)
+def _extract_content(kind: str, data: bytes) -> Any:
+    read = _load_extractor(kind)
     of_kind = kind in EXTRACTORS and EXTRACTORS[kind][0] in WITH_KIND
     variant = kind if of_kind else kind.partition(":")[2]
     return read(data, variant) if variant else read(data)
 
 
-def _contained(kind: str, make: Callable[[], Any]) -> Any:
+def _catch_errors(kind: str, make: Callable[[], Any]) -> Any:
     """What is made, within the limits, or empty facts with a problem that says why it failed."""
     try:
-        return _within_limits(make())
+        return _cut_lists(make())
     except (MemoryError, ImportError, OSError):
         raise  # of this run and not of the file: such facts must not be remembered
     except RecursionError:
-        return empty(kind, Problem(1, "nested too deeply to be read"))
+        return make_empty(kind, Problem(1, "nested too deeply to be read"))
     except Exception as error:  # one file must not end the run: what broke is named with it
-        return empty(kind, Problem(1, f"cannot be read: {type(error).__name__}: {error}"[:200]))
+        return make_empty(kind, Problem(1, f"cannot be read: {type(error).__name__}: {error}"[:200]))
 
 
 # Sets of names, which are looked up and not gone through; and what its extractor has a limit of its own for.
 _LOOKED_UP = frozenset(("words", "qualified", "mentioned", "entries"))
 
 
-def _within_limits(facts: Any) -> Any:
+def _cut_lists(facts: Any) -> Any:
     """The same facts; lists that are longer than any person or generator writes are cut, which is a problem."""
-    most = limits().items
+    most = get_limits().items
     cut: dict[str, Any] = {}
     for field in type(facts).__struct_fields__:
         value = getattr(facts, field)
@@ -265,9 +265,9 @@ def _within_limits(facts: Any) -> Any:
     return msgspec.structs.replace(facts, **{**cut, "problems": problems[:most]})
 
 
-def empty(kind: str, *problems: Problem) -> Any:
+def make_empty(kind: str, *problems: Problem) -> Any:
     """Facts of a kind that say nothing but their problems."""
-    struct = _struct(kind)
+    struct = _get_type(kind)
     blank = {"problems": problems}
     values: list[Any] = []
     for field in msgspec.structs.fields(struct):
@@ -281,7 +281,7 @@ def empty(kind: str, *problems: Problem) -> Any:
 
 
 @cache
-def _struct(kind: str) -> type[Any]:
+def _get_type(kind: str) -> type[Any]:
     struct = EXTRACTORS[kind][1] if kind in EXTRACTORS else "Facts"
     return getattr(import_module(_module_of(kind)), struct)
 
@@ -304,7 +304,7 @@ def decode(kind: str, data: bytes) -> FileFacts[Any]:
             kind = _raw.decode(data).kind
             if kind not in EXTRACTORS:
                 raise msgspec.ValidationError(f"no kind of facts is called `{kind}`")
-        return _decoder(kind).decode(data)
+        return _make_decoder(kind).decode(data)
     except (UnicodeDecodeError, RecursionError) as error:
         raise msgspec.DecodeError(f"these bytes are no facts: {error}") from error
 
@@ -313,5 +313,5 @@ _raw = msgspec.msgpack.Decoder(FileFacts[msgspec.Raw])
 
 
 @cache
-def _decoder(kind: str) -> msgspec.msgpack.Decoder[FileFacts[Any]]:
-    return msgspec.msgpack.Decoder(FileFacts[None] if kind in ("script", "flow_script") else FileFacts[_struct(kind)])
+def _make_decoder(kind: str) -> msgspec.msgpack.Decoder[FileFacts[Any]]:
+    return msgspec.msgpack.Decoder(FileFacts[None] if kind in ("script", "flow_script") else FileFacts[_get_type(kind)])

@@ -106,13 +106,13 @@ def extract(data: bytes) -> Manifest:
     if root == -1:
         problems = document.problems or (Problem(1, "has no `<package>` element"),)
         return Manifest("", "", 1, 1, problems=problems)
-    children, exported = _children(document, root)
+    children, exported = _list_children(document, root)
     format_text = document.elements[root].get("format", "1").strip()
     format_ = int(format_text) if format_text in ("1", "2", "3") else 0
     tags = TAGS.get(format_, FORMAT_3)
 
-    name = _first(children, "name")
-    version = _first(children, "version")
+    name = _find_first(children, "name")
+    version = _find_first(children, "version")
     dependencies: list[Dependency] = []
     unknown: list[tuple[str, str, int]] = []
     found: list[Problem] = []
@@ -125,7 +125,7 @@ def extract(data: bytes) -> Manifest:
                 continue
             line = document.place(child.offset)[0]
             unknown.append((tag, child.text, line))
-            found.append(Problem(line, _unknown_tag(tag, format_, tags)))
+            found.append(Problem(line, _describe_unknown_tag(tag, format_, tags)))
             kinds = ANY_FORMAT.get(tag.replace("-", "_").lower())
             if kinds is None:
                 continue
@@ -152,7 +152,7 @@ def extract(data: bytes) -> Manifest:
     elif not unknown and _is_plain(document, format_, children, exported, dependencies):
         problems = ()
     else:
-        problems, warnings = _verdict(data, document, children, found)
+        problems, warnings = _validate_manifest(data, document, children, found)
     return Manifest(
         name.text if name is not None else "",
         version.text if version is not None else "",
@@ -169,7 +169,7 @@ def extract(data: bytes) -> Manifest:
     )
 
 
-def _children(document: Document, root: int) -> tuple[list[Element], list[Element]]:
+def _list_children(document: Document, root: int) -> tuple[list[Element], list[Element]]:
     """Children of <package>, and those of its <export>. In a file that is not well-formed, where a closing tag may be
     missing, a dependency counts at any depth."""
     children: list[Element] = []
@@ -190,11 +190,11 @@ def _children(document: Document, root: int) -> tuple[list[Element], list[Elemen
     return children, exported
 
 
-def _first(children: list[Element], tag: str) -> Element | None:
+def _find_first(children: list[Element], tag: str) -> Element | None:
     return next((child for child in children if child.name == tag), None)
 
 
-def _unknown_tag(tag: str, format_: int, tags: dict[str, tuple[str, ...]]) -> str:
+def _describe_unknown_tag(tag: str, format_: int, tags: dict[str, tuple[str, ...]]) -> str:
     said = f"`<{tag}>` is no tag of manifest format {format_ or 3}"
     if tag == "run_depend":
         return f"{said}, which calls it `<exec_depend>`"
@@ -289,7 +289,7 @@ def _is_plain(
     )
 
 
-def _verdict(
+def _validate_manifest(
     data: bytes, document: Document, children: list[Element], found: list[Problem]
 ) -> tuple[tuple[Problem, ...], tuple[Problem, ...]]:
     """What catkin_pkg says about a manifest: problems and warnings, each with the line it most likely speaks of."""
@@ -303,7 +303,7 @@ def _verdict(
         for message in error.msg.splitlines():
             message = message.strip().removeprefix("- ")
             if message and message != "Error(s):" and not SAID_BEFORE.search(message):
-                problems.append(Problem(_line_of(message, document, children), _clause(message)))
+                problems.append(Problem(_find_line(message, document, children), _format_message(message)))
         if not problems:
             problems.append(Problem(1, "catkin_pkg refuses it"))
     except AssertionError:
@@ -313,7 +313,7 @@ def _verdict(
         raise
     except Exception as error:  # whatever else a hostile file makes it raise is a fact about that file
         problems.append(Problem(1, f"catkin_pkg cannot read it: {type(error).__name__}: {error}"[:200]))
-    noted = tuple(Problem(_line_of(w, document, children), _clause(w)) for w in warnings)
+    noted = tuple(Problem(_find_line(w, document, children), _format_message(w)) for w in warnings)
     return tuple(sorted(problems, key=lambda p: p.line)), noted
 
 
@@ -321,7 +321,7 @@ def _verdict(
 SAID_BEFORE = re.compile(r"must not contain the following tags|^Please replace <|^Either update to a newer format")
 
 
-def _clause(message: str) -> str:
+def _format_message(message: str) -> str:
     """catkin_pkg's sentence as a clause with names in backticks."""
     message = re.sub(r"(?<!\w)[\"']([^\"']*)[\"'](?!\w)", r"`\1`", message).strip().rstrip(".")
     return message[:1].lower() + message[1:] if message[1:2].islower() else message
@@ -330,7 +330,7 @@ def _clause(message: str) -> str:
 QUOTED = re.compile(r"[\"'`]([^\"'`]+)[\"'`]")
 
 
-def _line_of(message: str, document: Document, children: list[Element]) -> int:
+def _find_line(message: str, document: Document, children: list[Element]) -> int:
     """The line of the child whose text or tag a message quotes, else that of the manifest's start."""
     for quoted in QUOTED.findall(message):
         for child in children:

@@ -93,7 +93,7 @@ def decode(data: bytes) -> str:
     declared = DECLARED_ENCODING.match(data)
     if declared is not None:
         try:
-            return data.decode(text_encoding(declared.group(1).decode("ascii")), "replace")
+            return data.decode(find_text_encoding(declared.group(1).decode("ascii")), "replace")
         except (LookupError, ValueError):
             pass
     return data.decode("utf-8", "replace")
@@ -103,7 +103,7 @@ def decode(data: bytes) -> str:
 _NO_ENCODINGS = frozenset(("punycode", "idna", "unicode-escape", "raw-unicode-escape", "undefined"))
 
 
-def text_encoding(name: str) -> str:
+def find_text_encoding(name: str) -> str:
     """The name that Python has for an encoding that a file declares. Raises LookupError for what is none of text."""
     found = codecs.lookup(name).name
     if found in _NO_ENCODINGS:
@@ -115,10 +115,10 @@ def unescape(text: str) -> str:
     """Predefined and numeric references resolved; any other stays as written."""
     if "&" not in text:
         return text
-    return ENTITY.sub(_character, text)
+    return ENTITY.sub(_resolve_reference, text)
 
 
-def _character(match: re.Match[str]) -> str:
+def _resolve_reference(match: re.Match[str]) -> str:
     name = match.group(1)
     if name[0] != "#":
         return PREDEFINED[name]
@@ -134,7 +134,7 @@ def _refuse_entity(*_: object) -> None:
     raise _EntityDefined
 
 
-def well_formed(data: bytes) -> tuple[Problem, ...]:
+def find_xml_problems(data: bytes) -> tuple[Problem, ...]:
     """What keeps data from being plain, well-formed XML: nothing, or one Problem."""
     parser = expat.ParserCreate()
     parser.EntityDeclHandler = _refuse_entity
@@ -184,7 +184,7 @@ def scan(data: bytes) -> Document:
         elements.append(Element(name, attributes, start, open_[-1] if open_ else -1, start))
         if not rest.endswith("/"):
             open_.append(len(elements) - 1)
-    return Document(text, elements, well_formed(data))
+    return Document(text, elements, find_xml_problems(data))
 
 
 def _add_text(element: Element, text: str, offset: int) -> None:

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Iterator
 import msgspec
 
 from .condition import Condition
-from .cpp.lexical import CppFile, places_of
+from .cpp.lexical import CppFile, find_word_uses
 from .place import Problem
-from .usage import Rows, UsageTable, WatchedUse, find_uses, initialises, methods_of, uses_of
+from .usage import Rows, UsageTable, WatchedUse, find_methods, find_uses, initializes_variable, list_row_uses
 
 
 class WordUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -41,12 +41,12 @@ def searched_cpp(data: bytes, facts: CppFile, table: UsageTable) -> SearchedCpp:
     """The uses, functions and words of a table that a C++ file has."""
     words = sorted(table.words.intersection(facts.words.split(" ")))
     uses, functions = find_uses(facts, data, table)
-    return SearchedCpp(uses, functions, tuple(_word_use(data, word) for word in words))
+    return SearchedCpp(uses, functions, tuple(_find_word_use(data, word) for word in words))
 
 
-def _word_use(data: bytes, word: str) -> WordUse:
-    line, column, conditions = next(iter(places_of(data, word)), (1, 0, ()))
-    return WordUse(word, line, column, conditions, initialises(data, word))
+def _find_word_use(data: bytes, word: str) -> WordUse:
+    line, column, conditions = next(iter(find_word_uses(data, word)), (1, 0, ()))
+    return WordUse(word, line, column, conditions, initializes_variable(data, word))
 
 
 class SearchedText(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -62,8 +62,8 @@ def searched_text(data: bytes, facts: object, table: Rows) -> SearchedText:
     """The uses of a table that a file has."""
     rows = [(label, pattern) for label, pattern in table.rows if pattern.word.encode() in data]
     called = {pattern.word for _, pattern in rows if pattern.calls and pattern.language == "python"}
-    uses = tuple(use for row in rows for use in uses_of(data, [row]))
-    return SearchedText(uses, functions=methods_of(data, called))
+    uses = tuple(use for row in rows for use in list_row_uses(data, [row]))
+    return SearchedText(uses, functions=find_methods(data, called))
 
 
 class CalledCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -109,7 +109,7 @@ def declares_type(data: bytes, name: str) -> bool:
     return word in _MESSAGE.findall(data)
 
 
-def opens_space(data: bytes, name: str) -> bool:
+def opens_namespace(data: bytes, name: str) -> bool:
     """Whether the text of a C++ file opens a namespace, itself or around others."""
     return name.encode() in _SPACE.findall(data)
 
@@ -121,10 +121,10 @@ def declares_in_tf2(data: bytes, name: str) -> bool:
 
 def called_cpp(data: bytes, facts: CppFile, table: None) -> CalledCpp:
     """The functions that a C++ file defines and calls, as its text shows them."""
-    return CalledCpp(_decoded((*_functions(data), *_free_functions(data))), _decoded(_called(data)))
+    return CalledCpp(_decode_words((*_list_functions(data), *_free_functions(data))), _decode_words(_list_called(data)))
 
 
-def _functions(data: bytes) -> Iterator[bytes]:
+def _list_functions(data: bytes) -> Iterator[bytes]:
     for found in _FUNCTION.finditer(data):
         if _is_head(found[2]):
             scope = _SCOPE.search(data, max(0, found.start() - 100), found.start())
@@ -135,7 +135,7 @@ def _free_functions(data: bytes) -> Iterator[bytes]:
     return (b"::" + found[1] for found in _FREE.finditer(b"\n" + data) if _is_head(found[2]))
 
 
-def _called(data: bytes) -> Iterator[bytes]:
+def _list_called(data: bytes) -> Iterator[bytes]:
     for before in {part[:-104:-1] for part in data.split(b"(")[:-1]}:
         found = _CALLED.match(before)
         if found is not None:
@@ -153,5 +153,5 @@ def _is_head(text: bytes) -> bool:
     return False
 
 
-def _decoded(words: Iterable[bytes]) -> frozenset[str]:
+def _decode_words(words: Iterable[bytes]) -> frozenset[str]:
     return frozenset(word.decode() for word in words)

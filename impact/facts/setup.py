@@ -17,7 +17,7 @@ from .place import Problem
 from .python.constants import Constants, TextConstant, UnknownValue
 from .python.source import PythonFile, read
 from .python.source import extract as read_python
-from .python.text import dotted
+from .python.text import format_dotted
 
 
 class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -42,7 +42,7 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     python: PythonFile | None = None
     script_folders: tuple[tuple[str, str, int], ...] = ()
 
-    def places_of(self, folder: str, module: str) -> tuple[str, str]:
+    def list_module_paths(self, folder: str, module: str) -> tuple[str, str]:
         """The paths that a module of the package in this folder can have: as a file, and as a package."""
         parts = module.split(".")
         count = next((n for n in range(len(parts), 0, -1) if ".".join(parts[:n]) in self.package_dirs), 0)
@@ -57,7 +57,7 @@ def extract(data: bytes, kind: str) -> SetupFile:
     A setup.py is parsed and its literals evaluated, never run: what only running it tells is named in `unresolved`.
     """
     try:
-        return {"setup_py": _setup_py, "setup_cfg": _setup_cfg, "pyproject": _pyproject}[kind](data)
+        return {"setup_py": _setup_py, "setup_cfg": _read_setup_cfg, "pyproject": _read_pyproject}[kind](data)
     except (RecursionError, MemoryError):
         return SetupFile(problems=(_TOO_DEEP,))
 
@@ -81,7 +81,7 @@ def _setup_py(data: bytes) -> SetupFile:
     reader = _Reader()
     try:
         reader.run(source.tree.body)
-        return structs.replace(reader.file(), python=facts)
+        return structs.replace(reader.make_file(), python=facts)
     except (RecursionError, MemoryError):
         return SetupFile(problems=(_TOO_DEEP,), python=facts)
 
@@ -97,13 +97,13 @@ class _Reader(Constants):
         """Statements in order; both branches of an if, and the body of a loop once, since each may run."""
         for statement in body:
             if isinstance(statement, ast.Assign):
-                value = self.value(statement.value)
+                value = self.find_value(statement.value)
                 for target in statement.targets:
                     self.assign(target, value)
             elif isinstance(statement, ast.AnnAssign) and statement.value is not None:
-                self.assign(statement.target, self.value(statement.value))
+                self.assign(statement.target, self.find_value(statement.value))
             elif isinstance(statement, ast.AugAssign) and isinstance(statement.op, ast.Add):
-                before, more = self.value(statement.target), self.value(statement.value)
+                before, more = self.find_value(statement.target), self.find_value(statement.value)
                 if isinstance(before, list):
                     before.extend(more if isinstance(more, list) else [more])
             elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
@@ -119,41 +119,41 @@ class _Reader(Constants):
 
     def call(self, call: ast.Call) -> None:
         """setup(...), and append or extend of a list that is known."""
-        name = dotted(call.func)
+        name = format_dotted(call.func)
         if name.rpartition(".")[2] in SETUP_CALLS:
-            for keyword, value in self.keywords(call).items():
+            for keyword, value in self.find_keywords(call).items():
                 self.arguments.setdefault(keyword, value)
         elif isinstance(call.func, ast.Attribute) and call.args and call.func.attr in ("append", "extend"):
-            owner = self.value(call.func.value)
+            owner = self.find_value(call.func.value)
             if isinstance(owner, list):
-                more = self.value(call.args[0])
+                more = self.find_value(call.args[0])
                 owner.extend(more if call.func.attr == "extend" and isinstance(more, list) else [more])
 
-    def result(self, call: ast.Call) -> Any:
-        last = dotted(call.func).rpartition(".")[2]
+    def find_result(self, call: ast.Call) -> Any:
+        last = format_dotted(call.func).rpartition(".")[2]
         if last in ("find_packages", "find_namespace_packages"):
             return [TextConstant("*", call.lineno)]
-        return self.keywords(call) if last in SETUP_CALLS else super().result(call)
+        return self.find_keywords(call) if last in SETUP_CALLS else super().find_result(call)
 
-    def file(self) -> SetupFile:
+    def make_file(self) -> SetupFile:
         given = self.arguments
         directories = given.get("package_dir")
         return SetupFile(
             # Paths of folders do as well as dotted names.
-            tuple(name.strip("/").replace("/", ".") for name in self.strings("packages"))
-            + tuple(self.strings("py_modules")),
+            tuple(name.strip("/").replace("/", ".") for name in self.list_strings("packages"))
+            + tuple(self.list_strings("py_modules")),
             {str(k): str(v) for k, v in directories.items() if isinstance(v, str)}
             if isinstance(directories, dict)
             else {},
-            tuple(self.entry_points(given.get("entry_points"))),
-            tuple(self.data_files(given.get("data_files"))),
-            tuple(self.strings("scripts")),
-            tuple(_requirements(self.strings("install_requires"))),
-            script_folders=tuple(self.script_folders(given.get("options"))),
+            tuple(self.list_entry_points(given.get("entry_points"))),
+            tuple(self.list_data_files(given.get("data_files"))),
+            tuple(self.list_strings("scripts")),
+            tuple(_parse_requirements(self.list_strings("install_requires"))),
+            script_folders=tuple(self.list_script_folders(given.get("options"))),
             unresolved=tuple(self.unresolved),
         )
 
-    def strings(self, argument: str) -> list[str]:
+    def list_strings(self, argument: str) -> list[str]:
         """A list argument's strings; the rest is noted as unresolved."""
         value = self.arguments.get(argument)
         found: list[str] = []
@@ -168,7 +168,7 @@ class _Reader(Constants):
                 self.unresolved.append(f"{argument}: {item.what}")
         return found
 
-    def entry_points(self, value: Any) -> list[tuple[str, str, int, str]]:
+    def list_entry_points(self, value: Any) -> list[tuple[str, str, int, str]]:
         found: list[tuple[str, str, int, str]] = []
         if isinstance(value, str):
             line = getattr(value, "line", 1)
@@ -191,7 +191,7 @@ class _Reader(Constants):
             self.unresolved.append(f"entry_points: {value.what}")
         return found
 
-    def script_folders(self, value: Any) -> Iterator[tuple[str, str, int]]:
+    def list_script_folders(self, value: Any) -> Iterator[tuple[str, str, int]]:
         """Of setup(options={"install": {"install_scripts": ...}})."""
         if isinstance(value, UnknownValue):
             self.unresolved.append(f"options: {value.what}")
@@ -205,7 +205,7 @@ class _Reader(Constants):
             elif isinstance(folder, UnknownValue):
                 self.unresolved.append(f"options: {folder.what}")
 
-    def data_files(self, value: Any) -> list[tuple[str, str, int]]:
+    def list_data_files(self, value: Any) -> list[tuple[str, str, int]]:
         found: list[tuple[str, str, int]] = []
         for item in value if isinstance(value, list) else [value]:
             if isinstance(item, UnknownValue):
@@ -227,7 +227,7 @@ class _Reader(Constants):
         return found
 
 
-def _requirements(texts: Iterable[str]) -> list[str]:
+def _parse_requirements(texts: Iterable[str]) -> list[str]:
     return [found.group(1) for text in texts if (found := REQUIREMENT.match(text)) is not None]
 
 
@@ -240,11 +240,11 @@ class _Lines:
             for key in (line.strip(), line.partition("=")[0].strip(" \t\"'")):
                 self.first.setdefault(key, number)
 
-    def of(self, *entries: str) -> int:
+    def find_line(self, *entries: str) -> int:
         return next((self.first[entry] for entry in entries if entry in self.first), 1)
 
 
-def _setup_cfg(data: bytes) -> SetupFile:
+def _read_setup_cfg(data: bytes) -> SetupFile:
     import configparser
 
     text = decode(data)
@@ -258,44 +258,47 @@ def _setup_cfg(data: bytes) -> SetupFile:
         said = str(error).split("\n")[0]
         return SetupFile(problems=(Problem(min(max(int(line), 1), last), f"not readable as a configuration: {said}"),))
 
-    def entries(section: str, option: str) -> list[str]:
+    def list_entries(section: str, option: str) -> list[str]:
         value = parser.get(section, option, fallback="") or ""
         return [part.strip() for part in re.split(r"[\n,]", value) if part.strip()]
 
-    packages = entries("options", "packages")
+    packages = list_entries("options", "packages")
     if packages and packages[0] in ("find:", "find_namespace:"):
         packages = ["*"]
     directories: dict[str, str] = {}
-    for entry in entries("options", "package_dir"):
+    for entry in list_entries("options", "package_dir"):
         key, _, value = entry.partition("=")
         directories[key.strip()] = value.strip()
     points: list[tuple[str, str, int, str]] = []
     for group in ("console_scripts", "gui_scripts"):
-        for entry in entries("options.entry_points", group):
+        for entry in list_entries("options.entry_points", group):
             if (found := ENTRY_POINT.match(entry)) is not None:
-                points.append((found[1].rstrip(), found[2], lines.of(entry), found[3] or ""))
+                points.append((found[1].rstrip(), found[2], lines.find_line(entry), found[3] or ""))
     files: list[tuple[str, str, int]] = []
     if parser.has_section("options.data_files"):
         for destination in parser.options("options.data_files"):
-            files.extend((destination, f, lines.of(f, destination)) for f in entries("options.data_files", destination))
+            files.extend(
+                (destination, f, lines.find_line(f, destination))
+                for f in list_entries("options.data_files", destination)
+            )
     folders = [
-        (command, (parser.get(command, option) or "").strip(), lines.of(option))
+        (command, (parser.get(command, option) or "").strip(), lines.find_line(option))
         for command, wanted in _FOLDER_OPTIONS.items()
         for option in (parser.options(command) if parser.has_section(command) else ())
         if option.replace("-", "_") == wanted
     ]
     return SetupFile(
-        tuple(packages + entries("options", "py_modules")),
+        tuple(packages + list_entries("options", "py_modules")),
         directories,
         tuple(points),
         tuple(files),
-        tuple(entries("options", "scripts")),
-        tuple(_requirements(entries("options", "install_requires"))),
+        tuple(list_entries("options", "scripts")),
+        tuple(_parse_requirements(list_entries("options", "install_requires"))),
         script_folders=tuple(folder for folder in folders if folder[1]),
     )
 
 
-def _pyproject(data: bytes) -> SetupFile:
+def _read_pyproject(data: bytes) -> SetupFile:
     text = decode(data)
     try:
         document = load_toml(text)
@@ -303,42 +306,42 @@ def _pyproject(data: bytes) -> SetupFile:
         line = error.line or text.count("\n") + 1
         return SetupFile(problems=(Problem(min(line, text.count("\n") + 1), f"not readable as TOML: {error}"),))
     lines = _Lines(text)
-    project = _table(document, "project")
-    setuptools = _table(document, "tool", "setuptools")
+    project = _find_table(document, "project")
+    setuptools = _find_table(document, "tool", "setuptools")
     points: list[tuple[str, str, int, str]] = []
     for table in (
-        _table(project, "scripts"),
-        _table(project, "gui-scripts"),
-        _table(document, "tool", "poetry", "scripts"),
+        _find_table(project, "scripts"),
+        _find_table(project, "gui-scripts"),
+        _find_table(document, "tool", "poetry", "scripts"),
     ):
         for name, target in table.items():
             if isinstance(target, str):
                 module, _, function = target.partition(":")
-                points.append((name, module.strip(), lines.of(name), function.partition("[")[0].strip()))
+                points.append((name, module.strip(), lines.find_line(name), function.partition("[")[0].strip()))
     packages = setuptools.get("packages", [])
     files = [
-        (destination, file, lines.of(destination))
-        for destination, patterns in _table(setuptools, "data-files").items()
-        for file in _texts(patterns)
+        (destination, file, lines.find_line(destination))
+        for destination, patterns in _find_table(setuptools, "data-files").items()
+        for file in _list_texts(patterns)
     ]
     folders = [
-        (command, folder, lines.of(option))
+        (command, folder, lines.find_line(option))
         for command, wanted in _FOLDER_OPTIONS.items()
-        for option, folder in _table(document, "tool", "distutils", command).items()
+        for option, folder in _find_table(document, "tool", "distutils", command).items()
         if option.replace("-", "_") == wanted and isinstance(folder, str)
     ]
     return SetupFile(
-        ("*",) if isinstance(packages, dict) else (*_texts(packages), *_texts(setuptools.get("py-modules"))),
-        {k: v for k, v in _table(setuptools, "package-dir").items() if isinstance(v, str)},
+        ("*",) if isinstance(packages, dict) else (*_list_texts(packages), *_list_texts(setuptools.get("py-modules"))),
+        {k: v for k, v in _find_table(setuptools, "package-dir").items() if isinstance(v, str)},
         tuple(points),
         tuple(files),
-        tuple(_texts(setuptools.get("script-files"))),
-        tuple(_requirements(_texts(project.get("dependencies")))),
+        tuple(_list_texts(setuptools.get("script-files"))),
+        tuple(_parse_requirements(_list_texts(project.get("dependencies")))),
         script_folders=tuple(folders),
     )
 
 
-def _table(document: dict[str, Any], *path: str) -> dict[str, Any]:
+def _find_table(document: dict[str, Any], *path: str) -> dict[str, Any]:
     for key in path:
         inner = document.get(key)
         if not isinstance(inner, dict):
@@ -347,5 +350,5 @@ def _table(document: dict[str, Any], *path: str) -> dict[str, Any]:
     return document
 
 
-def _texts(value: Any) -> list[str]:
+def _list_texts(value: Any) -> list[str]:
     return [item for item in value if isinstance(item, str)] if isinstance(value, list) else []

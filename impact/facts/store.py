@@ -26,14 +26,14 @@ from typing import Any
 
 import msgspec
 
-from ...edges.console import visible
+from ...edges.console import escape
 from ...edges.files import NOT_REGULAR
-from ...edges.limits import limits
+from ...edges.limits import get_limits
 from ..cache import cache_folder
 
 _SCHEMA_VERSION = 3
 _TABLES = ("facts", "memo")
-# used: the day of its last use, since 1970; seal: see _seal()
+# used: the day of its last use, since 1970; seal: see _compute_seal()
 _COLUMNS = (
     "id INTEGER PRIMARY KEY, key BLOB NOT NULL UNIQUE, used INTEGER NOT NULL, seal BLOB NOT NULL, data BLOB NOT NULL"
 )
@@ -53,7 +53,7 @@ _DAY = 86_400
 _PACK_FROM = 2_000
 
 
-def fact_key(content_id: str, extractor: str) -> bytes:
+def make_fact_key(content_id: str, extractor: str) -> bytes:
     """The key of the facts that an extractor makes of a content (40 hex digits). extractor: its name and version."""
     return bytes.fromhex(content_id) + extractor.encode()
 
@@ -61,14 +61,14 @@ def fact_key(content_id: str, extractor: str) -> bytes:
 def pack(data: bytes) -> bytes:
     """Bytes as they are stored: packed at the fastest level when that is worth it. Called by the workers."""
     if len(data) >= _PACK_FROM:
-        packed = _packer().compress(data)
+        packed = _make_packer().compress(data)
         if len(packed) < len(data):
             return b"z" + packed
     return b"-" + data
 
 
 @cache
-def _packer() -> Any:
+def _make_packer() -> Any:
     import zstandard  # late: most runs on unchanged files need none
 
     return zstandard.ZstdCompressor(level=1)
@@ -84,14 +84,14 @@ def unpack(data: bytes) -> bytes:
 
     frame = memoryview(data)[1:]
     try:
-        if not 0 <= zstandard.frame_content_size(frame) <= limits().row:
+        if not 0 <= zstandard.frame_content_size(frame) <= get_limits().row:
             raise ValueError("of no known size, or larger than a row may be")
         return zstandard.ZstdDecompressor().decompress(frame)
     except zstandard.ZstdError as error:
         raise ValueError(str(error)) from None
 
 
-def encodable(rows: Iterable[tuple[bytes, Any]]) -> Iterator[tuple[bytes, bytes]]:
+def encode_rows(rows: Iterable[tuple[bytes, Any]]) -> Iterator[tuple[bytes, bytes]]:
     """(key, value) as (key, msgpack), for remember(). Values that hold a name of bytes that are no UTF-8 are left out,
     since msgpack cannot carry them: they are made again by every run."""
     for key, value in rows:
@@ -99,20 +99,20 @@ def encodable(rows: Iterable[tuple[bytes, Any]]) -> Iterator[tuple[bytes, bytes]
             yield key, msgspec.msgpack.encode(value)
 
 
-def remembered(store: Store | None, table: str, key: bytes, type_: Any, make: Callable[[], Any]) -> Any:
+def recall(store: Store | None, table: str, key: bytes, type_: Any, make: Callable[[], Any]) -> Any:
     """What was remembered under a key, as a value of a type; else, or where it is of another version, made anew and
     remembered."""
-    data = store.memo(table, key) if store is not None else None
+    data = store.find_memo(table, key) if store is not None else None
     if data is not None:
         with contextlib.suppress(msgspec.MsgspecError):
             return msgspec.msgpack.decode(data, type=type_)
     made = make()
     if store is not None:
-        store.remember(table, encodable([(key, made)]))
+        store.remember(table, encode_rows([(key, made)]))
     return made
 
 
-def _seal(table: str, key: bytes, data: bytes) -> bytes:
+def _compute_seal(table: str, key: bytes, data: bytes) -> bytes:
     """What is stored beside a row, and matches nothing but this row."""
     digest = hashlib.blake2b(key, digest_size=16, person=table.encode(), usedforsecurity=False)
     digest.update(data)
@@ -171,25 +171,25 @@ class Store:
         """Stores (key, packed facts) at once: all are there for every other process when this returns."""
         self._put("facts", list(rows))
 
-    def memo(self, table: str, key: bytes) -> bytes | None:
+    def find_memo(self, table: str, key: bytes) -> bytes | None:
         """What was remembered under a key, unpacked; None when nothing was."""
-        for _, data in self._get("memo", [_memo_key(table, key)]):
+        for _, data in self._get("memo", [_make_memo_key(table, key)]):
             with contextlib.suppress(ValueError):
                 return unpack(data)
         return None
 
-    def memos(self, table: str, keys: Iterable[bytes]) -> dict[bytes, bytes]:
+    def find_memos(self, table: str, keys: Iterable[bytes]) -> dict[bytes, bytes]:
         """The same for many keys; those that are not there are left out."""
-        prefix = len(_memo_key(table, b""))
+        prefix = len(_make_memo_key(table, b""))
         found = {}
-        for key, data in self._get("memo", [_memo_key(table, key) for key in keys]):
+        for key, data in self._get("memo", [_make_memo_key(table, key) for key in keys]):
             with contextlib.suppress(ValueError):
                 found[key[prefix:]] = unpack(data)
         return found
 
     def remember(self, table: str, rows: Iterable[tuple[bytes, bytes]]) -> None:
         """Remembers (key, bytes) for later runs. The bytes are packed here."""
-        self._put("memo", [(_memo_key(table, key), pack(data)) for key, data in rows])
+        self._put("memo", [(_make_memo_key(table, key), pack(data)) for key, data in rows])
 
     def close(self) -> None:
         """Drops what exceeds the limit and lets go of the file. The store can be used again; it opens itself."""
@@ -230,11 +230,11 @@ class Store:
 
     def _connect(self) -> sqlite3.Connection:
         os.makedirs(self.folder, exist_ok=True)
-        with self._locked(fcntl.LOCK_SH):
+        with self._lock_folder(fcntl.LOCK_SH):
             self._check_files()
             db = sqlite3.connect(self.path, timeout=_BUSY_MS / 1000, isolation_level=None)
             try:
-                self._file = self._identity()
+                self._file = self._find_identity()
                 self._prepare(db)
             except BaseException:
                 db.close()
@@ -260,7 +260,7 @@ class Store:
             db.executescript(f"BEGIN IMMEDIATE; {_SCHEMA} PRAGMA user_version = {_SCHEMA_VERSION}; COMMIT;")
         _check_layout(db)
         # rows are stamped as used only once dropping some is in sight, so that a warm run writes nothing
-        self._touch = self._bytes(db) > self.limit // 2
+        self._touch = self._measure_size(db) > self.limit // 2
 
     def _connect_to_read(self) -> sqlite3.Connection | None:
         """A connection that only reads, for a cache folder that cannot be written; None when that fails too."""
@@ -284,7 +284,7 @@ class Store:
         return None
 
     @contextlib.contextmanager
-    def _locked(self, kind: int) -> Iterator[None]:
+    def _lock_folder(self, kind: int) -> Iterator[None]:
         """Holds the folder, so that no process begins to use a file while another takes it away. Whoever cannot have
         the lock goes on without: what then may get lost are rows."""
         # The lock is on the folder, since closing a descriptor of the file would end SQLite's own locks.
@@ -322,7 +322,7 @@ class Store:
                 name = os.path.basename(self.path + suffix)
                 raise OSError(errno.EINVAL, f"{what}: remove `{name}`", self.path + suffix)
 
-    def _identity(self) -> tuple[int, int] | None:
+    def _find_identity(self) -> tuple[int, int] | None:
         """What tells the file from another of the same name; None when there is none."""
         try:
             status = os.lstat(self.path)
@@ -339,7 +339,7 @@ class Store:
                 else "to a folder that can be written"
             )
             self.notes.append(
-                f"the cache `{self.path}` cannot be {what} ({_clause(error)}), so the next run starts from what "
+                f"the cache `{self.path}` cannot be {what} ({_format_error(error)}), so the next run starts from what "
                 f"it holds now; set ROSIMPACT_CACHE {remedy}"
             )
 
@@ -350,13 +350,13 @@ class Store:
         a log once the file beside it is another one.
         """
         damaged = self._file
-        self._let_go()
+        self._close_connection()
         if self._restarts == _RESTARTS:
             return False
         self._restarts += 1
         try:
-            with self._locked(fcntl.LOCK_EX):
-                if damaged is not None and self._identity() != damaged:
+            with self._lock_folder(fcntl.LOCK_EX):
+                if damaged is not None and self._find_identity() != damaged:
                     return True  # another process has done it meanwhile
                 # The new file is there before the old one goes, so that it cannot get its number, by which others tell
                 # them apart.
@@ -371,21 +371,21 @@ class Store:
         except OSError:
             return False
         if not isinstance(error, _Older):
-            self.notes.append(f"the cache `{self.path}` was damaged ({_clause(error)}) and has been started anew")
+            self.notes.append(f"the cache `{self.path}` was damaged ({_format_error(error)}) and has been started anew")
         return True
 
-    def _let_go(self) -> None:
+    def _close_connection(self) -> None:
         if self._db is not None:
             with contextlib.suppress(*FAULTS):
                 self._db.close()
         self._db = None
         self._file = None
 
-    def _failed(self, error: Exception) -> None:
+    def _recover(self, error: Exception) -> None:
         """After an error of a statement: mends what can be mended, so that the next statement may work."""
-        if self._writable and self._file is not None and self._identity() not in (self._file, None):
+        if self._writable and self._file is not None and self._find_identity() not in (self._file, None):
             # Another process started the file anew, and this one's is gone.
-            self._let_go()
+            self._close_connection()
             self._opened = self._restarts == _RESTARTS
             self._restarts += not self._opened
         elif _is_of_the_disk(error):
@@ -403,11 +403,11 @@ class Store:
             return present
         rows: list[tuple[int, bytes]] = []
         try:
-            for part, marks in _parts(keys):
+            for part, marks in _split_values(keys):
                 rows.extend(db.execute(f"SELECT id, key FROM {table} WHERE key IN ({marks})", part))
             self._use(db, table, [row[0] for row in rows])
         except FAULTS as error:
-            self._failed(error)
+            self._recover(error)
         present.update(row[1] for row in rows)
         return present
 
@@ -416,7 +416,7 @@ class Store:
         if memory:
             yield from ((key, memory[key]) for key in keys if key in memory)
             keys = [key for key in keys if key not in memory]
-        for part, marks in _parts(keys):
+        for part, marks in _split_values(keys):
             db = self._open()
             if db is None:
                 return
@@ -424,27 +424,27 @@ class Store:
                 rows = db.execute(f"SELECT id, key, seal, data FROM {table} WHERE key IN ({marks})", part).fetchall()
                 self._use(db, table, [row[0] for row in rows])
             except FAULTS as error:
-                self._failed(error)
+                self._recover(error)
                 continue
             for _, key, seal, data in rows:
-                if isinstance(key, bytes) and isinstance(data, bytes) and seal == _seal(table, key, data):
+                if isinstance(key, bytes) and isinstance(data, bytes) and seal == _compute_seal(table, key, data):
                     yield key, data
 
     def _use(self, db: sqlite3.Connection, table: str, ids: Sequence[int]) -> None:
         if not self._touch or not self._writable:
             return
         today = int(time.time()) // _DAY
-        for part, marks in _parts(ids):
+        for part, marks in _split_values(ids):
             with contextlib.suppress(sqlite3.OperationalError):
                 db.execute(f"UPDATE {table} SET used = {today} WHERE used < {today} AND id IN ({marks})", part)
 
     def _put(self, table: str, rows: list[tuple[bytes, bytes]]) -> None:
-        largest = limits().row
+        largest = get_limits().row
         self._memory[table].update((key, data) for key, data in rows if len(data) > largest)
         rows = [(key, data) for key, data in rows if len(data) <= largest]
         if not rows:
             return
-        sealed = [(key, _seal(table, key, data), data) for key, data in rows]
+        sealed = [(key, _compute_seal(table, key, data), data) for key, data in rows]
         for _ in (1, 2):  # the second time on a file that has been started anew
             db = self._open()
             if db is None or not self._writable:
@@ -462,16 +462,16 @@ class Store:
                 with contextlib.suppress(*FAULTS):
                     if db.in_transaction:
                         db.execute("ROLLBACK")
-                self._failed(error)
+                self._recover(error)
         self._memory[table].update(rows)
 
-    def _bytes(self, db: sqlite3.Connection) -> int:
+    def _measure_size(self, db: sqlite3.Connection) -> int:
         pages = db.execute("PRAGMA page_count").fetchone()[0] - db.execute("PRAGMA freelist_count").fetchone()[0]
         return pages * db.execute("PRAGMA page_size").fetchone()[0]
 
     def _trim(self, db: sqlite3.Connection) -> None:
         """Above the limit, drops the rows not used for longest until three quarters of it are left."""
-        size = self._bytes(db)
+        size = self._measure_size(db)
         if size <= self.limit:
             return
         surplus = size - self.limit * 3 // 4
@@ -493,7 +493,7 @@ class Store:
             doomed[table].append(row)
         for table, ids in doomed.items():
             db.execute("BEGIN IMMEDIATE")
-            for part, marks in _parts(ids):
+            for part, marks in _split_values(ids):
                 db.execute(f"DELETE FROM {table} WHERE id IN ({marks})", part)
             db.execute("COMMIT")
         db.executescript("PRAGMA incremental_vacuum;")  # execute() would free one page only
@@ -514,20 +514,20 @@ def _check_layout(db: sqlite3.Connection) -> None:
         raise sqlite3.DatabaseError("its tables are not those of rosimpact")
 
 
-def _memo_key(table: str, key: bytes) -> bytes:
+def _make_memo_key(table: str, key: bytes) -> bytes:
     return table.encode() + b"\0" + key
 
 
-def _parts(values: Sequence) -> Iterator[tuple[Sequence, str]]:
+def _split_values(values: Sequence) -> Iterator[tuple[Sequence, str]]:
     """Values in pieces that fit one statement, each with its question marks."""
     for start in range(0, len(values), _AT_ONCE):
         part = values[start : start + _AT_ONCE]
         yield part, ",".join("?" * len(part))
 
 
-def _clause(error: Exception) -> str:
+def _format_error(error: Exception) -> str:
     if isinstance(error, OSError):
         return (error.strerror or type(error).__name__).lower()
     if isinstance(error, UnicodeDecodeError):
         return "malformed database schema"
-    return visible(str(error))[:200] or type(error).__name__
+    return escape(str(error))[:200] or type(error).__name__

@@ -108,7 +108,7 @@ FUNCTIONS = frozenset(("function", "method", "constructor", "destructor", "conve
 CLASSES = frozenset(("class", "struct", "union"))
 
 
-def plain(name: str, inline: Collection[str]) -> str:
+def drop_inline(name: str, inline: Collection[str]) -> str:
     """A qualified name without the inline namespaces in it: as users write it."""
     if not inline:
         return name
@@ -117,17 +117,17 @@ def plain(name: str, inline: Collection[str]) -> str:
     return "::".join(kept)
 
 
-def offered(surfaces: Iterable[HeaderSurface]) -> Iterator[Entity]:
+def list_offered(surfaces: Iterable[HeaderSurface]) -> Iterator[Entity]:
     """The entities of some headers, named as users write them."""
     surfaces = list(surfaces)
     inline = {name for surface in surfaces for name in surface.inline}
     for surface in surfaces:
         for entity in surface.entities:
-            name = plain(entity.name, inline)
+            name = drop_inline(entity.name, inline)
             yield entity if name == entity.name else msgspec.structs.replace(entity, name=name)
 
 
-def declared(one: Entity) -> str:
+def format_declaration(one: Entity) -> str:
     """An entity as it could be written, in one line."""
     parts = []
     if one.template is not None:

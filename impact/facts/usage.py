@@ -14,8 +14,8 @@ from functools import lru_cache
 import msgspec
 
 from .condition import Condition
-from .cpp.lexical import KEYWORDS, CppFile, scan, standing, text_of
-from .expressions import has_needed, last_literals, needed_words
+from .cpp.lexical import KEYWORDS, CppFile, decode_source, find_words, scan
+from .expressions import find_last_literals, find_needed, has_needed
 from .python.python2 import mask
 
 _MEMBER = r"(?:->|\.)\s*"
@@ -116,22 +116,22 @@ class UsageTable:
     def __init__(self, patterns: Mapping[str, Sequence[tuple[str, Pattern]]], words: Collection[str] = ()):
         self.patterns = patterns
         self.words = frozenset(words)
-        self.stamp = stamp_of(sorted(patterns.items()), sorted(self.words))
+        self.stamp = compute_stamp(sorted(patterns.items()), sorted(self.words))
         self.heads = frozenset(word.partition("::")[0] for word in patterns if "::" in word)
         self._heads = tuple(f"{head}::" for head in sorted(self.heads))
         self.keywords = sorted(KEYWORDS.intersection(patterns))
         self._needed: dict[str, list[tuple[tuple[str, Pattern], tuple[tuple[str, ...], ...]]]] = {}
         self.called = frozenset(word for word, rows in patterns.items() if any(p.calls for _, p in rows))
 
-    def likely_rows(self, word: str, vocabulary: str) -> list[tuple[str, Pattern]]:
+    def select_likely_rows(self, word: str, vocabulary: str) -> list[tuple[str, Pattern]]:
         """The rows of a word without those whose uses have a word, or a part of one, that a file lacks. vocabulary: the
         words of the file."""
         rows = self._needed.get(word)
         if rows is None:
-            rows = self._needed[word] = [(row, _needed_parts(row[1])) for row in self.patterns[word]]
+            rows = self._needed[word] = [(row, _find_needed_parts(row[1])) for row in self.patterns[word]]
         return [row for row, needed in rows if all([any([part in vocabulary for part in each]) for each in needed])]
 
-    def qualified_uses(self, facts: CppFile) -> Iterator[WatchedUse]:
+    def list_qualified_uses(self, facts: CppFile) -> Iterator[WatchedUse]:
         """Uses that are told by a qualified name as it stands, so that the file need not be looked at again."""
         for name in facts.qualified:
             if name.text.startswith(self._heads):
@@ -144,10 +144,10 @@ class Rows:
 
     def __init__(self, rows: Sequence[tuple[str, Pattern]]):
         self.rows = rows
-        self.stamp = stamp_of(rows)
+        self.stamp = compute_stamp(rows)
 
 
-def stamp_of(*tables: object) -> str:
+def compute_stamp(*tables: object) -> str:
     """A digest of what tables say."""
     return hashlib.sha1(repr(tables).encode()).hexdigest()[:16]
 
@@ -159,22 +159,22 @@ def find_uses(facts: CppFile, data: bytes, table: UsageTable) -> tuple[tuple[Wat
     vocabulary = scan(data).tokens_text
     spoken = {*facts.words.split(" "), *"::".join([name.text for name in facts.qualified]).split("::")}
     spoken.update([word for word in table.keywords if word in vocabulary])
-    uses = list(table.qualified_uses(facts))
+    uses = list(table.list_qualified_uses(facts))
     functions = []
     for word in sorted(patterns.keys() & spoken):
         if word in table.called and (word in facts.defined or declares(data, word)):
             functions.append(word)
-        rows = table.likely_rows(word, vocabulary)
+        rows = table.select_likely_rows(word, vocabulary)
         if rows:
-            uses.extend(uses_of(data, rows))
+            uses.extend(list_row_uses(data, rows))
     return tuple(uses), tuple(functions)
 
 
-def uses_of(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[WatchedUse]:
+def list_row_uses(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[WatchedUse]:
     """Every call that a row describes, and the first of its other uses under each set of conditions. rows: labels and
     patterns of one word."""
     seen = set()
-    for number, place in places_of_use(data, *(pattern for _, pattern in rows)):
+    for number, place in find_use_places(data, *(pattern for _, pattern in rows)):
         label, pattern = rows[number]
         key = (number, place[2], place[:2] if pattern.calls else ())
         if key not in seen:
@@ -182,7 +182,7 @@ def uses_of(data: bytes, rows: Sequence[tuple[str, Pattern]]) -> Iterator[Watche
             yield WatchedUse(label, *place)
 
 
-def template_arguments(text: str, at: int) -> re.Match[str] | None:
+def find_template_arguments(text: str, at: int) -> re.Match[str] | None:
     """The arguments of a template, from behind its `<` to its `>`; None where they are none, or too many to be read."""
     end = _TEMPLATE_TEXT.match(text, at, at + _LONGEST_TYPES).end()  # type: ignore[union-attr]
     while text.count("<", at, end) > _MOST_BRACKETS:
@@ -194,16 +194,16 @@ def template_arguments(text: str, at: int) -> re.Match[str] | None:
 def declares(data: bytes, function: str) -> bool:
     """Whether a C++ file seems to declare or define a function of this name: a type stands before it in its line, or
     at the end of the line before where it begins its own."""
-    for at, end in _places(function.encode(), data):
+    for at, end in _find_occurrences(function.encode(), data):
         # Behind a blank a type may stand, behind colons a scope, and the start of a line tells nothing.
         if data[at - 1 : at] in _AHEAD_OF_DECLARED and _OPENED.match(data, end) is not None:
-            start = _line_start(data, at)
+            start = _find_line_start(data, at)
             ahead = data[start:at]
             if ahead.isspace():
                 continue
             ahead = _SCOPES.sub(b"", ahead)
             if not ahead and start:
-                ahead = data[_line_start(data, start - 1) : start - 1].rstrip() + b" "
+                ahead = data[_find_line_start(data, start - 1) : start - 1].rstrip() + b" "
             found = _TYPE_AHEAD.search(ahead)
             if found is not None and found.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
                 return True
@@ -213,33 +213,33 @@ def declares(data: bytes, function: str) -> bool:
 _DEFINED = re.compile(rb"(?m)^[ \t]+(?:async[ \t]+)?def[ \t]+(\w+)[ \t]*\(")
 
 
-def methods_of(data: bytes, functions: Collection[str]) -> tuple[str, ...]:
+def find_methods(data: bytes, functions: Collection[str]) -> tuple[str, ...]:
     """Those of some functions that a Python file seems to define as methods, or in functions."""
     if not any(function.encode() in data for function in functions):
         return ()
     return tuple(sorted({name.decode() for name in _DEFINED.findall(data)}.intersection(functions)))
 
 
-def initialises(data: bytes, variable: str) -> bool:
+def initializes_variable(data: bytes, variable: str) -> bool:
     """Whether a C++ file declares a variable of this name with a value: a type stands before it and `=` behind."""
-    for at, end in _places(variable.encode(), data):
+    for at, end in _find_occurrences(variable.encode(), data):
         before = data[at - 1 : at]
         if _ASSIGNED.match(data, end) is None or before.isalnum() or before == b"_":
             continue
-        begins = max(_line_start(data, at), at - _FAR)
+        begins = max(_find_line_start(data, at), at - _FAR)
         ahead = _TYPE_OF_VARIABLE.search(data[begins:at])
         if ahead is not None and ahead.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
             return True
     return False
 
 
-def _line_start(data: bytes, at: int) -> int:
+def _find_line_start(data: bytes, at: int) -> int:
     """Where the line that a place stands in begins, or the last part of one that nobody wrote by hand."""
     earliest = max(0, at - _LONGEST_LINE)
     return max(data.rfind(b"\n", earliest, at) + 1, earliest)
 
 
-def _places(name: bytes, data: bytes) -> Iterator[tuple[int, int]]:
+def _find_occurrences(name: bytes, data: bytes) -> Iterator[tuple[int, int]]:
     """Where a name begins and ends, within other words too."""
     at = data.find(name)
     while at >= 0:
@@ -247,16 +247,16 @@ def _places(name: bytes, data: bytes) -> Iterator[tuple[int, int]]:
         at = data.find(name, at + len(name))
 
 
-def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]]:
+def find_use_places(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]]:
     """Every use that looks like one of the patterns, which are of one word and language, pattern by pattern: the number
     of the pattern, then line, column, preprocessor conditions and template arguments. Never raises."""
     word, language = patterns[0].word, patterns[0].language
     scanned = scan(data) if language == "cpp" else None
     text = scanned.visible if scanned is not None else _TEXTS[language](data)
     places: list[tuple[int, str]] = []
-    ends = [last_literals(pattern.before) for pattern in patterns]
+    ends = [find_last_literals(pattern.before) for pattern in patterns]
     lasts = tuple(last for each in ends for last in each) if all(ends) else ("",)
-    for at in standing(word, text):
+    for at in find_words(word, text):
         far = max(0, at - _FAR)
         ahead = text[far:at]
         if ahead.rstrip().endswith(lasts):
@@ -266,16 +266,16 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
     for number, pattern in enumerate(patterns if places else ()):
         before = pattern.before
         if before not in fitting:
-            last = last_literals(before)
+            last = find_last_literals(before)
             likely = [place for place in places if place[1].rstrip().endswith(last)] if last else places
-            search = _compiled(rf"(?:{before})\Z").search if likely else None
+            search = _compile(rf"(?:{before})\Z").search if likely else None
             fitting[before] = [place for place in likely if search is not None and search(place[1]) is not None]
         checked = not (pattern.file or pattern.unless)
         for at, ahead in fitting[before]:
             types = _fits(pattern, text, at + len(word), ahead)
             if types is None or (pattern.inside and not _stands_inside(pattern.inside, text, at)):
                 continue
-            conditions = () if scanned is None else scanned.under(at)
+            conditions = () if scanned is None else scanned.find_conditions(at)
             if conditions is None:
                 continue  # in a directive
             if not checked and not _is_in_such_a_file(pattern, data, text):
@@ -285,11 +285,11 @@ def places_of_use(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Place]
             yield number, (line, column, conditions, types)
 
 
-def _needed_parts(pattern: Pattern) -> tuple[tuple[str, ...], ...]:
+def _find_needed_parts(pattern: Pattern) -> tuple[tuple[str, ...], ...]:
     """Parts of words in every file that has a use of a pattern, one of each tuple; arguments of a kind need none."""
     file = "" if "#include" in pattern.file + pattern.unless else pattern.file
     expressions = (pattern.before, pattern.template or "", pattern.after, file, *pattern.where.values())
-    found = (needed_words("make_shared" if each == "<shared>" else each) for each in expressions if each not in _KINDS)
+    found = (find_needed("make_shared" if each == "<shared>" else each) for each in expressions if each not in _KINDS)
     return tuple(dict.fromkeys(part for parts in found for part in parts))
 
 
@@ -304,7 +304,7 @@ def _is_in_such_a_file(pattern: Pattern, data: bytes, text: str) -> bool:
 @lru_cache(maxsize=64)
 def _stands_in(expression: str, text: str) -> bool:
     """Whether a file has what an expression looks for; many rows ask the same of it."""
-    return has_needed(expression, text) and _compiled(expression).search(text) is not None
+    return has_needed(expression, text) and _compile(expression).search(text) is not None
 
 
 def place_in(text: str, offset: int) -> tuple[int, int]:
@@ -313,7 +313,7 @@ def place_in(text: str, offset: int) -> tuple[int, int]:
 
 
 @lru_cache(maxsize=4096)
-def _compiled(expression: str) -> re.Pattern[str]:
+def _compile(expression: str) -> re.Pattern[str]:
     return re.compile(expression)
 
 
@@ -323,9 +323,9 @@ def _fits(pattern: Pattern, text: str, end: int, ahead: str) -> str | None:
     at, shown = end, ""
     opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
     if pattern.language == "cpp" and text.startswith("<", opened):
-        types = template_arguments(text, opened + 1)
+        types = find_template_arguments(text, opened + 1)
         if types is not None:
-            if pattern.template is not None and not _compiled(pattern.template).fullmatch(types.group()[:-1].strip()):
+            if pattern.template is not None and not _compile(pattern.template).fullmatch(types.group()[:-1].strip()):
                 return None
             if pattern.template == "":
                 return None
@@ -341,11 +341,11 @@ def _fits(pattern: Pattern, text: str, end: int, ahead: str) -> str | None:
             return None
         if not pattern.names and declares_next(ahead):
             return None
-        found = arguments_at(text, at)
+        found = split_arguments(text, at)
         if found is None:
             return None
         given, at = found
-        if not _as_many(pattern.arguments, len(given)):
+        if not _matches_count(pattern.arguments, len(given)):
             return None
         for which, wanted in pattern.where.items():
             if which == "any":
@@ -358,7 +358,7 @@ def _fits(pattern: Pattern, text: str, end: int, ahead: str) -> str | None:
                 chosen = [given[index]]
             if not any(_is(argument, wanted, text) for argument in chosen):
                 return None
-    return shown if not pattern.after or _compiled(pattern.after).match(text, at) else None
+    return shown if not pattern.after or _compile(pattern.after).match(text, at) else None
 
 
 _OPENING_CLASS = re.compile(r"\b(?:class|struct)\s[^;{}()=]*\Z")
@@ -366,11 +366,11 @@ _OPENING_CLASS = re.compile(r"\b(?:class|struct)\s[^;{}()=]*\Z")
 
 def _stands_inside(wanted: str, text: str, at: int) -> bool:
     """Whether a place stands in the body of a class, or of one whose head has what an expression looks for."""
-    head = _class_around(text, at)
-    return bool(head) and (wanted == "class" or _compiled(wanted).search(head.partition(":")[2]) is not None)
+    head = _find_class_around(text, at)
+    return bool(head) and (wanted == "class" or _compile(wanted).search(head.partition(":")[2]) is not None)
 
 
-def _class_around(text: str, at: int) -> str:
+def _find_class_around(text: str, at: int) -> str:
     """The head of the class in the body of which a place stands, not in a function of it; empty where there is none."""
     depth, position = 0, at
     while True:
@@ -395,16 +395,16 @@ def declares_next(ahead: str) -> bool:
     return bool(match) and match.group(1) not in _NOT_A_TYPE
 
 
-def arguments_at(text: str, at: int) -> tuple[list[str], int] | None:
+def split_arguments(text: str, at: int) -> tuple[list[str], int] | None:
     """The arguments of the call whose bracket opens at an offset, and where it ends; None when it does not."""
-    found = argument_spans(text, at)
+    found = find_argument_spans(text, at)
     return ([text[begins:ends].strip() for begins, ends in found[0]], found[1]) if found is not None else None
 
 
 _DIVIDER = re.compile(r"[(){}\[\]<,]")
 
 
-def argument_spans(text: str, at: int) -> tuple[list[tuple[int, int]], int] | None:
+def find_argument_spans(text: str, at: int) -> tuple[list[tuple[int, int]], int] | None:
     """The same by where each argument begins and ends, blanks around it included."""
     given, depth, begins, last = [], [_CLOSING[text[at]]], at + 1, min(len(text), at + _LONGEST)
     position = at + 1
@@ -421,7 +421,7 @@ def argument_spans(text: str, at: int) -> tuple[list[tuple[int, int]], int] | No
                     given.append((begins, place))
                 return given, position
         elif character == "<":
-            types = template_arguments(text, position)
+            types = find_template_arguments(text, position)
             if types is not None and text[types.end() : types.end() + 1] in ("(", "{", ":", ",", ")", ">"):
                 position = types.end()
         elif len(depth) == 1:
@@ -430,7 +430,7 @@ def argument_spans(text: str, at: int) -> tuple[list[tuple[int, int]], int] | No
     return None
 
 
-def _as_many(wanted: str, given: int) -> bool:
+def _matches_count(wanted: str, given: int) -> bool:
     if wanted.endswith("+"):
         return given >= int(wanted[:-1])
     low, _, high = wanted.partition("-")
@@ -443,27 +443,27 @@ def _is(argument: str, wanted: str, text: str) -> bool:
     if wanted == "<float>":
         if _INTEGER_CAST.search(argument) and not _FLOAT_CAST.match(argument):
             return False
-        outer = _outer(argument)
+        outer = _remove_call_arguments(argument)
         if _CHRONO.search(outer):
             return False
-        return bool(_FLOAT_CAST.match(argument) or _FLOAT.search(outer)) or _declared(outer, "double|float", text)
+        return bool(_FLOAT_CAST.match(argument) or _FLOAT.search(outer)) or _is_declared_as(outer, "double|float", text)
     if wanted == "<text>":
-        return bool(_TEXT.search(argument)) or _declared(argument, r"(?:std\s*::\s*)?string", text)
+        return bool(_TEXT.search(argument)) or _is_declared_as(argument, r"(?:std\s*::\s*)?string", text)
     if wanted == "<string>":
         if _NO_STRING.search(argument):
             return False
-        return bool(_STRING.search(_outer(argument))) or (
-            argument.isidentifier() and _declared(argument, r"(?:std\s*::\s*)?string", text)
+        return bool(_STRING.search(_remove_call_arguments(argument))) or (
+            argument.isidentifier() and _is_declared_as(argument, r"(?:std\s*::\s*)?string", text)
         )
     if wanted == "<shared>":
-        return argument.isidentifier() and _made_shared(argument, text)
-    return bool(_compiled(wanted).search(argument))
+        return argument.isidentifier() and _is_made_shared(argument, text)
+    return bool(_compile(wanted).search(argument))
 
 
 _CALL = re.compile(r"(?<=[\w>])\s*[({][^(){}]*[)}]")
 
 
-def _outer(expression: str) -> str:
+def _remove_call_arguments(expression: str) -> str:
     """An expression without what is handed to the functions that it calls."""
     while True:
         shorter = _CALL.sub("\x00\x01", expression)
@@ -479,18 +479,18 @@ _SHARED_AHEAD = re.compile(r"\s*([;={,)(][^;]{0,60})")
 _SHARED_TYPE = re.compile(r"([\w:>]+)(\s*[&*]+\s*|\s+)\Z")
 
 
-def _ahead_of_variable(pattern: re.Pattern[str], text: str, at: int) -> re.Match[str] | None:
+def _find_type_ahead(pattern: re.Pattern[str], text: str, at: int) -> re.Match[str] | None:
     """The type before a variable, behind which a blank or mark stands."""
     return pattern.search(text, max(0, at - _FAR), at) if text[at - 1 : at] in _TYPE_ENDS else None
 
 
-def _declared(argument: str, types: str, text: str) -> bool:
+def _is_declared_as(argument: str, types: str, text: str) -> bool:
     """Whether a variable of an arithmetic expression is declared with one of the types, and nowhere with another."""
     for name in _IDENTIFIER.findall(argument):
         declared = []
-        for at in standing(name, text):
+        for at in find_words(name, text):
             if _DECLARED_AHEAD.match(text, at + len(name)):
-                found = _ahead_of_variable(_TYPE_OF, text, at)
+                found = _find_type_ahead(_TYPE_OF, text, at)
                 if found and found.group(1) not in _NOT_A_TYPE:
                     declared.append(found.group(1))
         if declared and all(re.fullmatch(types, d) for d in declared):
@@ -498,12 +498,12 @@ def _declared(argument: str, types: str, text: str) -> bool:
     return False
 
 
-def _made_shared(name: str, text: str) -> bool:
+def _is_made_shared(name: str, text: str) -> bool:
     """Whether a file declares a variable as a shared pointer that it makes, and nowhere declares it otherwise."""
     declared = []
-    for at in standing(name, text):
+    for at in find_words(name, text):
         ahead = _SHARED_AHEAD.match(text, at + len(name))
-        found = _ahead_of_variable(_SHARED_TYPE, text, at) if ahead else None
+        found = _find_type_ahead(_SHARED_TYPE, text, at) if ahead else None
         if ahead and found and found.group(1) not in _NOT_A_TYPE:
             declared.append((found.group(1), found.group(2), ahead.group(1)))
     return bool(declared) and all(
@@ -512,17 +512,17 @@ def _made_shared(name: str, text: str) -> bool:
 
 
 @lru_cache(maxsize=2)
-def python_text(data: bytes) -> str:
+def blank_python(data: bytes) -> str:
     """The text of a Python file with comments and the insides of literals blanked, offsets kept."""
-    return mask(text_of(data)).replace("'", '"')
+    return mask(decode_source(data)).replace("'", '"')
 
 
 _YAML_COMMENT = re.compile(r"(?m)(?:^|(?<=[ \t]))#.*$")
 
 
-def yaml_text(data: bytes) -> str:
+def blank_yaml(data: bytes) -> str:
     """The text of a YAML file with comments blanked, offsets kept."""
-    return _YAML_COMMENT.sub(lambda match: " " * len(match.group()), text_of(data))
+    return _YAML_COMMENT.sub(lambda match: " " * len(match.group()), decode_source(data))
 
 
-_TEXTS = {"python": python_text, "yaml": yaml_text}
+_TEXTS = {"python": blank_python, "yaml": blank_yaml}

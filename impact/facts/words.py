@@ -8,7 +8,7 @@ from collections.abc import Collection
 _WORD = re.compile(rb"[A-Za-z_]\w*")
 
 
-def words_of(data: bytes) -> str:
+def list_words(data: bytes) -> str:
     """The distinct words of a file, those of comments and literals too, sorted and joined by blanks."""
     return b" ".join(sorted(set(_WORD.findall(data)))).decode()
 

@@ -8,12 +8,12 @@ from typing import Literal, NamedTuple
 
 import msgspec
 
-from ..model.flow.code import tail
+from ..model.flow.code import get_tail
 from ..model.flow.graph import GuardAt
 from . import guards
 from .guards import Ways
 from .history import PackageState
-from .match import SAME, OutletAt, Renames, StatementPlace, asked, matched, matched_outlets
+from .match import SAME, OutletAt, Renames, StatementPlace, collect_conditions, match_outlets, match_statements
 from .statements import Gate, Outlet, PackageStatements, Path, Said, StatementStart
 
 Kind = Literal["tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed"]
@@ -70,33 +70,33 @@ class Side(NamedTuple):
 
     packages: Sequence[tuple[PackageState, PackageStatements]]
 
-    def statements(self) -> list[StatementPlace]:
+    def list_statements(self) -> list[StatementPlace]:
         """All publish statements."""
-        return [StatementPlace(s.name, d, said, s.whole(said.path)) for s, d in self.packages for said in d.statements]
+        return [StatementPlace(s.name, d, said, s.locate(said.path)) for s, d in self.packages for said in d.statements]
 
-    def outlets(self) -> list[OutletAt]:
+    def list_outlets(self) -> list[OutletAt]:
         """All publishers."""
         found: list[OutletAt] = []
         for state, one in self.packages:
             contents = {file.path: file.id for file in state.files}
             for outlet in one.outlets:
-                found.append(OutletAt(state.name, outlet, state.whole(outlet.path), contents.get(outlet.path, "")))
+                found.append(OutletAt(state.name, outlet, state.locate(outlet.path), contents.get(outlet.path, "")))
         return found
 
 
-def settled(old: Side, new: Side) -> bool:
+def is_unchanged(old: Side, new: Side) -> bool:
     """Whether the statements and publishers of both sides are the same, word by word."""
-    return _stamps(old) == _stamps(new)
+    return _list_stamps(old) == _list_stamps(new)
 
 
-def _stamps(side: Side) -> tuple[list[str], list[str]]:
+def _list_stamps(side: Side) -> tuple[list[str], list[str]]:
     statements, outlets = [], []
-    for at in side.statements():
+    for at in side.list_statements():
         said = at.said
         ways = sorted(repr((way.start, [(g.kind, g.text, g.meaning) for g in way.gates])) for way in said.ways)
         topics, kinds = sorted(at.topics), said.type
         statements.append(repr((at.path, said.function, said.variable, topics, said.expression, kinds, ways)))
-    for at in side.outlets():
+    for at in side.list_outlets():
         one = at.outlet
         outlets.append(repr((at.path, one.function, one.variable, one.topic, one.type, one.offers)))
     return sorted(statements), sorted(outlets)
@@ -104,37 +104,46 @@ def _stamps(side: Side) -> tuple[list[str], list[str]]:
 
 def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange]:
     """All changes, rewordings included. names: what is called otherwise."""
-    before, after = old.statements(), new.statements()
-    pairs, gone, come = matched(before, after, names)
-    outlets = matched_outlets(old.outlets(), new.outlets(), names)
+    before, after = old.list_statements(), new.list_statements()
+    pairs, gone, come = match_statements(before, after, names)
+    outlets = match_outlets(old.list_outlets(), new.list_outlets(), names)
     successors = {id(one.outlet): other.outlet for one, other in outlets}
     for one, other in pairs:
-        yield from _compared(one, other, names, successors)
-    gone = [at for at in gone if not _unclear(at, names, new)]
-    come = [at for at in come if not _unclear(at, SAME, old, names)]
+        yield from _compare_statements(one, other, names, successors)
+    gone = [at for at in gone if not _has_unclear_call(at, names, new)]
+    come = [at for at in come if not _has_unclear_call(at, SAME, old, names)]
     for at in gone:
-        yield _change("gone", at, at.outlets, _shown(at.said.ways, at.said), None, _when("was published", at.said))
+        yield _make_change(
+            "gone",
+            at,
+            at.outlets,
+            _format_ways(at.said.ways, at.said),
+            None,
+            _describe_trigger("was published", at.said),
+        )
     for at in come:
-        yield _change("new", at, at.outlets, None, _shown(at.said.ways, at.said), _when("is published", at.said))
+        yield _make_change(
+            "new", at, at.outlets, None, _format_ways(at.said.ways, at.said), _describe_trigger("is published", at.said)
+        )
     published = {id(outlet): at for at in after for outlet in at.outlets}
     for one, other in outlets:
         at = published.get(id(other.outlet))
         if at is not None:
-            yield from _outlet_changes(one, other, at)
+            yield from _compare_outlets(one, other, at)
 
 
-def _unclear(at: StatementPlace, names: Renames, other: Side, backwards: Renames = SAME) -> bool:
+def _has_unclear_call(at: StatementPlace, names: Renames, other: Side, backwards: Renames = SAME) -> bool:
     """Whether the other side has the call where the statement stood, and only does not tell that it publishes."""
-    variable = tail(names.text(at.said.variable))
+    variable = get_tail(names.map_text(at.said.variable))
     return any(
-        variable == tail(backwards.text(callee.rpartition(".")[0]))
-        and (backwards.path(state.whole(path)) == names.path(at.path) or function == at.said.function)
+        variable == get_tail(backwards.map_text(callee.rpartition(".")[0]))
+        and (backwards.map_path(state.locate(path)) == names.map_path(at.path) or function == at.said.function)
         for state, one in other.packages
         for path, function, callee in one.unclear
     )
 
 
-def _change(
+def _make_change(
     kind: Kind, at: StatementPlace, outlets: Iterable[Outlet], old: str | None, new: str | None, why: str
 ) -> LogicChange:
     said = at.said
@@ -146,7 +155,7 @@ def _change(
     )  # fmt: skip
 
 
-def _compared(
+def _compare_statements(
     one: StatementPlace, other: StatementPlace, names: Renames, successors: Mapping[int, Outlet]
 ) -> Iterator[LogicChange]:
     outlets = [*other.outlets, *one.outlets]
@@ -154,19 +163,19 @@ def _compared(
     moved = one.topics and other.topics and not one.topics & other.topics
     if moved and not heirs & {id(outlet) for outlet in other.outlets}:
         was, is_now = ", ".join(sorted(one.topics)), ", ".join(sorted(other.topics))
-        yield _change("changed", other, outlets, was, is_now, f"published on `{is_now}`, was `{was}`")
+        yield _make_change("changed", other, outlets, was, is_now, f"published on `{is_now}`, was `{was}`")
     first, second = one.said, other.said
-    old_shown, new_shown = _shown(first.ways, first), _shown(second.ways, second)
-    if asked(first, names) != asked(second):
-        why = _never(second)
-        if why and not _never(first):
-            found = _change("tightened", other, outlets, old_shown, new_shown, why)
+    old_shown, new_shown = _format_ways(first.ways, first), _format_ways(second.ways, second)
+    if collect_conditions(first, names) != collect_conditions(second):
+        why = _explain_never_runs(second)
+        if why and not _explain_never_runs(first):
+            found = _make_change("tightened", other, outlets, old_shown, new_shown, why)
             yield msgspec.structs.replace(found, unreachable=True)
             return
     if _cut_off(first) or _cut_off(second):
-        kind, why = _verdict(_own(first), _own(second), names, second.language)
+        kind, why = _compare_guards(_select_own_way(first), _select_own_way(second), names, second.language)
         if kind != "equivalent":
-            yield _change(kind, other, outlets, old_shown, new_shown, why)
+            yield _make_change(kind, other, outlets, old_shown, new_shown, why)
         return
     kinds: list[guards.Kind] = []
     whys: list[str] = []
@@ -177,30 +186,30 @@ def _compared(
         if not old_ways or not new_ways:
             start = (new_ways or old_ways)[0].start
             if start.kind not in _UNSAID:
-                starts.append(f"{'also' if new_ways else 'no longer'} on {_named(start)}")
+                starts.append(f"{'also' if new_ways else 'no longer'} on {_describe_start(start)}")
             else:
                 kinds.append("widened" if new_ways else "tightened")
-                whys.append(f"{'also' if new_ways else 'no longer'} from {_unnamed(new_ways or old_ways)}")
+                whys.append(f"{'also' if new_ways else 'no longer'} from {_describe_caller(new_ways or old_ways)}")
             continue
-        kind, why = _verdict(old_ways, new_ways, names, second.language)
+        kind, why = _compare_guards(old_ways, new_ways, names, second.language)
         difference = _start_differs(old_ways[0].start, new_ways[0].start, names)
         if difference:
             starts.append(difference)
         kinds.append(kind)
         if why:
             whys.append(why)
-    kind = _together(kinds)
+    kind = _combine_kinds(kinds)
     why = "; ".join(dict.fromkeys(whys))
     if starts:
         clauses = [*dict.fromkeys(starts), *([why] if why else [])]
-        yield _change("trigger changed", other, outlets, old_shown, new_shown, "; ".join(clauses))
+        yield _make_change("trigger changed", other, outlets, old_shown, new_shown, "; ".join(clauses))
     elif kind != "equivalent":
-        yield _change(kind, other, outlets, old_shown, new_shown, why)
-    elif asked(first, names) != asked(second):
-        yield _change("equivalent", other, outlets, old_shown, new_shown, "says the same in other words")
+        yield _make_change(kind, other, outlets, old_shown, new_shown, why)
+    elif collect_conditions(first, names) != collect_conditions(second):
+        yield _make_change("equivalent", other, outlets, old_shown, new_shown, "says the same in other words")
 
 
-def _never(said: Said) -> str:
+def _explain_never_runs(said: Said) -> str:
     """Why a statement never runs, as far as that is sure; empty where it may."""
     speech: guards.Language = "python" if said.language == "python" else "cpp"
     whys: list[str] = []
@@ -216,45 +225,49 @@ def _never(said: Said) -> str:
             for gate in list(at_once):
                 fewer = [one for one in at_once if one is not gate]
                 at_once = fewer if fewer and _contradicts(fewer, speech) else at_once
-            texts = " and ".join(dict.fromkeys(f"`{_condition(gate, speech == 'python')}`" for gate in at_once))
+            texts = " and ".join(dict.fromkeys(f"`{_write_gate(gate, speech == 'python')}`" for gate in at_once))
             why = f"never runs, {texts} cannot hold"
         whys.append(why)
     return "" if _cut_off(said) else "; ".join(dict.fromkeys(whys))
 
 
 def _contradicts(gates: Sequence[Gate], speech: guards.Language) -> bool:
-    return guards.impossible(_guards([Path(StatementStart("unknown"), tuple(gates))])[0], speech)
+    return guards.is_impossible(_build_guard_ways([Path(StatementStart("unknown"), tuple(gates))])[0], speech)
 
 
 def _cut_off(said: Said) -> bool:
     return len(said.ways) >= _MOST_WAYS
 
 
-def _own(said: Said) -> list[Path]:
+def _select_own_way(said: Said) -> list[Path]:
     """The one way through a statement's own function."""
     gates = tuple(gate for gate in said.ways[0].gates if gate.of == said.function)
     return [Path(StatementStart("unknown"), gates)]
 
 
-def _together(kinds: Iterable[guards.Kind]) -> guards.Kind:
+def _combine_kinds(kinds: Iterable[guards.Kind]) -> guards.Kind:
     found = set(kinds) - {"equivalent"}
     if not found:
         return "equivalent"
     return found.pop() if len(found) == 1 else "changed"
 
 
-def _verdict(old: Sequence[Path], new: Sequence[Path], names: Renames, language: str) -> tuple[guards.Kind, str]:
+def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, language: str) -> tuple[guards.Kind, str]:
     """What happened to the guards of some ways, and the clause that says it. Names for conditions are put back into the
     conditions first; where that is more than can be compared, what is written decides."""
     speech: guards.Language = "python" if language == "python" else "cpp"
-    meant_old, meant_new = _guards(old, meant=True), _guards(new, meant=True)
-    written_old, written_new = _guards(old), _guards(new)
+    meant_old, meant_new = _build_guard_ways(old, meant=True), _build_guard_ways(new, meant=True)
+    written_old, written_new = _build_guard_ways(old), _build_guard_ways(new)
     reading = guards.NameReading(names.words, speech)
     kind = guards.compare_ways(meant_old, meant_new, reading)
     told = (meant_old, meant_new)
     if (meant_old, meant_new) != (written_old, written_new) and kind != "equivalent":
         written = guards.compare_ways(written_old, written_new, reading)
-        if written == "equivalent" and kind == "changed" and _about(meant_old, names) == _about(meant_new, SAME):
+        if (
+            written == "equivalent"
+            and kind == "changed"
+            and _collect_condition_names(meant_old, names) == _collect_condition_names(meant_new, SAME)
+        ):
             return "equivalent", ""  # what is asked is called otherwise, of the same things
         if written != "equivalent":
             told = (written_old, written_new)
@@ -262,20 +275,20 @@ def _verdict(old: Sequence[Path], new: Sequence[Path], names: Renames, language:
     return kind, guards.explain_ways(*told, reading) if kind != "equivalent" else ""
 
 
-def _guards(ways: Iterable[Path], meant: bool = False) -> Ways:
+def _build_guard_ways(ways: Iterable[Path], meant: bool = False) -> Ways:
     return tuple(
         tuple(GuardAt(gate.kind, (meant and gate.meaning) or gate.text, "", 0, gate.of) for gate in way.gates)
         for way in ways
     )
 
 
-def _about(ways: Ways, names: Renames) -> set[tuple[str, ...]]:
+def _collect_condition_names(ways: Ways, names: Renames) -> set[tuple[str, ...]]:
     """What the conditions of some ways are about: variables and operators, without what is called of them."""
     return {
         tuple(
             found
             for guard in way
-            for found in _ABOUT.findall(names.text(guard.text.replace("->", ".")))
+            for found in _ABOUT.findall(names.map_text(guard.text.replace("->", ".")))
             if not found.endswith("(")
         )
         for way in ways
@@ -293,8 +306,8 @@ def _starts_of(
         # What leads to it is seen on one side alone: then it is not compared.
         yield frozenset(way.start for way in first.ways), frozenset(way.start for way in second.ways)
         return
-    old = _grouped(first, names)
-    new = _grouped(second, SAME)
+    old = _group_starts(first, names)
+    new = _group_starts(second, SAME)
     for key in [key for key in old if key in new]:
         yield frozenset(old.pop(key)), frozenset(new.pop(key))
     for same in (True, False):
@@ -310,48 +323,52 @@ def _starts_of(
         yield frozenset(), frozenset(starts)
 
 
-def _grouped(said: Said, names: Renames) -> dict[tuple[str, str], set[StatementStart]]:
+def _group_starts(said: Said, names: Renames) -> dict[tuple[str, str], set[StatementStart]]:
     found: dict[tuple[str, str], set[StatementStart]] = {}
     for way in said.ways:
         kind = "unknown" if way.start.kind in _UNSAID else way.start.kind
-        found.setdefault((kind, _plain(names.text(way.start.detail))), set()).add(way.start)
+        found.setdefault((kind, _normalize_detail(names.map_text(way.start.detail))), set()).add(way.start)
     return found
 
 
-def _plain(detail: str) -> str:
+def _normalize_detail(detail: str) -> str:
     """A period or name without what spelling alone decides."""
     text = "".join(detail.split()).replace("this->", "").replace("this.", "")
     return text.strip("/") if "/" in text else text
 
 
-def _unnamed(ways: Sequence[Path]) -> str:
+def _describe_caller(ways: Sequence[Path]) -> str:
     of = next((gate.of for way in ways for gate in way.gates), "")
     return f"`{of}`" if of else "another caller"
 
 
 def _start_differs(old: StatementStart, new: StatementStart, names: Renames) -> str:
     if old.kind == new.kind:
-        if old.kind in _UNSAID or _plain(names.text(old.detail)) == _plain(new.detail):
+        if old.kind in _UNSAID or _normalize_detail(names.map_text(old.detail)) == _normalize_detail(new.detail):
             return ""
         if not old.detail or not new.detail:
-            return f"{_named(new)}, was without pace" if new.detail else f"{new.kind} without pace, was `{old.detail}`"
-        return f"{_named(new)}, was `{old.detail}`"
+            return (
+                f"{_describe_start(new)}, was without pace"
+                if new.detail
+                else f"{new.kind} without pace, was `{old.detail}`"
+            )
+        return f"{_describe_start(new)}, was `{old.detail}`"
     if _UNLED & {old.kind, new.kind}:
         return ""
-    return f"on {_named(new)}, was on {_named(old)}"
+    return f"on {_describe_start(new)}, was on {_describe_start(old)}"
 
 
-def _named(start: StatementStart) -> str:
+def _describe_start(start: StatementStart) -> str:
     kind = {"start": "the start", "subscriber": "messages of", "thread": "loop"}.get(start.kind, start.kind)
     return f"{kind} `{start.detail}`" if start.detail else kind
 
 
-def _outlet_changes(one: OutletAt, other: OutletAt, at: StatementPlace) -> Iterator[LogicChange]:
+def _compare_outlets(one: OutletAt, other: OutletAt, at: StatementPlace) -> Iterator[LogicChange]:
     old, new = one.outlet, other.outlet
     both = [new, old]
 
     def change(kind: Kind, was: str, is_now: str, why: str) -> LogicChange:
-        found = _change(kind, at, both, was, is_now, why)
+        found = _make_change(kind, at, both, was, is_now, why)
         return msgspec.structs.replace(found, path=other.path, line=new.line, function=new.function)
 
     # The namespace of a handle that was passed in is known by who passes it, and that may be any of several.
@@ -373,25 +390,25 @@ def _outlet_changes(one: OutletAt, other: OutletAt, at: StatementPlace) -> Itera
             label = "queue" if name == "depth" else name
             clauses.append(f"{label} `{is_now or 'volatile'}` was `{was or 'volatile'}`")
     if clauses:
-        yield change("trigger changed", _offer(old), _offer(new), "; ".join(clauses))
+        yield change("trigger changed", _format_offers(old), _format_offers(new), "; ".join(clauses))
 
 
-def _offer(outlet: Outlet) -> str:
+def _format_offers(outlet: Outlet) -> str:
     return ", ".join(f"{name} {setting}" for name, setting in outlet.offers) or outlet.written
 
 
-def _when(verb: str, said: Said) -> str:
-    starts = sorted({_named(way.start) for way in said.ways if way.start.kind not in _UNSAID})
+def _describe_trigger(verb: str, said: Said) -> str:
+    starts = sorted({_describe_start(way.start) for way in said.ways if way.start.kind not in _UNSAID})
     return f"{verb} on {', '.join(starts)}" if starts else verb
 
 
-def _shown(ways: Sequence[Path], said: Said) -> str:
+def _format_ways(ways: Sequence[Path], said: Said) -> str:
     """The condition that a statement runs under, as one expression; what starts it before that where it is known."""
     python = said.language == "python"
     by_start: dict[str, list[str]] = {}
     for way in ways[:_MOST_WAYS]:
-        start = _named(way.start) if way.start.kind not in _UNSAID else ""
-        condition = (" and " if python else " && ").join(dict.fromkeys(_condition(gate, python) for gate in way.gates))
+        start = _describe_start(way.start) if way.start.kind not in _UNSAID else ""
+        condition = (" and " if python else " && ").join(dict.fromkeys(_write_gate(gate, python) for gate in way.gates))
         by_start.setdefault(start, []).append(condition)
     told: list[str] = []
     for start, conditions in by_start.items():
@@ -402,7 +419,7 @@ def _shown(ways: Sequence[Path], said: Said) -> str:
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 
 
-def _condition(gate: Gate, python: bool) -> str:
+def _write_gate(gate: Gate, python: bool) -> str:
     text = gate.text
     if gate.kind == "unless":
         denied = _DENIED.fullmatch(text)

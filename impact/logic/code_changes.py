@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from ..facts.flow import FlowFile, FlowFunction
 from .guards import Language
-from .match import bare
+from .match import normalize
 
 _COMMON = r"\"\"\".*?\"\"\"|'''.*?'''|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*'|\w+|\n|[^\w\s]"
 _TOKENS: dict[Language, re.Pattern[str]] = {
@@ -33,7 +33,7 @@ class ChangedFunction(NamedTuple):
     known: bool
 
 
-def changed_functions(
+def find_changed_functions(
     path: str, before: FlowFile | None, old_text: str, after: FlowFile, new_text: str, words: Mapping[str, str]
 ) -> Iterator[ChangedFunction]:
     """Functions of a file that are new or differ from those of their name at the base, in their order.
@@ -43,11 +43,11 @@ def changed_functions(
     language: Language = "python" if after.language == "python" else "cpp"
     old_lines, new_lines = old_text.split("\n"), new_text.split("\n")
     was: dict[str, Counter[tuple[str, ...]]] = {}
-    for name, _, tokens in _codes(before.functions if before is not None else (), old_lines, language):
+    for name, _, tokens in _iterate_functions(before.functions if before is not None else (), old_lines, language):
         renamed = tuple(words.get(token, token) for token in tokens)
         now = re.sub(r"\w+", lambda match: words.get(match[0], match[0]), name)
         was.setdefault(now, Counter())[renamed] += 1
-    for name, function, tokens in _codes(after.functions, new_lines, language):
+    for name, function, tokens in _iterate_functions(after.functions, new_lines, language):
         same = was.get(name)
         if same is None or not same[tokens]:
             yield ChangedFunction(path, function.name, function.line, function.owner, same is not None)
@@ -55,7 +55,7 @@ def changed_functions(
             same[tokens] -= 1
 
 
-def _codes(
+def _iterate_functions(
     functions: Iterable[FlowFunction], lines: list[str], language: Language
 ) -> Iterator[tuple[str, FlowFunction, tuple[str, ...]]]:
     """(name without places, function, its tokens without those of functions inside it)."""
@@ -72,21 +72,21 @@ def _codes(
         hidden = {line for one in inner for line in range(one.line + 1, one.end)}
         own = [text for number, text in enumerate(lines[function.line - 1 : function.end], function.line)
                if number not in hidden]  # fmt: skip
-        yield bare(function.name), function, _tokens(own, language)
+        yield normalize(function.name), function, _tokenize(own, language)
 
 
-def _tokens(lines: list[str], language: Language) -> tuple[str, ...]:
+def _tokenize(lines: list[str], language: Language) -> tuple[str, ...]:
     if language == "python":
-        return _python_tokens(lines)
+        return _tokenize_python(lines)
     found = [
         match[0]
         for match in _TOKENS["cpp"].finditer("\n".join(lines))
         if match[0] != "\n" and not match[0].startswith(("//", "/*"))
     ]
-    return tuple(_without_logs(found))
+    return tuple(_drop_log_statements(found))
 
 
-def _without_logs(tokens: list[str]) -> Iterator[str]:
+def _drop_log_statements(tokens: list[str]) -> Iterator[str]:
     """The tokens of C++ without statements that log."""
     place = 0
     while place < len(tokens):
@@ -104,7 +104,7 @@ def _without_logs(tokens: list[str]) -> Iterator[str]:
         place += 1
 
 
-def _python_tokens(lines: list[str]) -> tuple[str, ...]:
+def _tokenize_python(lines: list[str]) -> tuple[str, ...]:
     """The tokens of Python with the depth of each line that begins a statement; no comments, no texts that stand
     alone, no statements that log."""
     text = "\n".join(lines)

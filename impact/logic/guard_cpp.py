@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import Any
 
-from ...edges.dispatch import methods_of
+from ...edges.dispatch import collect_methods
 from .guard_terms import (
     DEEPEST,
     FALSE,
@@ -17,13 +17,13 @@ from .guard_terms import (
     Conjunct,
     GuardReading,
     Term,
-    comparison,
+    build_reading,
+    compare,
     join,
-    member,
-    negation,
-    number,
-    owner_of,
-    reading,
+    make_member,
+    negate,
+    parse_number,
+    split_owner,
 )
 
 _WORDS = {"and": "&&", "or": "||", "not": "!", "not_eq": "!=", "compl": "~", "bitand": "&", "bitor": "|", "xor": "^"}
@@ -42,52 +42,52 @@ _HAS_INCLUDE = re.compile(r"<([^<>\s]+\.?[^<>\s]*)>")
 
 
 @lru_cache(1)
-def _parser() -> Any:
+def _load_parser() -> Any:
     import tree_sitter_cpp
     from tree_sitter import Language, Parser
 
     return Parser(Language(tree_sitter_cpp.language()))
 
 
-def condition(text: str, holds: bool) -> GuardReading:
+def parse_condition(text: str, holds: bool) -> GuardReading:
     """What a condition says when it holds, or when it does not."""
     text = text.strip()
     text = text.removeprefix("constexpr ")
     reader = _Reader(text)
-    node = reader.clause()
+    node = reader.find_clause()
     if node is None:
-        return GuardReading((opaque_piece(text, holds),))
-    return reading(reader.pieces(node, holds), reader.names)
+        return GuardReading((make_opaque_piece(text, holds),))
+    return build_reading(reader.split_pieces(node, holds), reader.names)
 
 
-def expression(text: str) -> Term:
+def parse_expression(text: str) -> Term:
     """The term of an expression."""
     reader = _Reader(text.strip())
-    node = reader.clause()
-    return opaque(text) if node is None else reader.term(node, 0)
+    node = reader.find_clause()
+    return make_opaque(text) if node is None else reader.parse_term(node, 0)
 
 
-def directive(text: str, holds: bool) -> GuardReading:
+def parse_directive(text: str, holds: bool) -> GuardReading:
     """What the condition of an #if says."""
     text = _DEFINED.sub(r"defined(\1)", text)
     if "__has_include" in text:
         text = _HAS_INCLUDE.sub(r'"\1"', text)
-    return condition(text, holds)
+    return parse_condition(text, holds)
 
 
-def opaque(text: str) -> Term:
+def make_opaque(text: str) -> Term:
     return Term("opaque", " ".join(text.split()))
 
 
-def caught(declared: str) -> Term:
+def make_caught_term(declared: str) -> Term:
     """That an exception was caught, whatever the variable is called and the namespace is."""
     match = _CAUGHT.fullmatch(" ".join(declared.split()))
     return Term("opaque", f"catch {match[1] if match else ' '.join(declared.split())}")
 
 
-def opaque_piece(text: str, holds: bool) -> Conjunct:
-    term = opaque(text)
-    return Conjunct(text if holds else f"!({text})", term if holds else negation(term))
+def make_opaque_piece(text: str, holds: bool) -> Conjunct:
+    term = make_opaque(text)
+    return Conjunct(text if holds else f"!({text})", term if holds else negate(term))
 
 
 def loop(head: str) -> GuardReading:
@@ -101,14 +101,16 @@ def loop(head: str) -> GuardReading:
     if split is None or variable is None:
         match = re.match(r"\w+\s*\(\s*(?:.*[\s&*])?([A-Za-z_]\w*)\s*,(.*)\)$", head.strip(), re.DOTALL)
         if match is None:
-            return GuardReading((Conjunct(head, opaque(head)),))
+            return GuardReading((Conjunct(head, make_opaque(head)),))
         bound, walked = [match[1]], match[2]
     else:
         bound, walked = re.findall(r"\w+", variable[1]), inside[split.end() :]
-    container = expression(walked)
+    container = parse_expression(walked)
     element = Term("each", "", (container,))
     names = (
-        [(bound[0], element)] if len(bound) == 1 else [(name, member(element, f"{i}")) for i, name in enumerate(bound)]
+        [(bound[0], element)]
+        if len(bound) == 1
+        else [(name, make_member(element, f"{i}")) for i, name in enumerate(bound)]
     )
     return GuardReading((Conjunct(f"for ({head})" if match is None else head, element),), tuple(names))
 
@@ -123,11 +125,11 @@ class _Reader:
         text = _CATCH.sub(lambda match: f'catch_("{match[1]}")', text) if "catch" in text else text
         self.source = b"void f() { if (" + text.encode("utf-8", "replace") + b"\n) ; }"
 
-    def clause(self) -> Any:
+    def find_clause(self) -> Any:
         """The condition's node; None when the text is not one condition."""
         if not self.text or len(self.text) > LONGEST or "\0" in self.text:
             return None
-        root = _parser().parse(self.source).root_node
+        root = _load_parser().parse(self.source).root_node
         if root.has_error or root.named_child_count != 1:
             return None
         body = root.named_children[0].child_by_field_name("body")
@@ -142,11 +144,11 @@ class _Reader:
                     self.read_declaration(declaration, 0)
         return clause.child_by_field_name("value")
 
-    def said(self, node: Any) -> str:
+    def parse_text(self, node: Any) -> str:
         text = " ".join(self.source[node.start_byte : node.end_byte].decode("utf-8", "replace").split())
         return re.sub(r'catch_\("([^"]*)"\)', r"catch (\1)", text) if "catch_" in text else text
 
-    def tokens(self, node: Any) -> str:
+    def join_tokens(self, node: Any) -> str:
         found: list[str] = []
         waiting = [node]
         while waiting:
@@ -156,81 +158,81 @@ class _Reader:
             if node.child_count and node.type not in ("string_literal", "char_literal", "raw_string_literal"):
                 waiting.extend(reversed(node.children))
             else:
-                found.append(self.said(node))
+                found.append(self.parse_text(node))
         return " ".join(found)
 
-    def opaque(self, node: Any) -> Term:
-        return Term("opaque", self.tokens(node))
+    def make_opaque(self, node: Any) -> Term:
+        return Term("opaque", self.join_tokens(node))
 
-    def inner(self, node: Any) -> Any:
+    def strip_parentheses(self, node: Any) -> Any:
         """The node without parentheses around it."""
         while node.type == "parenthesized_expression":
-            inside = _parts(node)
+            inside = _list_children(node)
             if len(inside) != 1:
                 return node
             node = inside[0]
         return node
 
-    def operator(self, node: Any) -> str:
+    def parse_operator(self, node: Any) -> str:
         operator = node.child_by_field_name("operator")
-        written = self.said(operator) if operator is not None else ""
+        written = self.parse_text(operator) if operator is not None else ""
         return _WORDS.get(written, written)
 
-    def spine(self, node: Any) -> tuple[list[Any], list[str]]:
+    def flatten_chain(self, node: Any) -> tuple[list[Any], list[str]]:
         """Operands of a chain of binary operators that lean to the left, and the operators between them."""
         operands: list[Any] = []
         operators: list[str] = []
         while node.type == "binary_expression":
-            operators.append(self.operator(node))
+            operators.append(self.parse_operator(node))
             operands.append(node.child_by_field_name("right"))
             node = node.child_by_field_name("left")
         operands.append(node)
         return operands[::-1], operators[::-1]
 
-    def pieces(self, node: Any, holds: bool) -> list[Conjunct]:
+    def split_pieces(self, node: Any, holds: bool) -> list[Conjunct]:
         """What must hold, one after the other, for the condition to hold (or not to)."""
         result: list[Conjunct] = []
         waiting = [(node, holds)]
         while waiting:
             node, holds = waiting.pop()
-            node = self.inner(node)
-            if node.type == "unary_expression" and self.operator(node) == "!":
+            node = self.strip_parentheses(node)
+            if node.type == "unary_expression" and self.parse_operator(node) == "!":
                 waiting.append((node.child_by_field_name("argument"), not holds))
-            elif node.type == "binary_expression" and self.operator(node) == ("&&" if holds else "||"):
+            elif node.type == "binary_expression" and self.parse_operator(node) == ("&&" if holds else "||"):
                 waiting.append((node.child_by_field_name("right"), holds))
                 waiting.append((node.child_by_field_name("left"), holds))
             else:
-                term = self.term(node, 0)
-                result.append(Conjunct(self.worded(node, holds), term if holds else negation(term)))
+                term = self.parse_term(node, 0)
+                result.append(Conjunct(self.format_node(node, holds), term if holds else negate(term)))
         return result
 
-    def worded(self, node: Any, holds: bool) -> str:
-        text = self.said(node)
+    def format_node(self, node: Any, holds: bool) -> str:
+        text = self.parse_text(node)
         if holds:
             return text
         if node.type == "binary_expression":
-            flipped = FLIPPED.get(self.operator(node))
+            flipped = FLIPPED.get(self.parse_operator(node))
             if flipped is None:
                 return f"!({text})"
             left, right = node.child_by_field_name("left"), node.child_by_field_name("right")
-            return f"{self.said(left)} {flipped} {self.said(right)}"
+            return f"{self.parse_text(left)} {flipped} {self.parse_text(right)}"
         simple = ("identifier", "field_expression", "call_expression", "qualified_identifier", "subscript_expression")
         return f"!{text}" if node.type in simple else f"!({text})"
 
-    def term(self, node: Any, depth: int) -> Term:
-        node = self.inner(node)
+    def parse_term(self, node: Any, depth: int) -> Term:
+        node = self.strip_parentheses(node)
         read = _READ.get(node.type)
         if read is None or depth > DEEPEST:
-            return self.opaque(node)
+            return self.make_opaque(node)
         return read(self, node, depth + 1)
 
-    def field(self, node: Any, name: str, depth: int) -> Term:
+    def parse_field(self, node: Any, name: str, depth: int) -> Term:
         part = node.child_by_field_name(name)
-        return self.opaque(node) if part is None else self.term(part, depth)
+        return self.make_opaque(node) if part is None else self.parse_term(part, depth)
 
     def read_binary_expression(self, node: Any, depth: int) -> Term:
-        operands, operators = self.spine(node)
-        result = self.term(operands[0], depth)
+        operands, operators = self.flatten_chain(node)
+        result = self.parse_term(operands[0], depth)
         position = 0
         while position < len(operators):
             operator = operators[position]
@@ -238,15 +240,15 @@ class _Reader:
                 parts = [result]
                 while position < len(operators) and operators[position] == operator:
                     position += 1
-                    parts.append(self.term(operands[position], depth))
+                    parts.append(self.parse_term(operands[position], depth))
                 result = join("and" if operator == "&&" else "or", parts)
                 continue
             position += 1
             if position > DEEPEST:
-                return self.opaque(node)
-            right = self.term(operands[position], depth)
+                return self.make_opaque(node)
+            right = self.parse_term(operands[position], depth)
             if operator in FLIPPED:
-                result = comparison(operator, result, right)
+                result = compare(operator, result, right)
             elif operator in ("+", "-", "*"):
                 result = Term(operator, "", (result, right))
             else:
@@ -254,10 +256,10 @@ class _Reader:
         return result
 
     def read_unary_expression(self, node: Any, depth: int) -> Term:
-        operator = self.operator(node)
-        operand = self.field(node, "argument", depth)
+        operator = self.parse_operator(node)
+        operand = self.parse_field(node, "argument", depth)
         if operator == "!":
-            return negation(operand)
+            return negate(operand)
         if operator == "-":
             return Term("-", "", (Term("whole", "0"), operand))
         return operand if operator == "+" else Term("op", operator, (operand,))
@@ -265,7 +267,7 @@ class _Reader:
     read_pointer_expression = read_unary_expression
 
     def read_identifier(self, node: Any, depth: int) -> Term:
-        text = re.sub(r"\s+", "", self.tokens(node)).removeprefix("::")
+        text = re.sub(r"\s+", "", self.join_tokens(node)).removeprefix("::")
         if text in ("std::nullopt", "nullopt", "boost::none"):
             return NULL
         return Term("name", text)
@@ -276,103 +278,107 @@ class _Reader:
         field = node.child_by_field_name("field")
         owner = node.child_by_field_name("argument")
         if field is None or owner is None:
-            return self.opaque(node)
-        return member(self.term(owner, depth), re.sub(r"^template\s*|\s+", "", self.tokens(field)))
+            return self.make_opaque(node)
+        return make_member(self.parse_term(owner, depth), re.sub(r"^template\s*|\s+", "", self.join_tokens(field)))
 
     def read_call_expression(self, node: Any, depth: int) -> Term:
         listed = node.child_by_field_name("arguments")
         called = node.child_by_field_name("function")
         if listed is None or called is None:
-            return self.opaque(node)
-        arguments = [self.term(child, depth) for child in _parts(listed)]
-        called = self.inner(called)
+            return self.make_opaque(node)
+        arguments = [self.parse_term(child, depth) for child in _list_children(listed)]
+        called = self.strip_parentheses(called)
         if len(arguments) == 1:
-            cast = self.cast_to(called)
+            cast = self.find_cast_type(called)
             if cast is not None:
-                return self.as_type(cast, arguments[0])
-        function = self.term(called, depth)
+                return self.make_cast(cast, arguments[0])
+        function = self.parse_term(called, depth)
         if function.text == "catch_" and len(arguments) == 1 and arguments[0].kind == "string":
-            return caught(arguments[0].text[1:-1])
+            return make_caught_term(arguments[0].text[1:-1])
         if function.kind == "name" and len(arguments) == 1:
             if function.text in _PASSED_ON:
                 return arguments[0]
             if function.text in _ABSOLUTE:
                 return Term("abs", "", (arguments[0],))
         if not arguments:
-            owner, method = owner_of(function)
+            owner, method = split_owner(function)
             if owner is not None:
                 if method == "size":
                     return Term("size", "", (owner,))
                 if method == "empty":
-                    return comparison("==", Term("size", "", (owner,)), Term("whole", "0"))
+                    return compare("==", Term("size", "", (owner,)), Term("whole", "0"))
                 if method == "has_value":
                     return Term("truth", "", (owner,))
         return Term("call", "", (function, *arguments))
 
-    def cast_to(self, called: Any) -> str | None:
+    def find_cast_type(self, called: Any) -> str | None:
         """The type, when what is called is a type or a cast."""
         if called.type == "template_function":
             name = called.child_by_field_name("name")
             types = called.child_by_field_name("arguments")
-            if name is not None and types is not None and self.said(name) in _CASTS:
-                return self.said(types)[1:-1].strip()
+            if name is not None and types is not None and self.parse_text(name) in _CASTS:
+                return self.parse_text(types)[1:-1].strip()
             return None
         if called.type in ("primitive_type", "sized_type_specifier"):
-            return self.said(called)
-        if called.type in ("identifier", "qualified_identifier") and _WHOLE_TYPE.fullmatch(self.said(called)):
-            return self.said(called)
+            return self.parse_text(called)
+        if called.type in ("identifier", "qualified_identifier") and _WHOLE_TYPE.fullmatch(self.parse_text(called)):
+            return self.parse_text(called)
         return None
 
-    def as_type(self, type_: str, value: Term) -> Term:
+    def make_cast(self, type_: str, value: Term) -> Term:
         """A cast is left out, save one that cuts a fraction off or asks for the truth."""
         if type_ == "bool":
             return Term("truth", "", (value,))
         whole = _WHOLE_TYPE.fullmatch(type_) or _INTEGERS.issuperset(type_.split())
-        return Term("op", "cut", (value,)) if whole and _fractional(value) else value
+        return Term("op", "cut", (value,)) if whole and _is_fractional(value) else value
 
     def read_cast_expression(self, node: Any, depth: int) -> Term:
         type_ = node.child_by_field_name("type")
-        return self.as_type(self.said(type_) if type_ is not None else "", self.field(node, "value", depth))
+        return self.make_cast(
+            self.parse_text(type_) if type_ is not None else "", self.parse_field(node, "value", depth)
+        )
 
     def read_subscript_expression(self, node: Any, depth: int) -> Term:
         indices = node.child_by_field_name("indices")
-        parts = (self.term(child, depth) for child in (_parts(indices) if indices is not None else ()))
-        return Term("index", "", (self.field(node, "argument", depth), *parts))
+        parts = (self.parse_term(child, depth) for child in (_list_children(indices) if indices is not None else ()))
+        return Term("index", "", (self.parse_field(node, "argument", depth), *parts))
 
     def read_conditional_expression(self, node: Any, depth: int) -> Term:
-        parts = (self.field(node, name, depth) for name in ("condition", "consequence", "alternative"))
+        parts = (self.parse_field(node, name, depth) for name in ("condition", "consequence", "alternative"))
         return Term("choice", "", tuple(parts))
 
     def read_number_literal(self, node: Any, depth: int) -> Term:
-        text = self.said(node).replace("'", "")
+        text = self.parse_text(node).replace("'", "")
         duration = _DURATION.match(text)
         if duration:
-            count, unit = number(duration[1]), number(_SECONDS[duration[2]])
-            return self.opaque(node) if count is None or unit is None else Term("*", "", (count, unit))
+            count, unit = parse_number(duration[1]), parse_number(_SECONDS[duration[2]])
+            return self.make_opaque(node) if count is None or unit is None else Term("*", "", (count, unit))
         try:
             if text[:2] in ("0x", "0X", "0b", "0B"):
-                return number(str(int(re.sub(r"[uUlLzZ]+$", "", text)[:_LONGEST_HEX], 0))) or self.opaque(node)
+                return parse_number(str(int(re.sub(r"[uUlLzZ]+$", "", text)[:_LONGEST_HEX], 0))) or self.make_opaque(
+                    node
+                )
             plain = _SUFFIX.sub("", text)
             if plain.isdigit() and plain.startswith("0"):
-                return number(str(int(plain, 8))) or self.opaque(node)
+                return parse_number(str(int(plain, 8))) or self.make_opaque(node)
         except ValueError:
-            return self.opaque(node)
-        return number(plain) or self.opaque(node)
+            return self.make_opaque(node)
+        return parse_number(plain) or self.make_opaque(node)
 
     read_user_defined_literal = read_number_literal
 
     def read_string_literal(self, node: Any, depth: int) -> Term:
-        return Term("string", re.sub(r"\s*\n\s*", "", self.said(node)))
+        return Term("string", re.sub(r"\s*\n\s*", "", self.parse_text(node)))
 
     read_raw_string_literal = read_concatenated_string = read_char_literal = read_string_literal
 
     def read_assignment_expression(self, node: Any, depth: int) -> Term:
         """`a = b` has the value of b, which a stands for further in."""
         left = node.child_by_field_name("left")
-        value = self.field(node, "right", depth)
-        if self.operator(node) != "=" or left is None or left.type != "identifier":
-            return self.opaque(node)
-        self.names.append((self.said(left), value))
+        value = self.parse_field(node, "right", depth)
+        if self.parse_operator(node) != "=" or left is None or left.type != "identifier":
+            return self.make_opaque(node)
+        self.names.append((self.parse_text(left), value))
         return value
 
     def read_declaration(self, node: Any, depth: int) -> Term:
@@ -383,14 +389,14 @@ class _Reader:
             value = declarator.child_by_field_name("value")
             declarator = declarator.child_by_field_name("declarator")
         if declarator is None or value is None:
-            return self.opaque(node)
+            return self.make_opaque(node)
         if value.type in ("initializer_list", "argument_list"):
-            inside = _parts(value)
+            inside = _list_children(value)
             if len(inside) != 1:
-                return self.opaque(node)
+                return self.make_opaque(node)
             value = inside[0]
-        term = self.term(value, depth)
-        name = re.search(r"([A-Za-z_]\w*)$", self.said(declarator))
+        term = self.parse_term(value, depth)
+        name = re.search(r"([A-Za-z_]\w*)$", self.parse_text(declarator))
         if name:
             self.names.append((name[1], term))
         return term
@@ -401,16 +407,16 @@ class _Reader:
     read_false = read_null = read_this = read_true
 
     def read_sizeof_expression(self, node: Any, depth: int) -> Term:
-        return Term("op", self.tokens(node))
+        return Term("op", self.join_tokens(node))
 
 
-def _parts(node: Any) -> list[Any]:
+def _list_children(node: Any) -> list[Any]:
     return [child for child in node.named_children if child.type != "comment"]
 
 
-def _fractional(value: Term) -> bool:
-    return value.kind == "real" or (value.kind in ("+", "-", "*", "op") and any(map(_fractional, value.parts)))
+def _is_fractional(value: Term) -> bool:
+    return value.kind == "real" or (value.kind in ("+", "-", "*", "op") and any(map(_is_fractional, value.parts)))
 
 
 _LONGEST_HEX = 40
-_READ = methods_of(_Reader, "read_")
+_READ = collect_methods(_Reader, "read_")

@@ -6,7 +6,7 @@ import ast
 import re
 import warnings
 
-from ...edges.dispatch import node_methods
+from ...edges.dispatch import collect_node_methods
 from .guard_terms import (
     DEEPEST,
     FALSE,
@@ -17,12 +17,12 @@ from .guard_terms import (
     Conjunct,
     GuardReading,
     Term,
-    comparison,
+    build_reading,
+    compare,
     join,
-    member,
-    negation,
-    number,
-    reading,
+    make_member,
+    negate,
+    parse_number,
 )
 
 _COMPARED = {ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
@@ -33,31 +33,31 @@ _OPERATORS = {
 _MOST_MEMBERS = 50
 
 
-def condition(text: str, holds: bool) -> GuardReading:
+def parse_condition(text: str, holds: bool) -> GuardReading:
     """What a condition says when it holds, or when it does not."""
     reader = _Reader()
-    node = parsed(text)
+    node = parse_tree(text)
     if node is None:
-        return GuardReading((opaque_piece(text, holds),))
-    return reading(reader.pieces(node, holds), reader.names)
+        return GuardReading((make_opaque_piece(text, holds),))
+    return build_reading(reader.split_pieces(node, holds), reader.names)
 
 
-def expression(text: str) -> Term:
+def parse_expression(text: str) -> Term:
     """The term of an expression."""
-    node = parsed(text)
-    return opaque(text) if node is None else _Reader().term(node, 0)
+    node = parse_tree(text)
+    return make_opaque(text) if node is None else _Reader().parse_term(node, 0)
 
 
-def opaque(text: str) -> Term:
+def make_opaque(text: str) -> Term:
     return Term("opaque", " ".join(text.split()))
 
 
-def opaque_piece(text: str, holds: bool) -> Conjunct:
-    term = opaque(text)
-    return Conjunct(text if holds else f"not ({text})", term if holds else negation(term))
+def make_opaque_piece(text: str, holds: bool) -> Conjunct:
+    term = make_opaque(text)
+    return Conjunct(text if holds else f"not ({text})", term if holds else negate(term))
 
 
-def parsed(text: str) -> ast.expr | None:
+def parse_tree(text: str) -> ast.expr | None:
     """The syntax tree; None when there is none. Python 2's `<>` is known."""
     if not text.strip() or len(text) > LONGEST:
         return None
@@ -71,7 +71,7 @@ def parsed(text: str) -> ast.expr | None:
     return None
 
 
-def _statement(text: str) -> ast.stmt | None:
+def _parse_statement(text: str) -> ast.stmt | None:
     """The statement that a text begins with, None where it is none."""
     try:
         return ast.parse(text).body[0]
@@ -82,45 +82,45 @@ def _statement(text: str) -> ast.stmt | None:
 def loop(head: str) -> GuardReading:
     """What the head of a `for` says: that there is an element."""
     inside = re.sub(r"^\s*(?:async\s+)?for\s+|:\s*$", "", head).strip()
-    statement = _statement(f"for {inside}: pass")
+    statement = _parse_statement(f"for {inside}: pass")
     if not isinstance(statement, ast.For) or len(inside) > LONGEST:
-        return GuardReading((Conjunct(head, opaque(head)),))
-    element = Term("each", "", (_Reader().term(statement.iter, 0),))
-    return GuardReading((Conjunct(f"for {inside}", element),), tuple(_unpacked(statement.target, element)))
+        return GuardReading((Conjunct(head, make_opaque(head)),))
+    element = Term("each", "", (_Reader().parse_term(statement.iter, 0),))
+    return GuardReading((Conjunct(f"for {inside}", element),), tuple(_unpack_target(statement.target, element)))
 
 
-def _unpacked(target: ast.expr, value: Term) -> list[tuple[str, Term]]:
+def _unpack_target(target: ast.expr, value: Term) -> list[tuple[str, Term]]:
     if isinstance(target, ast.Name):
         return [(target.id, value)]
     if isinstance(target, (ast.Tuple, ast.List)):
         parts = enumerate(target.elts)
-        return [pair for place, part in parts for pair in _unpacked(part, member(value, f"{place}"))]
+        return [pair for place, part in parts for pair in _unpack_target(part, make_member(value, f"{place}"))]
     return []
 
 
-def matched(subject: Term, pattern: str) -> GuardReading:
+def parse_case_pattern(subject: Term, pattern: str) -> GuardReading:
     """What `case pattern` says of a subject."""
-    statement = _statement(f"match _:\n case {pattern}: pass")
+    statement = _parse_statement(f"match _:\n case {pattern}: pass")
     if not isinstance(statement, ast.Match) or len(statement.cases) != 1 or statement.cases[0].guard:
-        return GuardReading((Conjunct("", comparison("==", subject, opaque(pattern))),))
+        return GuardReading((Conjunct("", compare("==", subject, make_opaque(pattern))),))
     names: list[tuple[str, Term]] = []
-    term = _pattern(subject, statement.cases[0].pattern, names, 0)
+    term = _read_pattern(subject, statement.cases[0].pattern, names, 0)
     return GuardReading((Conjunct("", term),), tuple(names))
 
 
-def _pattern(subject: Term, pattern: ast.pattern, names: list[tuple[str, Term]], depth: int) -> Term:
+def _read_pattern(subject: Term, pattern: ast.pattern, names: list[tuple[str, Term]], depth: int) -> Term:
     if isinstance(pattern, ast.MatchValue):
-        return comparison("==", subject, _Reader().term(pattern.value, depth))
+        return compare("==", subject, _Reader().parse_term(pattern.value, depth))
     if isinstance(pattern, ast.MatchSingleton):
         return _is(subject, {None: NULL, True: TRUE, False: FALSE}[pattern.value])
     if isinstance(pattern, ast.MatchOr) and depth < DEEPEST:
-        return join("or", [_pattern(subject, part, names, depth + 1) for part in pattern.patterns])
+        return join("or", [_read_pattern(subject, part, names, depth + 1) for part in pattern.patterns])
     if isinstance(pattern, ast.MatchAs):
         if pattern.name:
             names.append((pattern.name, subject))
-        return TRUE if pattern.pattern is None else _pattern(subject, pattern.pattern, names, depth + 1)
+        return TRUE if pattern.pattern is None else _read_pattern(subject, pattern.pattern, names, depth + 1)
     try:
-        return Term("op", "matches", (subject, opaque(ast.unparse(pattern))))
+        return Term("op", "matches", (subject, make_opaque(ast.unparse(pattern))))
     except RecursionError:
         return Term("op", "matches", (subject,))
 
@@ -128,7 +128,7 @@ def _pattern(subject: Term, pattern: ast.pattern, names: list[tuple[str, Term]],
 def _is(left: Term, right: Term) -> Term:
     """`left is right`."""
     if NULL in (left, right):
-        return comparison("==", left, right)
+        return compare("==", left, right)
     return Term("op", "is", tuple(sorted((left, right))))
 
 
@@ -138,13 +138,13 @@ class _Reader:
     def __init__(self) -> None:
         self.names: list[tuple[str, Term]] = []
 
-    def opaque(self, node: ast.AST) -> Term:
+    def make_opaque(self, node: ast.AST) -> Term:
         try:
-            return opaque(ast.unparse(node))
+            return make_opaque(ast.unparse(node))
         except (RecursionError, ValueError):
-            return opaque("too deep")
+            return make_opaque("too deep")
 
-    def pieces(self, node: ast.expr, holds: bool) -> list[Conjunct]:
+    def split_pieces(self, node: ast.expr, holds: bool) -> list[Conjunct]:
         """What must hold, one after the other, for the condition to hold (or not to)."""
         result: list[Conjunct] = []
         waiting = [(node, holds)]
@@ -155,16 +155,16 @@ class _Reader:
             elif isinstance(node, ast.BoolOp) and isinstance(node.op, ast.And if holds else ast.Or):
                 waiting.extend((part, holds) for part in reversed(node.values))
             else:
-                term = self.term(node, 0)
-                result.append(Conjunct(self.worded(node, holds), term if holds else negation(term)))
+                term = self.parse_term(node, 0)
+                result.append(Conjunct(self.format_node(node, holds), term if holds else negate(term)))
         return result
 
-    def worded(self, node: ast.expr, holds: bool) -> str:
-        text = self.opaque(node).text
+    def format_node(self, node: ast.expr, holds: bool) -> str:
+        text = self.make_opaque(node).text
         if holds:
             return text
         if isinstance(node, ast.Compare) and len(node.ops) == 1:
-            left, right = self.opaque(node.left).text, self.opaque(node.comparators[0]).text
+            left, right = self.make_opaque(node.left).text, self.make_opaque(node.comparators[0]).text
             operator = node.ops[0]
             words = {ast.Is: "is not", ast.IsNot: "is", ast.In: "not in", ast.NotIn: "in"}
             flipped = words.get(type(operator)) or FLIPPED[_COMPARED[type(operator)]]
@@ -172,59 +172,62 @@ class _Reader:
         simple = isinstance(node, (ast.Name, ast.Attribute, ast.Call, ast.Subscript))
         return f"not {text}" if simple else f"not ({text})"
 
-    def term(self, node: ast.expr, depth: int) -> Term:
+    def parse_term(self, node: ast.expr, depth: int) -> Term:
         read = _READ.get(type(node))
         if read is None or depth > DEEPEST:
-            return self.opaque(node)
+            return self.make_opaque(node)
         return read(self, node, depth + 1)
 
     def read_BoolOp(self, node: ast.BoolOp, depth: int) -> Term:
-        parts = [self.term(part, depth) for part in node.values]
+        parts = [self.parse_term(part, depth) for part in node.values]
         return join("and" if isinstance(node.op, ast.And) else "or", parts)
 
     def read_UnaryOp(self, node: ast.UnaryOp, depth: int) -> Term:
-        operand = self.term(node.operand, depth)
+        operand = self.parse_term(node.operand, depth)
         if isinstance(node.op, ast.Not):
-            return negation(operand)
+            return negate(operand)
         if isinstance(node.op, ast.USub):
             return Term("-", "", (Term("whole", "0"), operand))
         return operand if isinstance(node.op, ast.UAdd) else Term("op", "~", (operand,))
 
     def read_Compare(self, node: ast.Compare, depth: int) -> Term:
-        terms = [self.term(part, depth) for part in (node.left, *node.comparators)]
+        terms = [self.parse_term(part, depth) for part in (node.left, *node.comparators)]
         links: list[Term] = []
         for place, operator in enumerate(node.ops):
             left, right = terms[place], terms[place + 1]
             if isinstance(operator, (ast.In, ast.NotIn)):
-                link = self.within(left, node.comparators[place], right, depth)
+                link = self.expand_membership(left, node.comparators[place], right, depth)
             elif isinstance(operator, (ast.Is, ast.IsNot)):
                 link = _is(left, right)
             else:
-                link = comparison(_COMPARED[type(operator)], left, right)
-            links.append(negation(link) if isinstance(operator, (ast.NotIn, ast.IsNot)) else link)
+                link = compare(_COMPARED[type(operator)], left, right)
+            links.append(negate(link) if isinstance(operator, (ast.NotIn, ast.IsNot)) else link)
         return join("and", links)
 
-    def within(self, left: Term, written: ast.expr, right: Term, depth: int) -> Term:
+    def expand_membership(self, left: Term, written: ast.expr, right: Term, depth: int) -> Term:
         """`left in (a, b)` as `left == a or left == b`; anything else is as it is."""
         listed = written.elts if isinstance(written, (ast.Tuple, ast.List, ast.Set)) else None
         if listed is None or len(listed) > _MOST_MEMBERS or any(isinstance(part, ast.Starred) for part in listed):
             return Term("op", "in", (left, right))
         if not listed:
             return FALSE
-        return join("or", [comparison("==", left, self.term(part, depth)) for part in listed])
+        return join("or", [compare("==", left, self.parse_term(part, depth)) for part in listed])
 
     def read_BinOp(self, node: ast.BinOp, depth: int) -> Term:
-        operands, sign = (self.term(node.left, depth), self.term(node.right, depth)), _OPERATORS[type(node.op)]
+        operands, sign = (
+            (self.parse_term(node.left, depth), self.parse_term(node.right, depth)),
+            _OPERATORS[type(node.op)],
+        )
         return Term(sign, "", operands) if sign in ("+", "-", "*") else Term("op", sign, operands)
 
     def read_IfExp(self, node: ast.IfExp, depth: int) -> Term:
-        return Term("choice", "", tuple(self.term(part, depth) for part in (node.test, node.body, node.orelse)))
+        return Term("choice", "", tuple(self.parse_term(part, depth) for part in (node.test, node.body, node.orelse)))
 
     def read_Name(self, node: ast.Name, depth: int) -> Term:
         return Term("name", "this" if node.id == "self" else node.id)
 
     def read_Attribute(self, node: ast.Attribute, depth: int) -> Term:
-        return member(self.term(node.value, depth), node.attr)
+        return make_member(self.parse_term(node.value, depth), node.attr)
 
     def read_Constant(self, node: ast.Constant, depth: int) -> Term:
         value = node.value
@@ -234,20 +237,20 @@ class _Reader:
             return TRUE if value else FALSE
         if isinstance(value, (int, float)):
             try:
-                return number(repr(value)) or self.opaque(node)
+                return parse_number(repr(value)) or self.make_opaque(node)
             except ValueError:
-                return opaque("a large number")
+                return make_opaque("a large number")
         if isinstance(value, (str, bytes)):
             return Term("string", repr(value))
-        return self.opaque(node)
+        return self.make_opaque(node)
 
     def read_Subscript(self, node: ast.Subscript, depth: int) -> Term:
-        return Term("index", "", (self.term(node.value, depth), self.term(node.slice, depth)))
+        return Term("index", "", (self.parse_term(node.value, depth), self.parse_term(node.slice, depth)))
 
     def read_Call(self, node: ast.Call, depth: int) -> Term:
-        function = self.term(node.func, depth)
-        arguments = [self.term(argument, depth) for argument in node.args]
-        named = sorted((word.arg or "**", self.term(word.value, depth)) for word in node.keywords)
+        function = self.parse_term(node.func, depth)
+        arguments = [self.parse_term(argument, depth) for argument in node.args]
+        named = sorted((word.arg or "**", self.parse_term(word.value, depth)) for word in node.keywords)
         if len(arguments) == 1 and not named and isinstance(node.func, ast.Name):
             known = {"len": "size", "bool": "truth", "abs": "abs"}.get(node.func.id)
             if known:
@@ -255,13 +258,13 @@ class _Reader:
         return Term("call", "", (function, *arguments, *(Term("op", f"{name}=", (value,)) for name, value in named)))
 
     def read_NamedExpr(self, node: ast.NamedExpr, depth: int) -> Term:
-        value = self.term(node.value, depth)
+        value = self.parse_term(node.value, depth)
         if isinstance(node.target, ast.Name):
             self.names.append((node.target.id, value))
         return value
 
     def read_Await(self, node: ast.Await, depth: int) -> Term:
-        return self.term(node.value, depth)
+        return self.parse_term(node.value, depth)
 
 
-_READ = node_methods(_Reader, "read_")
+_READ = collect_node_methods(_Reader, "read_")

@@ -16,18 +16,18 @@ from .guard_terms import (
     Term,
     define,
     join,
-    names_in,
-    negation,
-    rebuilt,
-    renamed,
+    list_names,
+    negate,
+    rebuild_term,
+    rename_term,
     split_outside,
-    substituted,
+    substitute_names,
 )
 
 Language = Literal["cpp", "python"]
 
 
-def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
+def detect_language(ways: Sequence[Sequence[GuardAt]]) -> Language:
     """The language the guards are written in, as their paths tell it; a script without an ending is Python."""
     for way in ways:
         for guard in way:
@@ -36,7 +36,7 @@ def language_of(ways: Sequence[Sequence[GuardAt]]) -> Language:
     return "cpp"
 
 
-def pieces_of(way: Sequence[GuardAt], language: Language, renames: Mapping[str, str]) -> tuple[Conjunct, ...]:
+def collect_pieces(way: Sequence[GuardAt], language: Language, renames: Mapping[str, str]) -> tuple[Conjunct, ...]:
     """All that must hold on one way, outermost first, with variables of loops and conditions put back into what they
     stand for."""
     result: list[Conjunct] = []
@@ -45,9 +45,9 @@ def pieces_of(way: Sequence[GuardAt], language: Language, renames: Mapping[str, 
         known = names.setdefault(guard.of, {})
         reading = read(language, guard.kind, guard.text)
         for piece in reading.pieces:
-            term = substituted(piece.term, known) if known else piece.term
+            term = substitute_names(piece.term, known) if known else piece.term
             if renames:
-                term = renamed(term, renames)
+                term = rename_term(term, renames)
             if term.kind != "true":
                 result.append(Conjunct(piece.text, term, place))
         for name, value in reading.names:
@@ -55,24 +55,24 @@ def pieces_of(way: Sequence[GuardAt], language: Language, renames: Mapping[str, 
     return tuple(result)
 
 
-def this_left_out(sides: Sequence[Sequence[Sequence[Conjunct]]]) -> tuple[tuple[tuple[Conjunct, ...], ...], ...]:
+def drop_this(sides: Sequence[Sequence[Sequence[Conjunct]]]) -> tuple[tuple[tuple[Conjunct, ...], ...], ...]:
     """C++ sides (of ways, of pieces) with `this->x` as `x`, unless one side has both."""
     for side in sides:
-        named = {name for way in side for piece in way for name in names_in(piece.term)}
+        named = {name for way in side for piece in way for name in list_names(piece.term)}
         ours = {name.removeprefix("this.").partition(".")[0] for name in named if name.startswith("this.")}
         if any(name.partition(".")[0] in ours for name in named):
             return tuple(tuple(tuple(way) for way in side) for side in sides)
     return tuple(
-        tuple(tuple(piece._replace(term=_bare(piece.term)) for piece in way) for way in side) for side in sides
+        tuple(tuple(piece._replace(term=_strip_this(piece.term)) for piece in way) for way in side) for side in sides
     )
 
 
-def _bare(term: Term) -> Term:
+def _strip_this(term: Term) -> Term:
     if term.kind == "name" and term.text.startswith("this."):
         return Term("name", term.text.removeprefix("this."))
     if not term.parts:
         return term
-    return rebuilt(term.kind, term.text, tuple(map(_bare, term.parts)))
+    return rebuild_term(term.kind, term.text, tuple(map(_strip_this, term.parts)))
 
 
 @lru_cache(16384)
@@ -80,15 +80,15 @@ def read(language: Language, kind: str, text: str) -> GuardReading:
     """One guard by itself; kind and text as in facts."""
     reader = guard_cpp if language == "cpp" else guard_python
     if kind in ("if", "while"):
-        return reader.condition(text, True)
+        return reader.parse_condition(text, True)
     if kind == "unless":
         if re.match(r"(?:catch|except)\b", text):
-            return GuardReading((Conjunct(f"no {text}", negation(_caught(text))),))
-        return reader.condition(text, False)
+            return GuardReading((Conjunct(f"no {text}", negate(_parse_caught(text))),))
+        return reader.parse_condition(text, False)
     if kind == "cpp":
-        return guard_cpp.directive(text, True)
+        return guard_cpp.parse_directive(text, True)
     if kind == "case":
-        return case(language, text)
+        return read_case(language, text)
     if kind == "for":
         return reader.loop(text)
     if kind in ("do", "with"):
@@ -97,18 +97,18 @@ def read(language: Language, kind: str, text: str) -> GuardReading:
     if kind == "never":
         return GuardReading((Conjunct(f"never: {text}", FALSE),))
     if kind == "catch":
-        return GuardReading((Conjunct(f"catch ({text})", _caught(text)),))
+        return GuardReading((Conjunct(f"catch ({text})", _parse_caught(text)),))
     return GuardReading((Conjunct(text, Term("opaque", f"{kind} {' '.join(text.split())}")),))
 
 
-def _caught(text: str) -> Term:
+def _parse_caught(text: str) -> Term:
     """That an exception was caught; the text is what is caught, alone or after `catch` or `except`."""
     match = re.match(r"catch\s*\((.*)\)$|except\b(.*)", text.strip())
     inside = match[1] or match[2] or "" if match else text
-    return guard_cpp.caught(re.sub(r"\s+as\s+\w+$", "", inside.strip()))
+    return guard_cpp.make_caught_term(re.sub(r"\s+as\s+\w+$", "", inside.strip()))
 
 
-def case(language: Language, text: str) -> GuardReading:
+def read_case(language: Language, text: str) -> GuardReading:
     """`subject == a or b` or `subject other than a, b`."""
     subject, other, values = text.partition(" other than ")
     if other:
@@ -117,30 +117,30 @@ def case(language: Language, text: str) -> GuardReading:
         subject, _, values = text.partition(" == ")
         named = _split(values, " or ")
     reader = guard_cpp if language == "cpp" else guard_python
-    asked = reader.expression(subject)
+    asked = reader.parse_expression(subject)
     alternatives: list[Term] = []
     names: tuple[tuple[str, Term], ...] = ()
     for value in named:
         # Where each value comes with the subject again.
         value = value.removeprefix(f"{subject} == ")
         if language == "python":
-            reading = guard_python.matched(asked, value)
+            reading = guard_python.parse_case_pattern(asked, value)
             alternatives.append(reading.pieces[0].term)
             names += reading.names
         else:
-            alternatives.append(_case_value(asked, value))
+            alternatives.append(_build_case_term(asked, value))
     if not alternatives:
         return GuardReading()
     term = join("or", alternatives)
-    return GuardReading((Conjunct(text, negation(term) if other else term),), () if other else names)
+    return GuardReading((Conjunct(text, negate(term) if other else term),), () if other else names)
 
 
-def _case_value(subject: Term, value: str) -> Term:
+def _build_case_term(subject: Term, value: str) -> Term:
     first, dots, last = value.partition(" ... ")
     if dots:
-        low, high = guard_cpp.expression(first), guard_cpp.expression(last)
-        return join("and", (guard_cpp.comparison("<=", low, subject), guard_cpp.comparison("<=", subject, high)))
-    return guard_cpp.comparison("==", subject, guard_cpp.expression(value))
+        low, high = guard_cpp.parse_expression(first), guard_cpp.parse_expression(last)
+        return join("and", (guard_cpp.compare("<=", low, subject), guard_cpp.compare("<=", subject, high)))
+    return guard_cpp.compare("==", subject, guard_cpp.parse_expression(value))
 
 
 _QUOTED = r"\"(?:[^\"\\]|\\(?:.|\Z))*(?:\"|\Z)|'(?:[^'\\]|\\(?:.|\Z))*(?:'|\Z)"

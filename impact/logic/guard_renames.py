@@ -39,17 +39,17 @@ def propose_renames(old: str, new: str, language: Language) -> dict[str, str]:
     """
     if old == new:
         return {}
-    before, after = _statements(old, language), _statements(new, language)
+    before, after = _split_statements(old, language), _split_statements(new, language)
     if len(before) + len(after) > _MOST_STATEMENTS:
         return {}
-    counted_before, counted_after = _counted(before), _counted(after)
+    counted_before, counted_after = _count_names(before), _count_names(after)
     gone = counted_before.keys() - counted_after.keys()
     come = counted_after.keys() - counted_before.keys()
     if not gone or not come:
         return {}
     pairs: Counter[tuple[str, str]] = Counter()
     made: set[tuple[str, str]] = set()
-    for one, other in _alike(before, after, gone, come):
+    for one, other in _pair_statements(before, after, gone, come):
         for place, ((name, _), (successor, _)) in enumerate(zip(one, other, strict=True)):
             if name in gone and successor in come:
                 pairs[name, successor] += 1
@@ -70,7 +70,7 @@ def propose_renames(old: str, new: str, language: Language) -> dict[str, str]:
     }
 
 
-def _statements(text: str, language: Language) -> list[Statement]:
+def _split_statements(text: str, language: Language) -> list[Statement]:
     """A text's statements: what stands between `;`, `{` and `}`, in Python also between the ends of lines."""
     result: list[Statement] = []
     tokens: list[tuple[str, bool]] = []
@@ -90,21 +90,21 @@ def _statements(text: str, language: Language) -> list[Statement]:
     return result
 
 
-def _counted(statements: list[Statement]) -> Counter[str]:
+def _count_names(statements: list[Statement]) -> Counter[str]:
     return Counter(token for statement in statements for token, is_name in statement if is_name)
 
 
-def _alike(
+def _pair_statements(
     before: list[Statement], after: list[Statement], gone: set[str], come: set[str]
 ) -> Iterable[tuple[Statement, Statement]]:
     """Statements that are the same save for names that are gone and come."""
-    shapes_before = [_shape(statement, gone) for statement in before]
-    shapes_after = [_shape(statement, come) for statement in after]
+    shapes_before = [_mask_names(statement, gone) for statement in before]
+    shapes_after = [_mask_names(statement, come) for statement in after]
     for first, second, length in SequenceMatcher(None, shapes_before, shapes_after, False).get_matching_blocks():
         yield from zip(before[first : first + length], after[second : second + length], strict=True)
 
 
-def _shape(statement: Statement, names: set[str]) -> tuple[str, ...]:
+def _mask_names(statement: Statement, names: set[str]) -> tuple[str, ...]:
     return tuple("" if is_name and token in names else token for token, is_name in statement)
 
 

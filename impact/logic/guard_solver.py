@@ -15,7 +15,7 @@ from math import ceil
 from typing import Any
 
 from .guard_reading import Language
-from .guard_terms import FORMULAS, NULL, Term, owner_of
+from .guard_terms import FORMULAS, NULL, Term, split_owner
 
 _ENUMERATOR = re.compile(r"(?P<scope>.+)::(?:[A-Z]|k[A-Z])\w*|(?P<class>.+)\.[A-Z][A-Z0-9_]+")
 _CONSTANT = re.compile(r"[A-Z][A-Z0-9_]+|k[A-Z]\w*")
@@ -38,7 +38,7 @@ class Undecided(Exception):
 
 
 @contextlib.contextmanager
-def limited_questions(number: int = MOST_QUESTIONS) -> Iterator[None]:
+def limit_questions(number: int = MOST_QUESTIONS) -> Iterator[None]:
     """Within it only so many questions are decided, all others are Undecided. By number and not by time, so that the
     answer is the same on every machine."""
     _left.append(number)
@@ -72,12 +72,12 @@ class Solver:
         self.equated: dict[Term, set[Term]] = {}
         self.largest = 0
 
-    def relation(self, old: Term, new: Term) -> tuple[bool | None, bool | None, bool]:
+    def compare(self, old: Term, new: Term) -> tuple[bool | None, bool | None, bool]:
         """Whether new implies old, and old implies new (None: true of some types only), and whether that is so of
         conditions that can hold at all. Raises Undecided."""
-        before, after = self.stated(old, new)
+        before, after = self.build_formulas(old, new)
         loses, gains = f"(and {before} (not {after}))", f"(and {after} (not {before}))"
-        ask = self.asked(before=before, after=after, loses=loses, gains=gains)
+        ask = self.make_checker(before=before, after=after, loses=loses, gains=gains)
         lost, gained = ask("loses", "supposed"), ask("gains", "supposed")
         if lost and gained:
             return False, False, True
@@ -85,31 +85,31 @@ class Solver:
         backward = False if lost else None if ask("loses") else True
         return forward, backward, (lost or ask("before")) and (gained or ask("after"))
 
-    def possible(self, term: Term) -> bool:
+    def is_possible(self, term: Term) -> bool:
         """Whether a condition can hold. Raises Undecided."""
-        (asked,) = self.stated(term)
-        return self.asked(asked=asked)("asked")
+        (asked,) = self.build_formulas(term)
+        return self.make_checker(asked=asked)("asked")
 
-    def stated(self, *terms: Term) -> list[str]:
+    def build_formulas(self, *terms: Term) -> list[str]:
         """The terms as formulas, in the language of SMT-LIB; `script` says what is in them."""
         try:
             for term in terms:
                 self.look(term, False)
-            return [self.truth(term) for term in terms]
+            return [self.encode_truth(term) for term in terms]
         except RecursionError as error:
             raise Undecided from error
 
-    def asked(self, **formulas: str) -> Callable[..., bool]:
+    def make_checker(self, **formulas: str) -> Callable[..., bool]:
         """A function that tells whether some of the formulas, by their names, hold together for some values. Besides
-        them there are `supposed` and `near`: see supposed() and near()."""
+        them there are `supposed` and `near`: see list_assumptions() and near()."""
         import z3
 
         if _left:
             if _left[-1] <= 0:
                 raise Undecided
             _left[-1] -= 1
-        formulas["supposed"], formulas["near"] = _all(self.supposed()), _all(self.near())
-        known = [f"(assert {fact})" for fact in self.known()]
+        formulas["supposed"], formulas["near"] = _join_all(self.list_assumptions()), _join_all(self.list_bounds())
+        known = [f"(assert {fact})" for fact in self.list_axioms()]
         named = [f"(declare-const {name} Bool)(assert (=> {name} {formula}))" for name, formula in formulas.items()]
         solver = z3.SimpleSolver()
         solver.set("rlimit", self.milliseconds * _RESOURCES_PER_MILLISECOND)
@@ -178,8 +178,8 @@ class Solver:
                 return
         self.look(left, True)
         self.look(right, True)
-        bases = {base for part in term.parts for base in self.bases(part)}
-        literals = [literal for part in term.parts for literal in self.literals(part)]
+        bases = {base for part in term.parts for base in self.find_unknowns(part)}
+        literals = [literal for part in term.parts for literal in self.find_literals(part)]
         self.largest = max(self.largest, *(ceil(abs(Fraction(literal.text))) for literal in literals), 0)
         calculated = self.is_arithmetic(left) or self.is_arithmetic(right)
         if term.text != "==" and (literals or calculated):
@@ -193,23 +193,23 @@ class Solver:
         if (term.text == "<" and self.fold(right) == 0) or (term.text == "<=" and self.fold(left) == 0):
             self.signed |= bases
 
-    def bases(self, term: Term) -> Iterable[Term]:
+    def find_unknowns(self, term: Term) -> Iterable[Term]:
         """The unknowns in an arithmetic expression."""
         if self.is_arithmetic(term) or term.kind == "abs":
             for part in term.parts:
-                yield from self.bases(part)
+                yield from self.find_unknowns(part)
         elif term.kind == "choice":
-            yield from self.bases(term.parts[1])
-            yield from self.bases(term.parts[2])
+            yield from self.find_unknowns(term.parts[1])
+            yield from self.find_unknowns(term.parts[2])
         elif term.kind not in ("whole", "real", "string", "null", "true", "false"):
             yield term
 
-    def literals(self, term: Term) -> Iterable[Term]:
+    def find_literals(self, term: Term) -> Iterable[Term]:
         if term.kind in ("whole", "real"):
             yield term
         elif self.is_arithmetic(term):
             for part in term.parts:
-                yield from self.literals(part)
+                yield from self.find_literals(part)
 
     def is_arithmetic(self, term: Term) -> bool:
         """Whether a term is a sum or a multiple of others."""
@@ -224,7 +224,7 @@ class Solver:
             divisor = self.fold(term.parts[1])
             # 1 / 2 is 0 or 0.5.
             return bool(divisor) and any(
-                literal.kind == "real" for part in term.parts for literal in self.literals(part)
+                literal.kind == "real" for part in term.parts for literal in self.find_literals(part)
             )
         return False
 
@@ -245,101 +245,101 @@ class Solver:
     def is_whole(self, term: Term) -> bool:
         """Whether a term is a whole number in whatever types it is made of."""
         if term.kind == "call":
-            return owner_of(term.parts[0])[1] in _COUNTS
+            return split_owner(term.parts[0])[1] in _COUNTS
         return term.kind == "size" or (term.kind == "op" and term.text == "cut")
 
-    def fresh(self, sort: str) -> str:
+    def declare_unknown(self, sort: str) -> str:
         name = f"{sort[0].lower()}{len(self.script)}"
         self.script.append(f"(declare-const {name} {sort})")
         return name
 
-    def number_of(self, term: Term) -> str:
+    def encode_number(self, term: Term) -> str:
         """The unknown number that a term is."""
         if term.kind == "*" or (term.kind == "op" and term.text in ("&", "|", "^")):
             term = Term(term.kind, term.text, tuple(sorted(term.parts)))
         if term not in self.numbers:
-            self.numbers[term] = self.fresh("Real")
+            self.numbers[term] = self.declare_unknown("Real")
         return self.numbers[term]
 
-    def value(self, term: Term) -> str:
+    def encode(self, term: Term) -> str:
         kind, parts = term.kind, term.parts
         folded = self.fold(term)
         if folded is not None:
-            return _real(folded)
+            return _format_real(folded)
         if kind in FORMULAS:
-            return f"(ite {self.truth(term)} 1.0 0.0)"
+            return f"(ite {self.encode_truth(term)} 1.0 0.0)"
         if kind == "choice":
-            return f"(ite {self.truth(parts[0])} {self.value(parts[1])} {self.value(parts[2])})"
+            return f"(ite {self.encode_truth(parts[0])} {self.encode(parts[1])} {self.encode(parts[2])})"
         if self.is_arithmetic(term):
-            return f"({term.text or kind} {self.value(parts[0])} {self.value(parts[1])})"
+            return f"({term.text or kind} {self.encode(parts[0])} {self.encode(parts[1])})"
         if kind == "abs":
-            inside = self.value(parts[0])
+            inside = self.encode(parts[0])
             return f"(ite (>= {inside} 0.0) {inside} (- {inside}))"
         if kind == "null" and not self.python:
             return "0.0"
         if kind == "string":
             if term.text not in self.texts:
-                self.texts[term.text] = self.fresh("Real")
+                self.texts[term.text] = self.declare_unknown("Real")
             return self.texts[term.text]
-        return self.number_of(term)
+        return self.encode_number(term)
 
-    def truth(self, term: Term) -> str:
+    def encode_truth(self, term: Term) -> str:
         kind, parts = term.kind, term.parts
         if kind in ("true", "false"):
             return kind
         if kind in ("and", "or", "not"):
-            return f"({kind} {' '.join(map(self.truth, parts))})"
+            return f"({kind} {' '.join(map(self.encode_truth, parts))})"
         if kind == "truth":
-            return self.truth(parts[0])
+            return self.encode_truth(parts[0])
         if kind == "compare":
-            return self.compared(term.text, *parts)
+            return self.encode_comparison(term.text, *parts)
         if kind == "choice":
-            return f"(ite {' '.join(map(self.truth, parts))})"
+            return f"(ite {' '.join(map(self.encode_truth, parts))})"
         if kind == "null" or (kind == "string" and self.python and is_empty(term.text)):
             return "false"
         if kind == "string":
             return "true"
         measured = kind in ("whole", "real", "size", "abs") or self.is_arithmetic(term)
         if measured or (not self.python and term in self.valued):
-            return f"(not (= {self.value(term)} 0.0))"
+            return f"(not (= {self.encode(term)} 0.0))"
         if term not in self.truths:
-            self.truths[term] = self.fresh("Bool")
+            self.truths[term] = self.declare_unknown("Bool")
         return self.truths[term]
 
-    def compared(self, operator: str, left: Term, right: Term) -> str:
+    def encode_comparison(self, operator: str, left: Term, right: Term) -> str:
         if operator != "==":
-            return f"({operator} {self.value(left)} {self.value(right)})"
+            return f"({operator} {self.encode(left)} {self.encode(right)})"
         for one, other in ((left, right), (right, left)):
             if one.kind == "null":
                 return self.is_null(other)
         for one, other in ((left, right), (right, left)):
             if one.kind in ("true", "false"):
                 # Who compares with `true` has a bool.
-                truth = self.truth(other)
+                truth = self.encode_truth(other)
                 return truth if one.kind == "true" else f"(not {truth})"
         if left.kind in FORMULAS or right.kind in FORMULAS:
-            return f"(= {self.truth(left)} {self.truth(right)})"
-        return f"(= {self.value(left)} {self.value(right)})"
+            return f"(= {self.encode_truth(left)} {self.encode_truth(right)})"
+        return f"(= {self.encode(left)} {self.encode(right)})"
 
     def is_null(self, term: Term) -> str:
         if not self.python:
-            return f"(not {self.truth(term)})"
+            return f"(not {self.encode_truth(term)})"
         if term == NULL:
             return "true"
         if term.kind in FORMULAS or term.kind in ("whole", "real", "string", "size") or self.is_arithmetic(term):
             return "false"
         if term not in self.nulls:
-            self.nulls[term] = self.fresh("Bool")
+            self.nulls[term] = self.declare_unknown("Bool")
         return self.nulls[term]
 
     # What is known of them
 
-    def known(self) -> list[str]:
+    def list_axioms(self) -> list[str]:
         """What holds of the terms whatever their types are."""
-        result = list(self.known_in_python()) if self.python else []
+        result = list(self.list_python_axioms()) if self.python else []
         for term, others in self.equated.items():
             for text in sorted(other for other in others if other.kind == "string" and term in self.counted):
-                size, equal = self.value(Term("size", "", (term,))), f"(= {self.value(term)} {self.value(text)})"
+                size, equal = self.encode(Term("size", "", (term,))), f"(= {self.encode(term)} {self.encode(text)})"
                 same = is_empty(text.text)
                 result.append(f"(= {equal} (= {size} 0.0))" if same else f"(=> {equal} (> {size} 0.0))")
         scopes: dict[str, list[str]] = {"a text": list(self.texts.values())}
@@ -354,28 +354,28 @@ class Solver:
         result.extend(f"(distinct {' '.join(values)})" for values in scopes.values() if len(values) > 1)
         return result
 
-    def known_in_python(self) -> Iterable[str]:
+    def list_python_axioms(self) -> Iterable[str]:
         """What the truth of a value, its being None, its length and its being equal to something have to do with each
         other."""
         for term, truth in self.truths.items():
             there = f"(not {self.nulls[term]})" if term in self.nulls else "true"
             if term in self.counted:
-                yield f"(= {truth} (and {there} (not (= {self.value(Term('size', '', (term,)))} 0.0))))"
+                yield f"(= {truth} (and {there} (not (= {self.encode(Term('size', '', (term,)))} 0.0))))"
             elif term in self.valued and (term in self.ordered or self.is_whole(term)):
-                yield f"(= {truth} (and {there} (not (= {self.value(term)} 0.0))))"
+                yield f"(= {truth} (and {there} (not (= {self.encode(term)} 0.0))))"
             else:
                 yield f"(=> {truth} {there})"
         for term, others in self.equated.items():
             for other in sorted(others):
                 if term not in self.valued:
                     continue
-                equal = f"(= {self.value(term)} {self.value(other)})"
+                equal = f"(= {self.encode(term)} {self.encode(other)})"
                 if term in self.nulls:
                     yield f"(=> {equal} (not {self.nulls[term]}))"
                 if term in self.truths and not self.is_constant(other):
-                    yield f"(=> {equal} (= {self.truths[term]} {self.truth(other)}))"
+                    yield f"(=> {equal} (= {self.truths[term]} {self.encode_truth(other)}))"
 
-    def supposed(self) -> list[str]:
+    def list_assumptions(self) -> list[str]:
         """What may hold of them besides: a difference that only shows otherwise is not believed."""
         result: list[str] = []
         constants: list[str] = []
@@ -390,7 +390,7 @@ class Solver:
             result.append(f"(distinct {' '.join(constants)})")
         return result
 
-    def near(self) -> list[str]:
+    def list_bounds(self) -> list[str]:
         """That whole numbers lie close to the numbers in the conditions. Without it z3 may go through ever larger ones
         and come to no end."""
         bound = self.largest + _MARGIN
@@ -403,11 +403,11 @@ class Solver:
         return term in self.measured and term not in self.fractional
 
 
-def _all(formulas: list[str]) -> str:
+def _join_all(formulas: list[str]) -> str:
     return f"(and {' '.join(formulas)})" if formulas else "true"
 
 
-def _real(number: Fraction) -> str:
+def _format_real(number: Fraction) -> str:
     """A number in the language of SMT-LIB."""
     written = f"{abs(number.numerator)}.0"
     if number.denominator != 1:

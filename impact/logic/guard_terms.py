@@ -78,7 +78,7 @@ def join(kind: str, parts: Iterable[Term]) -> Term:
     return next(iter(flat)) if len(flat) == 1 else Term(kind, "", tuple(sorted(flat)))
 
 
-def negation(term: Term) -> Term:
+def negate(term: Term) -> Term:
     if term.kind == "true":
         return FALSE
     if term.kind == "false":
@@ -86,16 +86,16 @@ def negation(term: Term) -> Term:
     return Term("not", "", (term,))
 
 
-def comparison(operator: str, left: Term, right: Term) -> Term:
+def compare(operator: str, left: Term, right: Term) -> Term:
     """operator: one of FLIPPED."""
     if operator == "!=":
-        return negation(comparison("==", left, right))
+        return negate(compare("==", left, right))
     if operator in (">", ">="):
         return Term("compare", "<" if operator == ">" else "<=", (right, left))
     return Term("compare", operator, tuple(sorted((left, right))) if operator == "==" else (left, right))
 
 
-def member(owner: Term, name: str) -> Term:
+def make_member(owner: Term, name: str) -> Term:
     """`owner.name`; `(*p).x` is `p.x`."""
     if owner.kind == "op" and owner.text == "*" and len(owner.parts) == 1:
         owner = owner.parts[0]
@@ -104,7 +104,7 @@ def member(owner: Term, name: str) -> Term:
     return Term("member", name, (owner,))
 
 
-def owner_of(function: Term) -> tuple[Term | None, str]:
+def split_owner(function: Term) -> tuple[Term | None, str]:
     """What a method is called on, and its name; None for a function without an owner."""
     if function.kind == "member":
         return function.parts[0], function.text
@@ -114,7 +114,7 @@ def owner_of(function: Term) -> tuple[Term | None, str]:
     return None, ""
 
 
-def number(written: str) -> Term | None:
+def parse_number(written: str) -> Term | None:
     """A decimal number as a term; None when it is none or too large to be of use."""
     exponent = re.search(r"[eE][+-]?(\d+)$", written)
     if len(written) > _LONGEST_NUMBER or (exponent and int(exponent[1]) > _LARGEST_EXPONENT):
@@ -131,29 +131,29 @@ def rewrite(term: Term, change: Callable[[Term], Term | None]) -> Term:
     changed = change(term)
     if changed is not None:
         return changed
-    return rebuilt(term.kind, term.text, tuple(rewrite(part, change) for part in term.parts))
+    return rebuild_term(term.kind, term.text, tuple(rewrite(part, change) for part in term.parts))
 
 
-def rebuilt(kind: str, text: str, parts: tuple[Term, ...]) -> Term:
+def rebuild_term(kind: str, text: str, parts: tuple[Term, ...]) -> Term:
     """A term of these, in the form that such terms have."""
     if kind in ("and", "or"):
         return join(kind, parts)
     if kind == "compare":
-        return comparison(text, *parts)
+        return compare(text, *parts)
     if kind == "member":
-        return member(parts[0], text)
+        return make_member(parts[0], text)
     return Term(kind, text, parts)
 
 
-def renamed(term: Term, renames: Mapping[str, str]) -> Term:
+def rename_term(term: Term, renames: Mapping[str, str]) -> Term:
     """The term with identifiers (parts of paths) called otherwise."""
     text = term.text
     if term.kind in ("name", "opaque", "member"):
         text = _IDENTIFIER.sub(lambda match: renames.get(match[0], match[0]), text)
-    return rebuilt(term.kind, text, tuple(renamed(part, renames) for part in term.parts))
+    return rebuild_term(term.kind, text, tuple(rename_term(part, renames) for part in term.parts))
 
 
-def substituted(term: Term, names: Mapping[str, Term]) -> Term:
+def substitute_names(term: Term, names: Mapping[str, Term]) -> Term:
     """The term with variables and namespaces, alone or at the start of a path, replaced by what they stand for."""
 
     def change(part: Term) -> Term | None:
@@ -167,7 +167,7 @@ def substituted(term: Term, names: Mapping[str, Term]) -> Term:
         if match[2] == "::":
             return Term("name", f"{value.text}::{rest}") if value.kind == "name" else None
         for name in rest.split(".") if rest else ():
-            value = member(value, name)
+            value = make_member(value, name)
         return value
 
     return rewrite(term, change)
@@ -175,17 +175,17 @@ def substituted(term: Term, names: Mapping[str, Term]) -> Term:
 
 def define(known: dict[str, Term], name: str, value: Term) -> None:
     """Lets a name stand for a value, with what is known put into it; for itself where that would grow too large."""
-    value = substituted(value, known)
+    value = substitute_names(value, known)
     known.pop(name, None)
-    if _weight(value) <= _LARGEST:
+    if _count_terms(value) <= _LARGEST:
         known[name] = value
 
 
-def _weight(term: Term) -> int:
-    return 1 + sum(map(_weight, term.parts))
+def _count_terms(term: Term) -> int:
+    return 1 + sum(map(_count_terms, term.parts))
 
 
-def reading(pieces: Iterable[Conjunct], names: Iterable[tuple[str, Term]]) -> GuardReading:
+def build_reading(pieces: Iterable[Conjunct], names: Iterable[tuple[str, Term]]) -> GuardReading:
     """A condition with the variables that it makes put back into what they stand for."""
     known: dict[str, Term] = {}
     for name, value in names:
@@ -193,16 +193,16 @@ def reading(pieces: Iterable[Conjunct], names: Iterable[tuple[str, Term]]) -> Gu
     if not known:
         return GuardReading(tuple(pieces))
     return GuardReading(
-        tuple(piece._replace(term=substituted(piece.term, known)) for piece in pieces), tuple(known.items())
+        tuple(piece._replace(term=substitute_names(piece.term, known)) for piece in pieces), tuple(known.items())
     )
 
 
-def names_in(term: Term) -> Iterable[str]:
+def list_names(term: Term) -> Iterable[str]:
     """The paths named in a term."""
     if term.kind == "name":
         yield term.text
     for part in term.parts:
-        yield from names_in(part)
+        yield from list_names(part)
 
 
 def split_outside(text: str, mark: str, hidden: str = "(?!)") -> list[str]:

@@ -14,10 +14,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from ..model.flow.graph import GuardAt
-from .guard_reading import Language, language_of, pieces_of, this_left_out
+from .guard_reading import Language, collect_pieces, detect_language, drop_this
 from .guard_solver import Solver, Undecided
 from .guard_terms import FALSE, TRUE, Conjunct, Term, join
-from .guard_words import words_of_ways
+from .guard_words import describe_ways
 
 Kind = Literal["tightened", "widened", "equivalent", "changed"]
 Guards = Sequence[GuardAt]
@@ -47,15 +47,15 @@ AS_WRITTEN = NameReading()
 def compare_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> Kind:
     """What happened to the guards of a statement, of each of the ways that lead to it outermost first: it runs when all
     of one way hold; `changed` when the time was not enough."""
-    if not reading.renames and _written(old) == _written(new):
+    if not reading.renames and _collect_texts(old) == _collect_texts(new):
         return "equivalent"
-    before, after, solver = _sides(old, new, reading)
-    if _said(before) == _said(after):
+    before, after, solver = _build_sides(old, new, reading)
+    if _collect_terms(before) == _collect_terms(after):
         return "equivalent"
     try:
-        forward, backward, possible = solver().relation(_any_way(before), _any_way(after))
+        forward, backward, possible = solver().compare(_join_ways(before), _join_ways(after))
         if not possible and not all(_is_settled(side, solver) for side in (before, after)):
-            forward, backward, _ = solver().relation(_any_way(before, _as_whole), _any_way(after, _as_whole))
+            forward, backward, _ = solver().compare(_join_ways(before, _make_opaque), _join_ways(after, _make_opaque))
     except Undecided:
         return "changed"
     if forward and backward:
@@ -70,71 +70,71 @@ def explain_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> str
     asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same."""
     if compare_ways(old, new, reading) == "equivalent":
         return ""
-    before, after, solver = _sides(old, new, reading)
+    before, after, solver = _build_sides(old, new, reading)
 
-    def asked(pieces: Sequence[Conjunct], piece: Conjunct) -> bool:
+    def is_implied(pieces: Sequence[Conjunct], piece: Conjunct) -> bool:
         try:
-            forward, _, possible = solver().relation(piece.term, _all_of(pieces))
+            forward, _, possible = solver().compare(piece.term, _join_pieces(pieces))
         except Undecided:
             return False
         return forward is True and possible
 
-    return words_of_ways(before, after, asked)
+    return describe_ways(before, after, is_implied)
 
 
-def impossible(guards: Guards, language: Language | None = None, milliseconds: int = MILLISECONDS) -> bool:
+def is_impossible(guards: Guards, language: Language | None = None, milliseconds: int = MILLISECONDS) -> bool:
     """Whether guards contradict each other. That tells that the statement never runs only where nothing they name is
     assigned between them."""
-    language = language or language_of((guards,))
-    pieces = pieces_of(guards, language, _NOTHING)
+    language = language or detect_language((guards,))
+    pieces = collect_pieces(guards, language, _NOTHING)
     try:
-        return not Solver(language, milliseconds).possible(_all_of(pieces))
+        return not Solver(language, milliseconds).is_possible(_join_pieces(pieces))
     except Undecided:
         return False
 
 
-def _written(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
+def _collect_texts(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
     return frozenset(tuple((guard.kind, guard.text) for guard in way) for way in ways)
 
 
-def _sides(old: Ways, new: Ways, reading: NameReading) -> tuple[_Side, _Side, Callable[[], Solver]]:
+def _build_sides(old: Ways, new: Ways, reading: NameReading) -> tuple[_Side, _Side, Callable[[], Solver]]:
     """Both sides as terms, and what makes a solver for them."""
-    language = reading.language or language_of((*old, *new))
-    before = tuple(pieces_of(way, language, reading.renames) for way in old)
-    after = tuple(pieces_of(way, language, _NOTHING) for way in new)
+    language = reading.language or detect_language((*old, *new))
+    before = tuple(collect_pieces(way, language, reading.renames) for way in old)
+    after = tuple(collect_pieces(way, language, _NOTHING) for way in new)
     if language == "cpp":
-        before, after = this_left_out((before, after))
+        before, after = drop_this((before, after))
     return before, after, lambda: Solver(language, reading.milliseconds)
 
 
-def _said(side: _Side) -> frozenset[frozenset[Term]]:
+def _collect_terms(side: _Side) -> frozenset[frozenset[Term]]:
     return frozenset(frozenset(piece.term for piece in way) for way in side)
 
 
 def _is_settled(side: _Side, solver: Callable[[], Solver]) -> bool:
     """Whether a side can hold, or does not since on each way one guard contradicts itself: nothing is assigned within
     a guard. Raises Undecided."""
-    if solver().possible(_any_way(side)):
+    if solver().is_possible(_join_ways(side)):
         return True
     for way in side:
         guards = [[piece for piece in way if piece.guard == place] for place in {piece.guard for piece in way}]
-        if all(solver().possible(_all_of(pieces)) for pieces in guards):
+        if all(solver().is_possible(_join_pieces(pieces)) for pieces in guards):
             return False
     return True
 
 
-def _as_whole(term: Term) -> Term:
+def _make_opaque(term: Term) -> Term:
     """The term as something of which nothing is known."""
     return Term("op", "whole", (term,))
 
 
-def _as_it_is(term: Term) -> Term:
+def _keep_term(term: Term) -> Term:
     return term
 
 
-def _all_of(pieces: Sequence[Conjunct], seen=_as_it_is) -> Term:
+def _join_pieces(pieces: Sequence[Conjunct], seen=_keep_term) -> Term:
     return join("and", [seen(piece.term) for piece in pieces]) if pieces else TRUE
 
 
-def _any_way(side: _Side, seen=_as_it_is) -> Term:
-    return join("or", [_all_of(way, seen) for way in side]) if side else FALSE
+def _join_ways(side: _Side, seen=_keep_term) -> Term:
+    return join("or", [_join_pieces(way, seen) for way in side]) if side else FALSE

@@ -10,10 +10,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from datetime import datetime, timezone
 from typing import Any, NamedTuple
 
-from ...edges.limits import limits
-from ...edges.memory import cached_method
+from ...edges.limits import get_limits
+from ...edges.memory import cache_method
 from ..facts import kinds
-from ..model.package import role_of_folder
+from ..model.package import find_folder_role
 from ..tree import IGNORE_MARKERS, GitTree, TreeError, shown
 
 _MODE_FOLDER, _MODE_LINK, _MODE_SUBMODULE = 0o040000, 0o120000, 0o160000
@@ -56,12 +56,12 @@ class PackageState(NamedTuple):
     files: tuple[PackageFile, ...]
     key: bytes
 
-    def whole(self, path: str) -> str:
+    def locate(self, path: str) -> str:
         """A path of the package as a path of the repository."""
         return f"{self.path}/{path}" if self.path else path
 
 
-def key_of(name: str, ros: int, files: Iterable[PackageFile]) -> bytes:
+def compute_key(name: str, ros: int, files: Iterable[PackageFile]) -> bytes:
     """The key of a PackageState."""
     stamp = hashlib.sha1(f"{name} {ros}\n".encode())
     for file in files:
@@ -90,12 +90,12 @@ class CommitHistory:
         self.repo = self.tree._repo
         self.path = self.repo.path
         self.name = self.tree.name
-        self.folder = _below(os.fsdecode(repository), self.repo)
+        self.folder = _find_folder(os.fsdecode(repository), self.repo)
         self._packages: dict[Any, tuple[_Found, ...]] = {}
         self._files: dict[tuple[Any, bool], tuple[PackageFile, ...]] = {}
         self._roots: dict[str, dict[str, PackageState]] = {}
 
-    def commits(self, range: str = "", number: int | None = None, since: str = "") -> list[Commit]:
+    def list_commits(self, range: str = "", number: int | None = None, since: str = "") -> list[Commit]:
         """The commits that are compared with their parent, newest first; merges are left out, each side's commits are
         there by themselves.
 
@@ -108,11 +108,11 @@ class CommitHistory:
         start, dots, end = range.partition("..")
         if not dots:
             start, end = "", range
-        oldest = _time(since) if since else None
+        oldest = _parse_time(since) if since else None
         first, hidden = self._commit(end.lstrip(".") or "HEAD"), self._commit(start or "HEAD") if dots else None
         found: list[Commit] = []
         try:
-            for commit in self._walker(first, hidden):
+            for commit in self._make_walker(first, hidden):
                 parents = commit.parent_ids
                 if len(parents) > 1 or (oldest is not None and commit.commit_time < oldest):
                     continue
@@ -120,13 +120,13 @@ class CommitHistory:
                     break
                 summary = commit.raw_message.decode("utf-8", "replace").strip().partition("\n")[0]
                 parent = str(parents[0]) if parents else ""
-                found.append(Commit(str(commit.id), parent, _date(commit.commit_time), summary.strip()))
+                found.append(Commit(str(commit.id), parent, _format_date(commit.commit_time), summary.strip()))
         except (KeyError, ValueError, TypeError, pygit2.GitError) as error:
             reason = shown(" ".join(str(error).split()))
             raise TreeError(f"the history of {self.name} cannot be read: {reason}; `git fsck` says more") from None
         return found
 
-    def _walker(self, first, hidden):
+    def _make_walker(self, first, hidden):
         import pygit2
 
         walker = self.repo.walk(first, pygit2.enums.SortMode.TOPOLOGICAL | pygit2.enums.SortMode.TIME)
@@ -137,9 +137,9 @@ class CommitHistory:
     def _commit(self, revision: str):
         import pygit2
 
-        return pygit2.Oid(hex=self.tree.at(revision).commit)
+        return pygit2.Oid(hex=self.tree.open_revision(revision).commit)
 
-    def packages(self, commit: str) -> Mapping[str, PackageState]:
+    def find_packages(self, commit: str) -> Mapping[str, PackageState]:
         """The packages of a commit by their names; of several with one name, those after the first by name and path.
 
         Packages are catkin's, ament's and rosbuild's, told by their manifests. None for the parent of a first commit.
@@ -152,14 +152,14 @@ class CommitHistory:
         if known is None:
             if len(self._roots) > 64:
                 self._roots.clear()
-            known = self._roots[commit] = dict(self._states(self._root(commit)))
+            known = self._roots[commit] = dict(self._iterate_states(self._find_root(commit)))
         return known
 
-    def same_tree(self, one: str, other: str) -> bool:
+    def has_same_tree(self, one: str, other: str) -> bool:
         """Whether two commits hold the same files."""
-        return bool(one and other) and self._root(one) == self._root(other)
+        return bool(one and other) and self._find_root(one) == self._find_root(other)
 
-    def _root(self, commit: str):
+    def _find_root(self, commit: str):
         """The id of the folder that is looked at, None where the commit has none. Raises KeyError."""
         import pygit2
 
@@ -169,42 +169,42 @@ class CommitHistory:
         except (ValueError, TypeError, pygit2.GitError) as error:
             raise KeyError(commit) from error
         for part in self.folder.split("/") if self.folder else ():
-            items = {name: item for name, mode, item in self._list(found) if mode == _MODE_FOLDER}
+            items = {name: item for name, mode, item in self._list_folder(found) if mode == _MODE_FOLDER}
             found = items.get(part)
             if found is None:
                 return None
         return found
 
-    def _list(self, folder) -> tuple[tuple[str, int, Any], ...]:
+    def _list_folder(self, folder) -> tuple[tuple[str, int, Any], ...]:
         """What a folder holds, nothing where it cannot be read."""
         try:
             return self.tree.list(folder)
         except OSError:
             return ()
 
-    def _states(self, root) -> Iterator[tuple[str, PackageState]]:
+    def _iterate_states(self, root) -> Iterator[tuple[str, PackageState]]:
         seen: set[str] = set()
-        for found in self._found(root) if root is not None else ():
-            path = _joined(self.folder, found.path)
-            name, ros = self._manifest(found.manifest, found.rosbuild)
+        for found in self._search_folder(root) if root is not None else ():
+            path = _join_path(self.folder, found.path)
+            name, ros = self._read_manifest(found.manifest, found.rosbuild)
             name = name or path.rpartition("/")[2] or self.name
-            files, key = self._content(found.folder, found.rosbuild, name, ros)
+            files, key = self._read_package(found.folder, found.rosbuild, name, ros)
             state = PackageState(name, path, ros, files, key)
             yield (name if name not in seen else f"{name} in {path}"), state
             seen.add(name)
 
-    @cached_method
-    def _content(self, folder: Any, rosbuild: bool, name: str, ros: int) -> tuple[tuple[PackageFile, ...], bytes]:
-        files = self._listed(folder, rosbuild, top=True)
-        files = tuple(file for file in files if role_of_folder(file.path) != "test")
-        return files, key_of(name, ros, files)
+    @cache_method
+    def _read_package(self, folder: Any, rosbuild: bool, name: str, ros: int) -> tuple[tuple[PackageFile, ...], bytes]:
+        files = self._list_files(folder, rosbuild, top=True)
+        files = tuple(file for file in files if find_folder_role(file.path) != "test")
+        return files, compute_key(name, ros, files)
 
-    def _found(self, folder, level: int = 0) -> tuple[_Found, ...]:
+    def _search_folder(self, folder, level: int = 0) -> tuple[_Found, ...]:
         """The packages at and below a folder, in the order of their paths. Raises KeyError where there are too many."""
         known = self._packages.get(folder)
         if known is not None:
             return known
-        items = self._list(folder) if level < limits().depth else ()
+        items = self._list_folder(folder) if level < get_limits().depth else ()
         names = {name: item for name, mode, item in items if mode not in (_MODE_FOLDER, _MODE_LINK, _MODE_SUBMODULE)}
         found: list[_Found] = []
         if not any(name in IGNORE_MARKERS for name in names):
@@ -215,37 +215,37 @@ class CommitHistory:
                     found.append(_Found("", folder, names["manifest.xml"], True))
                 for name, mode, item in items:
                     if mode == _MODE_FOLDER:
-                        inner = self._found(item, level + 1)
-                        found.extend(one._replace(path=_joined(name, one.path)) for one in inner)
+                        inner = self._search_folder(item, level + 1)
+                        found.extend(one._replace(path=_join_path(name, one.path)) for one in inner)
                         if len(found) > _PACKAGES_AT_MOST:
                             raise KeyError("too many packages")
         known = self._packages[folder] = tuple(found)
         return known
 
-    @cached_method
-    def _manifest(self, blob, rosbuild: bool) -> tuple[str, int]:
+    @cache_method
+    def _read_manifest(self, blob, rosbuild: bool) -> tuple[str, int]:
         """Name (empty where the manifest has none) and generation that a manifest tells."""
         data = b"" if rosbuild else _COMMENT.sub(b"", self.read(blob)[:200_000])
         match = _NAME.search(data)
         return match[1].decode("utf-8", "replace") if match else "", 2 if _AMENT.search(data) else 1
 
-    def _listed(self, folder, rosbuild: bool, top: bool = False, level: int = 0) -> tuple[PackageFile, ...]:
+    def _list_files(self, folder, rosbuild: bool, top: bool = False, level: int = 0) -> tuple[PackageFile, ...]:
         """The files of interest at and below a folder, packages below a rosbuild package left out. Raises KeyError
         where there are too many."""
         known = self._files.get((folder, rosbuild)) if not top else None
         if known is not None:
             return known
         found: list[PackageFile] = []
-        items = self._list(folder) if level < limits().depth else ()
+        items = self._list_folder(folder) if level < get_limits().depth else ()
         for name, mode, item in items:
             if mode == _MODE_FOLDER:
-                if not (rosbuild and self._found(item, level + 1)):
-                    inner = self._listed(item, rosbuild, level=level + 1)
+                if not (rosbuild and self._search_folder(item, level + 1)):
+                    inner = self._list_files(item, rosbuild, level=level + 1)
                     found.extend(file._replace(path=f"{name}/{file.path}") for file in inner)
                     if len(found) > _FILES_AT_MOST:
                         raise KeyError("too many files")
             elif mode not in (_MODE_LINK, _MODE_SUBMODULE):
-                kind = kinds.kind_of(name)
+                kind = kinds.find_kind(name)
                 if kind == "script" and not name.endswith(".cfg") and self._is_python(item):
                     kind = "python"
                 if kind in _WANTED:
@@ -255,21 +255,21 @@ class CommitHistory:
             self._files[folder, rosbuild] = known
         return known
 
-    @cached_method
+    @cache_method
     def _is_python(self, blob) -> bool:
-        return kinds.script_kind(self.read(blob)[:512]) == "python"
+        return kinds.find_script_kind(self.read(blob)[:512]) == "python"
 
-    def content(self, blob) -> bytes:
+    def read_blob(self, blob) -> bytes:
         """The bytes of a file. Raises OSError where the object is missing (a partial clone), damaged or too large."""
-        return self.tree.blob(blob)
+        return self.tree.read_blob(blob)
 
     def read(self, blob) -> bytes:
         """The same; none where it cannot be read."""
         with contextlib.suppress(OSError):
-            return self.content(blob)
+            return self.read_blob(blob)
         return b""
 
-    def renames(self, parent: str, commit: str) -> dict[str, str]:
+    def find_renames(self, parent: str, commit: str) -> dict[str, str]:
         """Files of the parent to what they are called in the commit, as git's similarity has it; none where it would
         have to read what is damaged or too large."""
         import pygit2
@@ -305,14 +305,14 @@ class CommitHistory:
 
     def _is_large(self, delta) -> bool:
         sides = (delta.old_file.id, delta.new_file.id)
-        return any(self.tree.size(oid) > limits().object for oid in sides if any(oid.raw))
+        return any(self.tree.read_size(oid) > get_limits().object for oid in sides if any(oid.raw))
 
 
-def _joined(folder: str, path: str) -> str:
+def _join_path(folder: str, path: str) -> str:
     return f"{folder}/{path}" if folder and path else folder or path
 
 
-def _below(place: str, repo) -> str:
+def _find_folder(place: str, repo) -> str:
     """The folder of the repository that a path names, empty for its root."""
     real = os.path.realpath(place)
     if repo.is_bare or not repo.workdir or f"{real}/".startswith(f"{os.path.realpath(repo.path)}/"):
@@ -321,13 +321,13 @@ def _below(place: str, repo) -> str:
     return "" if inner == "." or inner.startswith("..") else inner
 
 
-def _date(seconds: int) -> str:
+def _format_date(seconds: int) -> str:
     """A commit's time in ISO 8601; a damaged one is the nearest that can be written."""
     when = datetime.fromtimestamp(min(max(seconds, _FIRST_SECOND), _LAST_SECOND), timezone.utc)
     return when.strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
-def _time(text: str) -> int:
+def _parse_time(text: str) -> int:
     try:
         when = datetime.fromisoformat(text.strip().replace("Z", "+00:00"))
     except ValueError:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
-from ..model.flow.code import around, tail
+from ..model.flow.code import get_outer, get_tail
 from .statements import Outlet, PackageStatements, Said
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -49,12 +49,12 @@ class Renames(NamedTuple):
     words: Mapping[str, str] = _PLAIN
     files: Mapping[str, str] = _PLAIN
 
-    def text(self, text: str) -> str:
+    def map_text(self, text: str) -> str:
         """A text of the old revision in the words of the new one."""
         words = self.words
         return _WORD.sub(lambda match: words.get(match[0], match[0]), text) if words else text
 
-    def path(self, path: str) -> str:
+    def map_path(self, path: str) -> str:
         """A path of the old revision in the new one."""
         return self.files.get(path, path)
 
@@ -62,30 +62,30 @@ class Renames(NamedTuple):
 SAME = Renames()
 
 
-def matched(
+def match_statements(
     old: Sequence[StatementPlace], new: Sequence[StatementPlace], names: Renames
 ) -> tuple[list[tuple[StatementPlace, StatementPlace]], list[StatementPlace], list[StatementPlace]]:
     """(pairs, gone, come). Statements that stand where they stood, as they did, are matched first; then those that have
     most in common, unless that is too little."""
     pairs: list[tuple[StatementPlace, StatementPlace]] = []
-    for key in (_exact, _near):
+    for key in (_make_exact_key, _make_near_key):
         found, old, new = _equal(old, new, key, names)
         pairs += found
-    found, gone, come = _closest(
-        old, new, lambda one, other: _alike(one, other, names), lambda one, other: abs(one.said.line - other.said.line)
+    found, gone, come = _pair_closest(
+        old, new, lambda one, other: _score(one, other, names), lambda one, other: abs(one.said.line - other.said.line)
     )
     return pairs + found, gone, come
 
 
-def matched_outlets(
+def match_outlets(
     old: Sequence[OutletAt], new: Sequence[OutletAt], names: Renames
 ) -> list[tuple[OutletAt, OutletAt]]:
     """Pairs of publishers that are the same one; those that are new or gone are in none."""
     pairs: list[tuple[OutletAt, OutletAt]] = []
-    for key in (_outlet, _outlet_place):
+    for key in (_make_outlet_key, _make_outlet_place_key):
         found, old, new = _equal(old, new, key, names)
         pairs += found
-    found, _, _ = _closest(old, new, lambda one, other: _outlets_alike(one, other, names), lambda *_: 0)
+    found, _, _ = _pair_closest(old, new, lambda one, other: _score_outlets(one, other, names), lambda *_: 0)
     return pairs + found
 
 
@@ -108,7 +108,7 @@ def _equal(
     return pairs, left, [one for one in new if id(one) in unmatched]
 
 
-def _closest(
+def _pair_closest(
     old: Sequence[_T], new: Sequence[_T], alike: Callable[[_T, _T], int], apart: Callable[[_T, _T], int]
 ) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
     """Pairs of those that are most alike; of equals, the least apart. And what is left of both."""
@@ -131,35 +131,39 @@ def _closest(
     return pairs, gone, come
 
 
-def asked(said: Said, names: Renames = SAME) -> frozenset[tuple]:
+def collect_conditions(said: Said, names: Renames = SAME) -> frozenset[tuple]:
     """All that decides when a statement runs, as written, in the words of the new revision."""
     return frozenset(
-        (way.start.kind, names.text(way.start.detail), tuple((gate.kind, names.text(gate.text)) for gate in way.gates))
+        (
+            way.start.kind,
+            names.map_text(way.start.detail),
+            tuple((gate.kind, names.map_text(gate.text)) for gate in way.gates),
+        )
         for way in said.ways
     )
 
 
-def _place(at: StatementPlace, names: Renames) -> tuple:
+def _make_place_key(at: StatementPlace, names: Renames) -> tuple:
     said = at.said
-    return names.path(at.path), names.text(bare(said.function)), names.text(tail(said.variable))
+    return names.map_path(at.path), names.map_text(normalize(said.function)), names.map_text(get_tail(said.variable))
 
 
-def _exact(at: StatementPlace, names: Renames) -> tuple:
-    return (*_near(at, names), asked(at.said, names))
+def _make_exact_key(at: StatementPlace, names: Renames) -> tuple:
+    return (*_make_near_key(at, names), collect_conditions(at.said, names))
 
 
-def _near(at: StatementPlace, names: Renames) -> tuple:
-    return (*_place(at, names), at.topics, names.text(at.said.expression))
+def _make_near_key(at: StatementPlace, names: Renames) -> tuple:
+    return (*_make_place_key(at, names), at.topics, names.map_text(at.said.expression))
 
 
-def _alike(one: StatementPlace, other: StatementPlace, names: Renames) -> int:
+def _score(one: StatementPlace, other: StatementPlace, names: Renames) -> int:
     """How much two statements have in common; too little where they publish on topics that are known to differ, unless
     they stand in one place."""
     first, second = one.said, other.said
     if first.language != second.language:
         return 0
-    file, function, variable = _place(one, names)
-    other_file, other_function, other_variable = _place(other, SAME)
+    file, function, variable = _make_place_key(one, names)
+    other_file, other_function, other_variable = _make_place_key(other, SAME)
     score = 0
     same_variable = variable == other_variable and bool(variable)
     same_function = function == other_function
@@ -172,32 +176,36 @@ def _alike(one: StatementPlace, other: StatementPlace, names: Renames) -> int:
     if first.type and second.type:
         score += 1 if first.type == second.type else -3
     score += 4 * same_variable + 3 * (file == other_file) + 2 * same_function
-    score += 2 * (not same_function and tail(function) == tail(other_function))
-    score += around(function) == around(other_function)
-    expression = names.text(first.expression)
+    score += 2 * (not same_function and get_tail(function) == get_tail(other_function))
+    score += get_outer(function) == get_outer(other_function)
+    expression = names.map_text(first.expression)
     score += 3 * (expression == second.expression and bool(expression))
-    score += 3 * bool(asked(first, names) & asked(second))
+    score += 3 * bool(collect_conditions(first, names) & collect_conditions(second))
     return score
 
 
-def bare(function: str) -> str:
+def normalize(function: str) -> str:
     """A function's name, lambdas by what they stand in: their places move."""
     return re.sub(r"lambda@[\d:]+", "lambda", function)
 
 
-def _outlet(at: OutletAt, names: Renames) -> tuple:
-    return (*_outlet_place(at, names), at.outlet.topic, at.outlet.type)
+def _make_outlet_key(at: OutletAt, names: Renames) -> tuple:
+    return (*_make_outlet_place_key(at, names), at.outlet.topic, at.outlet.type)
 
 
-def _outlet_place(at: OutletAt, names: Renames) -> tuple:
+def _make_outlet_place_key(at: OutletAt, names: Renames) -> tuple:
     outlet = at.outlet
-    return names.path(at.path), names.text(bare(outlet.function)), names.text(tail(outlet.variable)) or outlet.topic
+    return (
+        names.map_path(at.path),
+        names.map_text(normalize(outlet.function)),
+        names.map_text(get_tail(outlet.variable)) or outlet.topic,
+    )
 
 
-def _outlets_alike(one: OutletAt, other: OutletAt, names: Renames) -> int:
+def _score_outlets(one: OutletAt, other: OutletAt, names: Renames) -> int:
     first, second = one.outlet, other.outlet
-    variable = names.text(tail(first.variable))
+    variable = names.map_text(get_tail(first.variable))
     score = 6 * (first.topic == second.topic and bool(first.topic))
-    score += 5 * (variable == tail(second.variable) and bool(variable))
-    score += 3 * (names.path(one.path) == other.path) + 2 * (first.type == second.type and bool(first.type))
+    score += 5 * (variable == get_tail(second.variable) and bool(variable))
+    score += 3 * (names.map_path(one.path) == other.path) + 2 * (first.type == second.type and bool(first.type))
     return score

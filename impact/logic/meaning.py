@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from ...edges.memory import cached_method
+from ...edges.memory import cache_method
 from ..facts.flow import FlowExpr
 from ..model.flow.code import FlowCode, Fn
 from ..model.flow.graph import GuardAt
@@ -27,16 +27,16 @@ class Meaning:
     def __init__(self, code: FlowCode):
         self.code = code
 
-    @cached_method
-    def of(self, guard: GuardAt) -> str:
+    @cache_method
+    def resolve_guard(self, guard: GuardAt) -> str:
         """What a guard's text means; empty when that is what it says."""
         if guard.kind not in ("if", "unless", "while"):
             return ""
         fn = self.code.by_name.get((guard.path, guard.of))
-        found = self._expanded(guard.text, fn, 0) if fn is not None else guard.text
+        found = self._expand_text(guard.text, fn, 0) if fn is not None else guard.text
         return found if found != guard.text and len(found) <= _LONGEST else ""
 
-    def _expanded(self, text: str, fn: Fn, depth: int) -> str:
+    def _expand_text(self, text: str, fn: Fn, depth: int) -> str:
         if depth >= _DEEPEST or len(text) > _LONGEST:
             return text
         parts: list[str] = []
@@ -46,12 +46,16 @@ class Meaning:
                 continue
             end = match.end()
             if text[end : end + 1] == "(":
-                close = _closing(text, end)
-                value = self._predicate(match[0], text[end + 1 : close], fn, depth) if close else None
+                close = _find_closing(text, end)
+                value = self._expand_predicate(match[0], text[end + 1 : close], fn, depth) if close else None
                 end = close + 1
             else:
                 bare = match[0] == match[1]
-                value = self._local(match[1], fn, depth) if bare and text[end : end + 2] not in ("->", "[") else None
+                value = (
+                    self._find_local_value(match[1], fn, depth)
+                    if bare and text[end : end + 2] not in ("->", "[")
+                    else None
+                )
                 if value is not None and text[end : end + 1] in (".", "[", "-") and text[end : end + 2] != "- ":
                     value = None
             if value is None:
@@ -60,7 +64,7 @@ class Meaning:
             position = end
         return "".join((*parts, text[position:]))
 
-    def _local(self, name: str, fn: Fn, depth: int) -> str | None:
+    def _find_local_value(self, name: str, fn: Fn, depth: int) -> str | None:
         """What a local variable was initialised with, when it is never assigned again."""
         made = fn.assigned.get(name, [])
         if len(made) != 1 or made[0].operator != "=" or any(p.name == name for p in fn.facts.parameters):
@@ -70,12 +74,12 @@ class Meaning:
             return None
         if any(access.path == name and access.kind != "pass" for access in fn.facts.accesses):
             return None
-        return self._written(made[0].value, fn, depth)
+        return self._format_value(made[0].value, fn, depth)
 
-    def _predicate(self, callee: str, arguments: str, fn: Fn, depth: int) -> str | None:
+    def _expand_predicate(self, callee: str, arguments: str, fn: Fn, depth: int) -> str | None:
         """What a function of the code returns, when returning is all that it does."""
         path = callee.replace("this->", "this.").replace("self.", "this.")
-        targets = self.code.targets(path, fn)
+        targets = self.code.list_targets(path, fn)
         if len(targets) != 1:
             return None
         target = targets[0].facts
@@ -84,7 +88,7 @@ class Meaning:
             return None
         if rows[-1].guard != -1 or len(rows) > 4:
             return None
-        value = self._written(rows[-1].value, targets[0], depth)
+        value = self._format_value(rows[-1].value, targets[0], depth)
         given = split_outside(arguments, ",") if arguments.strip() else []
         if value is None or len(given) != len(target.parameters):
             return None
@@ -93,20 +97,20 @@ class Meaning:
             value = re.sub(rf"(?<![\w.>]){re.escape(parameter.name)}\b", lambda _, said=said: said, value)
         return value
 
-    def _written(self, value: FlowExpr, fn: Fn, depth: int) -> str | None:
+    def _format_value(self, value: FlowExpr, fn: Fn, depth: int) -> str | None:
         """An expression as source in which names are put back too; None for one that decides nothing by itself."""
         if value.kind not in ("other", "call", "choice", "name"):
             return None
-        text = written(value, fn.source.facts.language == "python")
+        text = format_expression(value, fn.source.facts.language == "python")
         if text is None or not text or "lambda" in text or "{" in text:
             return None
         if value.kind == "name" and text in ("true", "false", "True", "False", "None", "nullptr", "NULL"):
             return None
-        text = self._expanded(text, fn, depth + 1)
+        text = self._expand_text(text, fn, depth + 1)
         return text if _PLAIN.fullmatch(text) else f"({text})"
 
 
-def written(value: FlowExpr, python: bool) -> str | None:
+def format_expression(value: FlowExpr, python: bool) -> str | None:
     """An expression as source; None where that was cut off or is not known."""
     if value.kind == "other":
         return value.text if len(value.text) < _CUT else None
@@ -114,7 +118,7 @@ def written(value: FlowExpr, python: bool) -> str | None:
         return value.text.replace("this.", "self." if python else "this->")
     if value.kind == "text":
         return f'"{value.text}"'
-    parts = [written(part, python) for part in value.parts]
+    parts = [format_expression(part, python) for part in value.parts]
     given = [part for part in parts if part is not None]
     if len(given) != len(parts):
         return None
@@ -130,7 +134,7 @@ def written(value: FlowExpr, python: bool) -> str | None:
     return None
 
 
-def _closing(text: str, start: int) -> int:
+def _find_closing(text: str, start: int) -> int:
     """Where the bracket that opens at `start` closes, 0 when it does not."""
     depth = 0
     for place in range(start, len(text)):
@@ -143,6 +147,6 @@ def _closing(text: str, start: int) -> int:
     return 0
 
 
-def conjuncts(text: str) -> list[str]:
+def split_conjuncts(text: str) -> list[str]:
     """What a condition asks for at once, split at its outermost `&&` or `and`; the whole where an `||` stands there."""
     return [text] if len(split_outside(text, r"\|\|| or ")) > 1 else split_outside(text, "&&| and ")

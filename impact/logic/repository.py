@@ -15,13 +15,13 @@ from typing import Any, NamedTuple
 import msgspec
 
 from ...edges import processes
-from ...edges.memory import cached_method
+from ...edges.memory import cache_method
 from ..facts import kinds
-from ..facts.store import Store, encodable, fact_key, pack, unpack
+from ..facts.store import Store, encode_rows, make_fact_key, pack, unpack
 from .changes import LogicChange, ReachedSubscriber, Side
 from .history import Commit, CommitHistory, PackageState
-from .statements import Before, kind_of_facts
-from .states import Digests, compared, decoded, digest_row, stamp, unread_digest
+from .statements import Before, find_facts_kind
+from .states import Digests, compare_sides, compute_stamp, decode_digest, make_digest_row, make_unread_digest
 
 Progress = Callable[[str, int, int], None]
 _STATES_AT_ONCE = 24
@@ -77,15 +77,15 @@ def read(
     TreeError for a repository or revision that is not there, ValueError for a date that cannot be read.
     """
     history = CommitHistory(repository)
-    commits = history.commits(range.text, range.number, range.since)
-    run = _Run(history, store, jobs or processes.cores(), progress or (lambda what, done, total: None))
-    results = run.results(commits)
+    commits = history.list_commits(range.text, range.number, range.since)
+    run = _Run(history, store, jobs or processes.count_cores(), progress or (lambda what, done, total: None))
+    results = run.compute_results(commits)
     found = [(commit, change) for commit in commits for change in results[commit.id].changes]
-    coverage = run.coverage(commits, results)
-    return Logic(history.name, _range_text(range), tuple(commits), tuple(found), coverage)
+    coverage = run.count_coverage(commits, results)
+    return Logic(history.name, _format_range(range), tuple(commits), tuple(found), coverage)
 
 
-def chosen(logic: Logic, packages: Sequence[str] = (), topics: Sequence[str] = (), everything: bool = False) -> Logic:
+def select(logic: Logic, packages: Sequence[str] = (), topics: Sequence[str] = (), everything: bool = False) -> Logic:
     """The changes of some packages and topics alone, all when none are given. A topic is named as the code has it or in
     full. everything: conditions that were merely reworded too."""
     wanted = {topic.lstrip("~/") for topic in topics}
@@ -99,7 +99,7 @@ def chosen(logic: Logic, packages: Sequence[str] = (), topics: Sequence[str] = (
     return msgspec.structs.replace(logic, changes=found)
 
 
-def _range_text(range: Range) -> str:
+def _format_range(range: Range) -> str:
     parts = [range.text or "HEAD"]
     if range.number is not None:
         parts.append(f"the newest {range.number}")
@@ -113,25 +113,25 @@ class _Run:
         self.history, self.store, self.jobs, self.progress = history, store, jobs, progress
         self.digests = Digests(store)
 
-    def results(self, commits: Sequence[Commit]) -> dict[str, _Result]:
+    def compute_results(self, commits: Sequence[Commit]) -> dict[str, _Result]:
         keys = {_commit_key(commit.id, self.history.folder): commit.id for commit in commits}
         found: dict[str, _Result] = {}
-        for key, data in self.store.memos("logic", keys).items():
+        for key, data in self.store.find_memos("logic", keys).items():
             try:
                 found[keys[key]] = msgspec.msgpack.decode(data, type=_Result)
             except msgspec.MsgspecError:
                 continue
         todo = [commit for commit in reversed(commits) if commit.id not in found]
         if todo:
-            found.update(self._made(todo))
+            found.update(self._compute_missing(todo))
         return found
 
-    def _made(self, todo: Sequence[Commit]) -> Iterator[tuple[str, _Result]]:
+    def _compute_missing(self, todo: Sequence[Commit]) -> Iterator[tuple[str, _Result]]:
         plain: list[tuple[str, _Result]] = []
         steps: list[_Step] = []
         for number, commit in enumerate(todo, 1):
             try:
-                step = _step(self.history, commit)
+                step = _make_step(self.history, commit)
             except KeyError:
                 plain.append((commit.id, _Result((), False, True)))
                 continue
@@ -143,20 +143,20 @@ class _Run:
                 self.progress("looking through commits", number, len(todo))
         self._remember(plain)
         yield from plain
-        self._digest([state for step in steps for state in (*step.old, *step.new)])
+        self._make_digests([state for step in steps for state in (*step.old, *step.new)])
         yield from self._compare(steps)
 
-    def _digest(self, states: Iterable[PackageState]) -> None:
+    def _make_digests(self, states: Iterable[PackageState]) -> None:
         """Makes the digests that are not there yet."""
         wanted = {state.key: state for state in states}
         known = self.digests.load(wanted)
         missing = [state for key, state in wanted.items() if key not in known]
-        chunks = _chunked(missing)
+        chunks = _split_states(missing)
         done = 0
         what = (self.history.path, self.store.folder)
-        for chunk, made in processes.forked_rows(_digest_chunk, chunks, self.jobs, *what):
+        for chunk, made in processes.run_forked_rows(_digest_chunk, chunks, self.jobs, *what):
             lost = [state for state, row in zip(chunk, made, strict=True) if row is None]
-            self.digests.add([row for row in made if row is not None], map(unread_digest, lost))
+            self.digests.add([row for row in made if row is not None], map(make_unread_digest, lost))
             done += len(chunk)
             self.progress("reading packages", done, len(missing))
 
@@ -165,7 +165,7 @@ class _Run:
         done = 0
         compared: list[tuple[_Step, tuple[LogicChange, ...]]] = []
         known = self.digests.packed
-        for chunk, found in processes.forked_rows(_compare_chunk, chunks, self.jobs, self.history.path, known):
+        for chunk, found in processes.run_forked_rows(_compare_chunk, chunks, self.jobs, self.history.path, known):
             for step, row in zip(chunk, found, strict=True):
                 if row is None:
                     # Not remembered: the next run tries again.
@@ -175,58 +175,58 @@ class _Run:
             done += len(chunk)
             self.progress("comparing commits", done, len(steps))
         reaching = [step for step, found in compared if any(change.topics for change in found)]
-        self._digest(state for step in reaching for state in self.history.packages(step.commit.id).values())
+        self._make_digests(state for step in reaching for state in self.history.find_packages(step.commit.id).values())
         waiting: list[tuple[str, _Result]] = []
         for step, found in compared:
             if any(change.topics for change in found):
-                listeners = self._listeners(step.commit.id)
-                found = tuple(_reaching(change, listeners) for change in found)
+                listeners = self._find_subscribers(step.commit.id)
+                found = tuple(_add_subscribers(change, listeners) for change in found)
             waiting.append((step.commit.id, _Result(found)))
         self._remember(waiting)
         yield from waiting
 
-    def coverage(self, commits: Sequence[Commit], results: Mapping[str, _Result]) -> LogicCoverage:
+    def count_coverage(self, commits: Sequence[Commit], results: Mapping[str, _Result]) -> LogicCoverage:
         """What was looked at, and what the newest commit's packages hold."""
         if not commits:
             return LogicCoverage()
         compared = sum(result.compared for result in results.values())
         cut_off = sum(result.cut_off for result in results.values())
         try:
-            states = self.history.packages(commits[0].id)
+            states = self.history.find_packages(commits[0].id)
         except KeyError:
             states = {}
-        self._digest(states.values())
+        self._make_digests(states.values())
         statements = unresolved = 0
         unread: list[str] = []
         for state in states.values():
-            one = self.digests.of(state.key)
+            one = self.digests.decode_state(state.key)
             statements += len(one.statements)
             unresolved += sum(not any(one.outlets[place].topic for place in said.outlets) for said in one.statements)
-            unread += [state.whole(path) for path in one.unread]
+            unread += [state.locate(path) for path in one.unread]
         return LogicCoverage(
             len(commits), compared, cut_off, len(states), statements, unresolved, tuple(sorted(unread))
         )
 
-    def _listeners(self, commit: str) -> dict[str, list[ReachedSubscriber]]:
+    def _find_subscribers(self, commit: str) -> dict[str, list[ReachedSubscriber]]:
         """The subscribers of a commit by their topics."""
         found: dict[str, list[ReachedSubscriber]] = {}
-        for state in self.history.packages(commit).values():
-            for inlet in self._inlets(state.key):
-                path = state.whole(inlet.path)
+        for state in self.history.find_packages(commit).values():
+            for inlet in self._load_inlets(state.key):
+                path = state.locate(inlet.path)
                 reached = ReachedSubscriber(state.name, inlet.node, inlet.topic, inlet.callback, path, inlet.line)
                 found.setdefault(inlet.topic, []).append(reached)
         return found
 
-    @cached_method
-    def _inlets(self, key: bytes):
-        return self.digests.of(key).inlets
+    @cache_method
+    def _load_inlets(self, key: bytes):
+        return self.digests.decode_state(key).inlets
 
     def _remember(self, rows: Iterable[tuple[str, _Result]]) -> None:
         folder = self.history.folder
-        self.store.remember("logic", encodable((_commit_key(commit, folder), row) for commit, row in rows))
+        self.store.remember("logic", encode_rows((_commit_key(commit, folder), row) for commit, row in rows))
 
 
-def _reaching(change: LogicChange, listeners: Mapping[str, list[ReachedSubscriber]]) -> LogicChange:
+def _add_subscribers(change: LogicChange, listeners: Mapping[str, list[ReachedSubscriber]]) -> LogicChange:
     """The change with its subscribers, each once for all nodes that run it."""
     found: dict[tuple[str, int, str], dict[ReachedSubscriber, None]] = {}
     for topic in change.topics:
@@ -251,11 +251,11 @@ class _Step(NamedTuple):
     new: tuple[PackageState, ...]
 
 
-def _step(history: CommitHistory, commit: Commit) -> _Step | None:
+def _make_step(history: CommitHistory, commit: Commit) -> _Step | None:
     """None where no package differs. Raises KeyError when the parent is not in the repository."""
-    if history.same_tree(commit.parent, commit.id):
+    if history.has_same_tree(commit.parent, commit.id):
         return None
-    old, new = history.packages(commit.parent), history.packages(commit.id)
+    old, new = history.find_packages(commit.parent), history.find_packages(commit.id)
     differ = [name for name in {**old, **new} if name not in old or name not in new or old[name].key != new[name].key]
     step = _Step(
         commit,
@@ -269,24 +269,24 @@ def _compare_chunk(
     repository: str, digests: Mapping[bytes, bytes], steps: Sequence[_Step]
 ) -> list[tuple[LogicChange, ...]]:
     history = CommitHistory(repository)
-    return [tuple(_compared(history, step, digests)) for step in steps]
+    return [tuple(_compare_step(history, step, digests)) for step in steps]
 
 
-def _compared(history: CommitHistory, step: _Step, digests: Mapping[bytes, bytes]) -> list[LogicChange]:
-    old = Side([(state, decoded(digests.get(state.key))) for state in step.old])
-    new = Side([(state, decoded(digests.get(state.key))) for state in step.new])
-    return compared(old, new, lambda: _renamed_files(history, step), lambda file: history.read(file.id))
+def _compare_step(history: CommitHistory, step: _Step, digests: Mapping[bytes, bytes]) -> list[LogicChange]:
+    old = Side([(state, decode_digest(digests.get(state.key))) for state in step.old])
+    new = Side([(state, decode_digest(digests.get(state.key))) for state in step.new])
+    return compare_sides(old, new, lambda: _find_renamed_files(history, step), lambda file: history.read(file.id))
 
 
-def _renamed_files(history: CommitHistory, step: _Step) -> dict[str, str]:
-    old = {state.whole(file.path) for state in step.old for file in state.files}
-    new = {state.whole(file.path) for state in step.new for file in state.files}
+def _find_renamed_files(history: CommitHistory, step: _Step) -> dict[str, str]:
+    old = {state.locate(file.path) for state in step.old for file in state.files}
+    new = {state.locate(file.path) for state in step.new for file in state.files}
     if not old - new or not new - old:
         return {}
-    return history.renames(step.commit.parent, step.commit.id)
+    return history.find_renames(step.commit.parent, step.commit.id)
 
 
-def _chunked(states: Iterable[PackageState]) -> list[list[PackageState]]:
+def _split_states(states: Iterable[PackageState]) -> list[list[PackageState]]:
     """States in pieces of one package each, in the order of time; the largest first."""
     by_name: dict[str, list[PackageState]] = {}
     for state in states:
@@ -311,20 +311,20 @@ def _digest_chunk(repository: str, folder: str, states: Sequence[PackageState]) 
     before = Before()
     with Store(folder) as store:
         for state in states:
-            wanted = {(file.id, kind_of_facts(file)) for file in state.files}
+            wanted = {(file.id, find_facts_kind(file)) for file in state.files}
             known = {key: facts for key, facts in known.items() if key in wanted}
-            known.update(_facts(history, store, [key for key in wanted if key not in known]))
-            facts = {file.path: known.get((file.id, kind_of_facts(file))) for file in state.files}
+            known.update(_load_facts(history, store, [key for key in wanted if key not in known]))
+            facts = {file.path: known.get((file.id, find_facts_kind(file))) for file in state.files}
             processes.begin_part(0, _JOIN_BYTES)
-            rows.append(digest_row(state, facts, before))
+            rows.append(make_digest_row(state, facts, before))
     return rows
 
 
-def _facts(
+def _load_facts(
     history: CommitHistory, store: Store, wanted: Sequence[tuple[str, str]]
 ) -> Iterator[tuple[tuple[str, str], Any]]:
     """Facts of contents, from the store or made now."""
-    rows = {fact_key(content, kinds.version_of(kind)): (content, kind) for content, kind in wanted}
+    rows = {make_fact_key(content, kinds.make_version(kind)): (content, kind) for content, kind in wanted}
     missing = dict(rows)
     for row, data in store.get(rows):
         try:
@@ -336,7 +336,7 @@ def _facts(
     fresh: list[tuple[bytes, bytes]] = []
     for row, (content, kind) in missing.items():
         try:
-            source = history.content(content)
+            source = history.read_blob(content)
         except OSError:
             continue  # what is known of a content is of its bytes
         processes.begin_part(0, len(source))
@@ -347,4 +347,4 @@ def _facts(
 
 
 def _commit_key(commit: str, folder: str) -> bytes:
-    return bytes.fromhex(commit) + folder.encode("utf-8", "surrogateescape") + stamp(__name__)
+    return bytes.fromhex(commit) + folder.encode("utf-8", "surrogateescape") + compute_stamp(__name__)

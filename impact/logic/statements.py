@@ -9,18 +9,18 @@ from typing import Any
 
 import msgspec
 
-from ...edges.memory import cached_method
+from ...edges.memory import cache_method
 from ..facts import kinds
 from ..facts.flow import FlowCall, FlowFile
-from ..model.flow.code import FlowCode, Fn, tail
-from ..model.flow.endpoints import Site, Statement, shown
+from ..model.flow.code import FlowCode, Fn, get_tail
+from ..model.flow.endpoints import Site, Statement, unparse
 from ..model.flow.graph import GuardAt, Node, Trigger, Way
 from ..model.flow.join import Join, Owner
 from ..model.flow.nodes import BuiltPackage
-from ..model.flow.qos import qos_of
+from ..model.flow.qos import find_qos
 from ..model.flow.values import FlowValue
 from .history import PackageFile, PackageState
-from .meaning import Meaning, conjuncts
+from .meaning import Meaning, split_conjuncts
 
 _LIVE = frozenset(
     ("ros::ok()", "rclcpp::ok()", "ok()", "true", "True", "1", "rclpy.ok()", "not rospy.is_shutdown()",
@@ -125,38 +125,38 @@ class Before:
         self.code: FlowCode | None = None
 
 
-def digest(state: PackageState, facts: Mapping[str, Any], before: Before | None = None) -> PackageStatements:
+def digest_package(state: PackageState, facts: Mapping[str, Any], before: Before | None = None) -> PackageStatements:
     """What a package says of publishing. facts: of each file of the state by its path: a FlowFile, CMakeFile or
     SetupFile; those of a file that did not change are the same objects. before: of neighbouring states, to be quick."""
     sources = {f.path: facts[f.path] for f in state.files if isinstance(facts.get(f.path), FlowFile)}
     before = before or Before()
     last, before.code = before.code, None
-    join = Join(sources, lambda _: state.name, (built(state, facts),), state.ros, before=last)
+    join = Join(sources, lambda _: state.name, (read_build(state, facts),), state.ros, before=last)
     before.code = join.code
     if not join.calls.uses:
-        return PackageStatements(unread=_unread(join), unclear=_unclear(join))
-    return _Digester(join, state).digest()
+        return PackageStatements(unread=_list_unread_files(join), unclear=_list_unclear(join))
+    return _Digester(join, state).build_digest()
 
 
-def _unread(join: Join) -> tuple[str, ...]:
+def _list_unread_files(join: Join) -> tuple[str, ...]:
     return tuple(sorted(one.path for one in join.code.sources if one.facts.unread or one.facts.problems))
 
 
-def _unclear(join: Join) -> tuple[tuple[str, str, str], ...]:
+def _list_unclear(join: Join) -> tuple[tuple[str, str, str], ...]:
     names = {name for name, rows in join.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
     clear = {id(statement.use.call) for statement in join.sites.statements}
     return tuple(
         (fn.source.path, fn.name, call.callee)
         for fn in join.code.functions
         for call in fn.facts.calls
-        if tail(call.callee) in names and "." in call.callee and id(call) not in clear
+        if get_tail(call.callee) in names and "." in call.callee and id(call) not in clear
     )
 
 
 class _Digester:
     def __init__(self, join: Join, state: PackageState):
         self.join, self.state = join, state
-        self.running = join.running()
+        self.running = join.list_running()
         self.meaning = Meaning(join.code)
         # What a framework subscribes to by itself (a transform listener) makes nothing run.
         self.implied = {
@@ -165,7 +165,7 @@ class _Digester:
             if site.implied and site.role == "subscriber"
         }
 
-    def digest(self) -> PackageStatements:
+    def build_digest(self) -> PackageStatements:
         join = self.join
         outlets: list[Outlet] = []
         places: dict[int, int] = {}
@@ -173,9 +173,9 @@ class _Digester:
         for site in join.sites.endpoints:
             if site.role == "publisher":
                 places[id(site)] = len(outlets)
-                outlets.append(self._outlet(site))
+                outlets.append(self._make_outlet(site))
             elif site.role == "subscriber":
-                inlets.extend(self._inlets(site))
+                inlets.extend(self._make_inlets(site))
         known = {site: place for site in join.sites.endpoints if (place := places.get(id(site))) is not None}
         said: list[Said] = []
         for statement in join.sites.statements:
@@ -185,28 +185,28 @@ class _Digester:
             for site in statement.sites:
                 if site not in known:  # published by name
                     known[site] = len(outlets)
-                    outlets.append(self._outlet(site))
+                    outlets.append(self._make_outlet(site))
                 numbers.append(known[site])
-            said.append(self._said(statement, tuple(dict.fromkeys(numbers))))
+            said.append(self._build_statement(statement, tuple(dict.fromkeys(numbers))))
         return PackageStatements(
-            tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), _unread(join), _unclear(join)
+            tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), _list_unread_files(join), _list_unclear(join)
         )
 
-    def _owners(self, fn: Fn) -> list[Owner]:
+    def _find_owners(self, fn: Fn) -> list[Owner]:
         found: list[Owner] = [one for one in self.running if fn in one.functions]
-        return found or [one for one in self.running if fn.source.path in one.program.files] or [self._library(fn)]
+        return found or [one for one in self.running if fn.source.path in one.program.files] or [self._make_library(fn)]
 
-    def _library(self, fn: Fn) -> Node:
+    def _make_library(self, fn: Fn) -> Node:
         path = fn.source.path
         made = self.join.built[0].libraries
         name = next((name for name, files in made.items() if path in files), path.rpartition("/")[2])
         return Node(f"{self.state.name}/{name}", "", self.state.name, "library")
 
-    def _outlet(self, site: Site) -> Outlet:
+    def _make_outlet(self, site: Site) -> Outlet:
         use = site.use
-        full = tuple(dict.fromkeys(self._full(site)))
+        full = tuple(dict.fromkeys(self._resolve_topics(site)))
         value = site.names[0] if len({value.text for value in site.names}) == 1 else FlowValue(None)
-        found = qos_of(self.join.calls, self.join.values, use)
+        found = find_qos(self.join.calls, self.join.values, use)
         offers: list[tuple[str, str]] = []
         for name in found.__struct_fields__ if found is not None else ():
             setting = getattr(found, name)
@@ -216,71 +216,71 @@ class _Digester:
         variable = use.call.target or (site.variable.name if site.variable else "")
         return Outlet(
             use.fn.source.path, use.call.line, use.fn.name, variable,
-            _near(site, value), full, site.type, tuple(offers), written,
+            _resolve_local_topic(site, value), full, site.type, tuple(offers), written,
         )  # fmt: skip
 
-    def _full(self, site: Site) -> Iterator[str]:
+    def _resolve_topics(self, site: Site) -> Iterator[str]:
         for value in site.names:
-            for owner in self._owners(site.use.fn):
-                node = _node_of(owner)
-                own = _near(site, value).startswith("~") or "{" in (value.text or "")
+            for owner in self._find_owners(site.use.fn):
+                node = _get_node(owner)
+                own = _resolve_local_topic(site, value).startswith("~") or "{" in (value.text or "")
                 if value.text is None or (own and (node is None or node.kind == "library")):
                     continue  # the name of a node that is not known is not guessed
-                topic, _, _ = self.join.name(site, value, owner)
+                topic, _, _ = self.join.resolve_name(site, value, owner)
                 if topic:
                     yield topic
 
-    def _inlets(self, site: Site) -> Iterator[Inlet]:
+    def _make_inlets(self, site: Site) -> Iterator[Inlet]:
         use = site.use
         callback = site.callbacks[0] if site.callbacks else None
         fn = callback or use.fn
         line = callback.facts.line if callback is not None else use.call.line
         for value in site.names:
-            for owner in self._owners(use.fn):
-                node = _node_of(owner)
-                for topic in self._full(site._replace(names=(value,))):
+            for owner in self._find_owners(use.fn):
+                node = _get_node(owner)
+                for topic in self._resolve_topics(site._replace(names=(value,))):
                     yield Inlet(topic, node.id if node else "", callback.name if callback else "", fn.source.path, line)
 
-    def _said(self, statement: Statement, outlets: tuple[int, ...]) -> Said:
+    def _build_statement(self, statement: Statement, outlets: tuple[int, ...]) -> Said:
         use, join = statement.use, self.join
         fn = use.fn
-        own = join.guards(fn, use.call.guard)
-        led = ((way, way.trigger) for way in join.ways(fn))
+        own = join.list_guards(fn, use.call.guard)
+        led = ((way, way.trigger) for way in join.list_ways(fn))
         found = [way for way, by in led if by.kind != "subscriber" or (by.path, by.line) not in self.implied]
         found = found or [Way(Trigger("unknown", "", "", 0))]
-        ways = [self._path(way.trigger, (*way.guards, *own)) for way in found]
-        nodes = tuple(sorted({node.id for node in map(_node_of, self._owners(fn)) if node is not None}))
+        ways = [self._build_path(way.trigger, (*way.guards, *own)) for way in found]
+        nodes = tuple(sorted({node.id for node in map(_get_node, self._find_owners(fn)) if node is not None}))
         return Said(
-            fn.source.path, use.call.line, fn.name, join.calls.receiver_of(use), outlets, statement.type,
+            fn.source.path, use.call.line, fn.name, join.calls.get_receiver(use), outlets, statement.type,
             statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
         )  # fmt: skip
 
-    def _path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
+    def _build_path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
         start = StatementStart(trigger.kind, trigger.detail)
         gates: list[Gate] = []
         for guard in guards:
             unsaid = trigger.kind in ("start", "unknown")
-            asked, lives = _without_life(guard.text) if guard.kind in _LOOPS else (guard.text, False)
+            asked, lives = _strip_liveness(guard.text) if guard.kind in _LOOPS else (guard.text, False)
             if unsaid and guard.kind == "if" and _is_live(guard.text):
                 asked, lives = "", True  # what stands in the loop's condition itself
             if unsaid and (lives or (guard.kind in _LOOPS and trigger.kind == "start")):
                 kind = "loop" if trigger.kind == "start" else "thread"
-                start = StatementStart(kind, self._pace(guard) or (start.detail if start.kind == kind else ""))
+                start = StatementStart(kind, self._find_rate(guard) or (start.detail if start.kind == kind else ""))
             if asked:
-                meaning = self.meaning.of(guard) if asked == guard.text else ""
+                meaning = self.meaning.resolve_guard(guard) if asked == guard.text else ""
                 gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
         if start.kind in ("start", "unknown"):
             start = StatementStart(start.kind)
         return Path(start, tuple(gates))
 
-    @cached_method
+    @cache_method
     def _is_fixed(self, guard: GuardAt) -> bool:
         """Whether a guard asks for variables alone that its function, and what that calls of the code, leaves alone."""
         fn = self.join.code.by_name.get((guard.path, guard.of))
         plain = guard.kind in ("if", "unless") and not _CALLS.search(guard.text)
-        return plain and fn is not None and all(self._stays(name, fn) for name in _NAMES.findall(guard.text))
+        return plain and fn is not None and all(self._is_constant(name, fn) for name in _NAMES.findall(guard.text))
 
-    def _stays(self, name: str, fn: Fn) -> bool:
+    def _is_constant(self, name: str, fn: Fn) -> bool:
         if name in _WORDS or name.isupper():
             return True
         local = name in fn.locals
@@ -290,56 +290,56 @@ class _Digester:
             return False
         return name not in self._changes(fn) and (local or not self._calls_own(fn))
 
-    @cached_method
+    @cache_method
     def _changes(self, fn: Fn) -> frozenset[str]:
         """The variables of which a function changes more than by assigning to them."""
         return frozenset(one.path.removeprefix("this.").partition(".")[0] for one in fn.facts.accesses)
 
-    @cached_method
+    @cache_method
     def _calls_own(self, fn: Fn) -> bool:
-        return any(self.join.code.targets(call.callee, fn) for call in fn.facts.calls)
+        return any(self.join.code.list_targets(call.callee, fn) for call in fn.facts.calls)
 
-    def _pace(self, guard: GuardAt) -> str:
+    def _find_rate(self, guard: GuardAt) -> str:
         """The rate at which a loop goes round, as it is written where it is made; empty when none is seen."""
         fn = self.join.code.by_name.get((guard.path, guard.of))
         if fn is None:
             return ""
         rows = fn.facts.guards
         for call in fn.facts.calls:
-            if tail(call.callee) not in ("sleep", "sleep_for"):
+            if get_tail(call.callee) not in ("sleep", "sleep_for"):
                 continue
             place = call.guard
             while 0 <= place < len(rows) and (rows[place].line, rows[place].text) != (guard.line, guard.text):
                 place = rows[place].outer
             if 0 <= place < len(rows):
-                pace = self._slept(call, fn)
+                pace = self._describe_sleep(call, fn)
                 if pace:
                     return pace
         return ""
 
-    def _slept(self, call: FlowCall, fn: Fn) -> str:
+    def _describe_sleep(self, call: FlowCall, fn: Fn) -> str:
         if call.arguments:
-            return f"every {shown(call.arguments[0])}"
+            return f"every {unparse(call.arguments[0])}"
         receiver = call.callee.rpartition(".")[0]
         if receiver.endswith("()"):
             name, line = receiver.removesuffix("()"), call.line
             made = [one for one in fn.facts.calls if one.callee == name and one.line == line]
-            return f"{tail(name).lower()} {shown(made[0].arguments[0])}" if made and made[0].arguments else ""
+            return f"{get_tail(name).lower()} {unparse(made[0].arguments[0])}" if made and made[0].arguments else ""
         code = self.join.code
-        variable = code.identity(receiver, fn)
-        for _, each in code.writes(variable):
-            paces = [shown(part) for part in each.value.parts if part.text not in ("this", "self", "*this")]
+        variable = code.identify(receiver, fn)
+        for _, each in code.list_writes(variable):
+            paces = [unparse(part) for part in each.value.parts if part.text not in ("this", "self", "*this")]
             if paces and each.value.kind in ("make", "call", "list"):
-                kind = tail(each.value.text).lower() if each.value.text else "rate"
+                kind = get_tail(each.value.text).lower() if each.value.text else "rate"
                 return f"{kind} {paces[0]}"
         return ""
 
 
-def _node_of(owner: Owner) -> Node | None:
+def _get_node(owner: Owner) -> Node | None:
     return owner if owner is None or isinstance(owner, Node) else owner.node
 
 
-def _near(site: Site, value: FlowValue) -> str:
+def _resolve_local_topic(site: Site, value: FlowValue) -> str:
     """A topic as the node's code knows it, before the node's own name."""
     if value.text is None:
         return ""
@@ -349,9 +349,9 @@ def _near(site: Site, value: FlowValue) -> str:
     return f"~{text}" if prefix == "~" else f"{prefix}/{text}"
 
 
-def _without_life(text: str) -> tuple[str, bool]:
+def _strip_liveness(text: str) -> tuple[str, bool]:
     """A loop's condition without what only says that the node runs, and whether it says so."""
-    parts = conjuncts(text)
+    parts = split_conjuncts(text)
     left = [part for part in parts if not _is_live(part)]
     return (text, False) if len(left) == len(parts) else (f" {_AND[' and ' in text]} ".join(left), True)
 
@@ -364,7 +364,7 @@ def _is_live(text: str) -> bool:
     return plain in _LIVE or bool(_OK.fullmatch(plain))
 
 
-def built(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
+def read_build(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
     """What the build of a package makes, as far as its CMake files and setup.py say it without variables."""
     executables: dict[str, tuple[str, ...]] = {}
     libraries: dict[str, tuple[str, ...]] = {}
@@ -378,7 +378,7 @@ def built(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
             continue
         if file.kind == "cmake":
             folder = file.path.rpartition("/")[0]
-            for name, arguments in _commands(one):
+            for name, arguments in _iterate_commands(one):
                 if not arguments or "$" in arguments[0]:
                     continue
                 target, rest = arguments[0], arguments[1:]
@@ -409,7 +409,7 @@ def built(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
     return BuiltPackage(state.name, executables, libraries, components, scripts, links)
 
 
-def _commands(facts: Any) -> Iterator[tuple[str, list[str]]]:
+def _iterate_commands(facts: Any) -> Iterator[tuple[str, list[str]]]:
     """The commands of a CMake file with their arguments, variables that hold plain words put in."""
     values: dict[str, list[str]] = {}
     for command in facts.commands:
@@ -440,6 +440,6 @@ def _starts(facts: Any) -> bool:
     return body is not None and any("__main__" in guard.text for guard in body.guards)
 
 
-def kind_of_facts(file: PackageFile) -> str:
+def find_facts_kind(file: PackageFile) -> str:
     """The kind of facts that are wanted of a file."""
     return kinds.FLOW.get(file.kind, file.kind)

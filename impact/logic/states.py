@@ -9,26 +9,26 @@ from typing import Any
 
 import msgspec
 
-from ...edges.console import visible
-from ...edges.limits import limits_stamp
-from ..facts.kinds import version_of_all
+from ...edges.console import escape
+from ...edges.limits import format_limits
+from ..facts.kinds import make_overall_version
 from ..facts.store import Store, pack, unpack
 from ..model.flow import join
-from ..source_keys import source_key
-from .changes import LogicChange, Side, changes, settled
+from ..source_keys import compute_source_key
+from .changes import LogicChange, Side, changes, is_unchanged
 from .guard_renames import propose_renames
-from .guard_solver import limited_questions
+from .guard_solver import limit_questions
 from .guards import Language
 from .history import PackageFile, PackageState
 from .match import Renames
-from .statements import EMPTY, Before, PackageStatements, digest
+from .statements import EMPTY, Before, PackageStatements, digest_package
 
 _LONGEST_TEXT = 500_000
 _decoder = msgspec.msgpack.Decoder(PackageStatements)
 
 
-@limited_questions()
-def compared(
+@limit_questions()
+def compare_sides(
     old: Side, new: Side, renamed: Callable[[], Mapping[str, str]], read: Callable[[PackageFile], bytes]
 ) -> list[LogicChange]:
     """What happened to publishing from one side to the other, by path and line, rewordings included.
@@ -36,26 +36,26 @@ def compared(
     renamed: gives files that are called otherwise now, as paths of the repository; asked where anything differs. read:
     the bytes of a file of either side.
     """
-    if settled(old, new):
+    if is_unchanged(old, new):
         return []
     files = renamed()
     found = list(changes(old, new, Renames({}, files)))
     if old.packages and new.packages and any(change.kind != "equivalent" for change in found):
-        words = renamed_words([one for one, _ in old.packages], [one for one, _ in new.packages], files, read)
+        words = find_renamed_words([one for one, _ in old.packages], [one for one, _ in new.packages], files, read)
         if words:
             found = list(changes(old, new, Renames(words, files)))
     return sorted(found, key=lambda change: (change.path, change.line, change.kind, change.why))
 
 
-def renamed_words(
+def find_renamed_words(
     old: Sequence[PackageState],
     new: Sequence[PackageState],
     files: Mapping[str, str],
     read: Callable[[PackageFile], bytes],
 ) -> dict[str, str]:
     """Identifiers that are called otherwise in the files that differ. files: those that are called otherwise."""
-    was = {state.whole(file.path): file for state in old for file in state.files}
-    is_now = {state.whole(file.path): file for state in new for file in state.files}
+    was = {state.locate(file.path): file for state in old for file in state.files}
+    is_now = {state.locate(file.path): file for state in new for file in state.files}
     found: dict[str, str] = {}
     languages: tuple[Language, ...] = ("cpp", "python")
     for language in languages:
@@ -71,43 +71,43 @@ def renamed_words(
     return found
 
 
-def digest_row(state: PackageState, facts: Mapping[str, Any], before: Before | None = None) -> tuple[bytes, bytes]:
+def make_digest_row(state: PackageState, facts: Mapping[str, Any], before: Before | None = None) -> tuple[bytes, bytes]:
     """The key of a state and its digest, packed; an empty one of code that is nested beyond all reason: it must not end
     the run."""
     try:
-        return state.key, _packed(digest(state, facts, before))
+        return state.key, _pack_digest(digest_package(state, facts, before))
     except RecursionError:
         if before is not None:
             before.code = None
-        return state.key, _packed(EMPTY)
+        return state.key, _pack_digest(EMPTY)
 
 
-def _packed(digest: PackageStatements) -> bytes:
+def _pack_digest(digest: PackageStatements) -> bytes:
     """A digest as it is kept. Names of bytes that are no UTF-8, which msgpack cannot carry, are kept as they are
     shown."""
     try:
         return pack(msgspec.msgpack.encode(digest))
     except UnicodeEncodeError:
-        return pack(msgspec.msgpack.encode(_visible_all(msgspec.to_builtins(digest))))
+        return pack(msgspec.msgpack.encode(_make_visible(msgspec.to_builtins(digest))))
 
 
-def unread_digest(state: PackageState) -> tuple[bytes, bytes]:
+def make_unread_digest(state: PackageState) -> tuple[bytes, bytes]:
     """What stands for the digest of a state that could not be made: all its files count as not read."""
     files = tuple(file.path for file in state.files)
-    return state.key, _packed(msgspec.structs.replace(EMPTY, unread=files))
+    return state.key, _pack_digest(msgspec.structs.replace(EMPTY, unread=files))
 
 
-def _visible_all(value: Any) -> Any:
+def _make_visible(value: Any) -> Any:
     if isinstance(value, str):
-        return visible(value)
+        return escape(value)
     if isinstance(value, (list, tuple)):
-        return [_visible_all(item) for item in value]
+        return [_make_visible(item) for item in value]
     if isinstance(value, dict):
-        return {_visible_all(key): _visible_all(item) for key, item in value.items()}
+        return {_make_visible(key): _make_visible(item) for key, item in value.items()}
     return value
 
 
-def decoded(data: bytes | None) -> PackageStatements:
+def decode_digest(data: bytes | None) -> PackageStatements:
     """A digest as it was packed; an empty one where that cannot be read."""
     if data is None:
         return EMPTY
@@ -126,8 +126,8 @@ class Digests:
 
     def load(self, keys: Iterable[bytes]) -> dict[bytes, bytes]:
         """All that are known, those of these keys that the store has among them."""
-        wanted = {key + stamp(__name__): key for key in keys if key not in self.packed}
-        for row, data in self._store.memos("digest", wanted).items():
+        wanted = {key + compute_stamp(__name__): key for key in keys if key not in self.packed}
+        for row, data in self._store.find_memos("digest", wanted).items():
             self.packed[wanted[row]] = pack(data)
         return self.packed
 
@@ -136,15 +136,15 @@ class Digests:
         made = dict(rows)
         self.packed.update(made)
         self.packed.update(lost)
-        self._store.remember("digest", [(key + stamp(__name__), unpack(data)) for key, data in made.items()])
+        self._store.remember("digest", [(key + compute_stamp(__name__), unpack(data)) for key, data in made.items()])
 
-    def of(self, key: bytes) -> PackageStatements:
+    def decode_state(self, key: bytes) -> PackageStatements:
         """The digest of the state with this key."""
-        return decoded(self.packed.get(key))
+        return decode_digest(self.packed.get(key))
 
 
 @cache
-def stamp(module: str) -> bytes:
+def compute_stamp(module: str) -> bytes:
     """Changes whenever the code does that makes facts, joins them, or compares; module: what does so."""
-    found = f"{source_key(module, join.__name__)} {version_of_all()} {limits_stamp()}"
+    found = f"{compute_source_key(module, join.__name__)} {make_overall_version()} {format_limits()}"
     return hashlib.sha1(found.encode()).digest()[:8]

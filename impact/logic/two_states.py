@@ -11,14 +11,14 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from ...edges import processes
-from ..facts.extract import ExtractedFacts, gather
+from ..facts.extract import ExtractedFacts, extract_all
 from ..facts.kinds import FLOW
-from ..model.package import role_of_folder
+from ..model.package import find_folder_role
 from ..model.workspace import Package, Workspace
 from .changes import LogicChange, Side
-from .history import PackageFile, PackageState, key_of
-from .statements import PackageStatements, kind_of_facts
-from .states import Digests, compared, digest_row, unread_digest
+from .history import PackageFile, PackageState, compute_key
+from .statements import PackageStatements, find_facts_kind
+from .states import Digests, compare_sides, make_digest_row, make_unread_digest
 
 _KINDS = {flow: plain for plain, flow in FLOW.items()} | {name: name for name in (*FLOW, "cmake", "setup_py")}
 """What a file is called here, by its kind of facts, whether it was gathered for message flow or for other ends."""
@@ -34,59 +34,59 @@ class Differing(NamedTuple):
     new: tuple[PackageState, ...]
     renamed: Mapping[str, str]
 
-    def changed(self) -> Iterator[tuple[str, PackageFile | None, PackageFile]]:
+    def iterate_changed_files(self) -> Iterator[tuple[str, PackageFile | None, PackageFile]]:
         """Path, the file at the base (None where there was none) and now, of all whose content differs."""
-        was = {state.whole(file.path): file for state in self.old for file in state.files}
+        was = {state.locate(file.path): file for state in self.old for file in state.files}
         predecessors = {new: old for old, new in self.renamed.items()}
         for state in self.new:
             for file in state.files:
-                path = state.whole(file.path)
+                path = state.locate(file.path)
                 before = was.get(predecessors.get(path, path))
                 if before is None or before.id != file.id:
                     yield path, before, file
 
 
 @lru_cache(maxsize=2)
-def differing(workspace: Workspace, base: Workspace) -> Differing:
+def find_differences(workspace: Workspace, base: Workspace) -> Differing:
     """What of the code of two workspaces differs, told by the names and contents of files alone."""
-    listed = [{package.name: _listed(package, each) for package in each} for each in (base, workspace)]
+    listed = [{package.name: _list_files(package, each) for package in each} for each in (base, workspace)]
     names = [name for name in {**listed[0], **listed[1]} if listed[0].get(name) != listed[1].get(name)]
     old, new = (
-        tuple(_state(each, each.packages[name], files[name]) for name in names if files.get(name))
+        tuple(_make_state(each, each.packages[name], files[name]) for name in names if files.get(name))
         for each, files in zip((base, workspace), listed, strict=True)
     )
-    return Differing(old, new, _renamed(old, new))
+    return Differing(old, new, _find_renamed_files(old, new))
 
 
 @lru_cache(maxsize=2)
-def publishing(workspace: Workspace, base: Workspace) -> tuple[LogicChange, ...]:
+def compare_publishing(workspace: Workspace, base: Workspace) -> tuple[LogicChange, ...]:
     """What happened to the logic of publishing since the base, by path and line; rewordings are left out."""
-    found = differing(workspace, base)
+    found = find_differences(workspace, base)
     if not found.old and not found.new:
         return ()
-    old = Side([*zip(found.old, _digests(base, found.old), strict=True)])
-    new = Side([*zip(found.new, _digests(workspace, found.new), strict=True)])
+    old = Side([*zip(found.old, _load_digests(base, found.old), strict=True)])
+    new = Side([*zip(found.new, _load_digests(workspace, found.new), strict=True)])
     places = {
-        file.id: (each, state.whole(file.path))
+        file.id: (each, state.locate(file.path))
         for each, states in ((base, found.old), (workspace, found.new))
         for state in states
         for file in state.files
     }
 
     def read(file: PackageFile) -> bytes:
-        return bytes_of(*places[file.id])
+        return read_bytes(*places[file.id])
 
-    return tuple(c for c in compared(old, new, lambda: found.renamed, read) if c.kind != "equivalent")
+    return tuple(c for c in compare_sides(old, new, lambda: found.renamed, read) if c.kind != "equivalent")
 
 
-def bytes_of(workspace: Workspace, path: str) -> bytes:
+def read_bytes(workspace: Workspace, path: str) -> bytes:
     """The bytes of a file, none where it cannot be read."""
     with suppress(OSError):
         return workspace.read(path)
     return b""
 
 
-def _listed(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str], ...]:
+def _list_files(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str], ...]:
     """Path in the package, content and kind of files that tell of the flow of messages, tests left out."""
     main = workspace.gathered
     sources = [main] if main.second is None else [main.second, main]
@@ -94,12 +94,12 @@ def _listed(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str
     found: list[tuple[str, str, str]] = []
     for path in package.digest.files:
         gathered = next((each for each in sources if each.kinds.get(path) in _KINDS), None)
-        if gathered is not None and role_of_folder(path[start:]) != "test":
+        if gathered is not None and find_folder_role(path[start:]) != "test":
             found.append((path[start:], gathered.ids.get(path, ""), _KINDS[gathered.kinds[path]]))
     return tuple(found)
 
 
-def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, str, str]]) -> PackageState:
+def _make_state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, str, str]]) -> PackageState:
     """A package as `logic` knows it: its key is the same there for the same content."""
     ros = 2 if package.build_type.startswith("ament") else 1
     files: list[PackageFile] = []
@@ -109,18 +109,20 @@ def _state(workspace: Workspace, package: Package, listed: Iterable[tuple[str, s
                 continue
             kind = "python"
         files.append(PackageFile(path, content, kind))
-    return PackageState(package.name, package.path, ros, tuple(files), key_of(package.name, ros, files))
+    return PackageState(package.name, package.path, ros, tuple(files), compute_key(package.name, ros, files))
 
 
 def _is_python(workspace: Workspace, path: str) -> bool:
     looks = (workspace.gathered.second, workspace.gathered)
-    return any(each is not None and path in each.kinds and each.facts(path).kind.endswith("python") for each in looks)
+    return any(
+        each is not None and path in each.kinds and each.get_facts(path).kind.endswith("python") for each in looks
+    )
 
 
-def _renamed(old: Sequence[PackageState], new: Sequence[PackageState]) -> dict[str, str]:
+def _find_renamed_files(old: Sequence[PackageState], new: Sequence[PackageState]) -> dict[str, str]:
     """Files that are called otherwise now: of the same content, or the only ones of a name."""
-    was = {state.whole(file.path): file for state in old for file in state.files}
-    is_now = {state.whole(file.path): file for state in new for file in state.files}
+    was = {state.locate(file.path): file for state in old for file in state.files}
+    is_now = {state.locate(file.path): file for state in new for file in state.files}
     gone = {path: file for path, file in was.items() if path not in is_now}
     come = {path: file for path, file in is_now.items() if path not in was}
     found: dict[str, str] = {}
@@ -129,7 +131,7 @@ def _renamed(old: Sequence[PackageState], new: Sequence[PackageState]) -> dict[s
         lambda path, _: path.rpartition("/")[2],
     )
     for key in keys:
-        before, after = _by(key, gone, set(found)), _by(key, come, set(found.values()))
+        before, after = _group_paths(key, gone, set(found)), _group_paths(key, come, set(found.values()))
         for name, paths in before.items():
             others = after.get(name, [])
             if len(paths) == len(others) == 1:
@@ -137,7 +139,7 @@ def _renamed(old: Sequence[PackageState], new: Sequence[PackageState]) -> dict[s
     return found
 
 
-def _by(
+def _group_paths(
     key: Callable[[str, PackageFile], str], files: Mapping[str, PackageFile], done: set[str]
 ) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
@@ -147,52 +149,52 @@ def _by(
     return found
 
 
-def _digests(workspace: Workspace, states: Sequence[PackageState]) -> list[PackageStatements]:
+def _load_digests(workspace: Workspace, states: Sequence[PackageState]) -> list[PackageStatements]:
     """The digests of some packages, in their order; those that are not known are made and kept."""
     digests = Digests(workspace.gathered.store)
     known = digests.load(state.key for state in states)
     missing = [state for state in states if state.key not in known]
     if missing:
-        made = list(_made(workspace, flow_facts(workspace, missing), missing))
-        lost = set(map(unread_digest, missing))
+        made = list(_make_digests(workspace, extract_flow_facts(workspace, missing), missing))
+        lost = set(map(make_unread_digest, missing))
         digests.add([row for row in made if row not in lost], lost.intersection(made))
-    return [digests.of(state.key) for state in states]
+    return [digests.decode_state(state.key) for state in states]
 
 
-def flow_facts(workspace: Workspace, states: Sequence[PackageState]) -> ExtractedFacts:
+def extract_flow_facts(workspace: Workspace, states: Sequence[PackageState]) -> ExtractedFacts:
     """The flow facts of some packages alone."""
     main = workspace.gathered
     if main.second is not None or not states:
         return main.second or main
-    wanted = {state.whole(file.path): kind_of_facts(file) for state in states for file in state.files}
-    return gather(main.tree, main.store, kind_of=lambda path: wanted[path] if wanted.get(path) in _CODE else None)
+    wanted = {state.locate(file.path): find_facts_kind(file) for state in states for file in state.files}
+    return extract_all(main.tree, main.store, kind_of=lambda path: wanted[path] if wanted.get(path) in _CODE else None)
 
 
 _CODE = frozenset(FLOW.values())
 
 
-def _made(
+def _make_digests(
     workspace: Workspace, gathered: ExtractedFacts, states: Sequence[PackageState]
 ) -> Iterator[tuple[bytes, bytes]]:
-    jobs = processes.cores()
+    jobs = processes.count_cores()
     if jobs < 2 or sum(len(state.files) for state in states) < _ALONE_FILES or not processes.may_fork():
         for state in states:
-            yield _one(workspace, gathered, state)
+            yield _make_digest(workspace, gathered, state)
         return
     workspace.gathered.store.close()  # no other process may go on with a connection of this one
     large_first = sorted(states, key=lambda state: -len(state.files))
-    for state, made in processes.forked(_one, large_first, jobs, workspace, gathered):
-        yield unread_digest(state) if isinstance(made, processes.Died) else made
+    for state, made in processes.run_forked(_make_digest, large_first, jobs, workspace, gathered):
+        yield make_unread_digest(state) if isinstance(made, processes.Died) else made
 
 
-def _one(workspace: Workspace, gathered: ExtractedFacts, state: PackageState) -> tuple[bytes, bytes]:
+def _make_digest(workspace: Workspace, gathered: ExtractedFacts, state: PackageState) -> tuple[bytes, bytes]:
     """The key of a state, and its digest, packed."""
-    whole = {file.path: state.whole(file.path) for file in state.files}
+    whole = {file.path: state.locate(file.path) for file in state.files}
     gathered.preload(whole.values())
     facts = {}
     for file in state.files:
         path = whole[file.path]
-        source = gathered if kind_of_facts(file) in _CODE else workspace.gathered
-        facts[file.path] = source.facts(path).facts if path in source.kinds else None
+        source = gathered if find_facts_kind(file) in _CODE else workspace.gathered
+        facts[file.path] = source.get_facts(path).facts if path in source.kinds else None
     gathered.forget(whole.values())
-    return digest_row(state, facts)
+    return make_digest_row(state, facts)

@@ -9,16 +9,16 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
-from ...edges.memory import cached_method
-from ..targets.surface.offers import Standing, standing_at
+from ...edges.memory import cache_method
+from ..targets.surface.offers import Standing, find_standing
 from ..targets.surface.offers_cpp import (
-    callable_forms,
-    default_changed,
+    compare_defaults,
+    find_lost_forms,
     is_untold,
-    lost_forms,
-    refused_by,
+    list_callable_forms,
+    list_refused_kinds,
 )
-from ..targets.surface.overrides import virtual_forms
+from ..targets.surface.overrides import list_virtual_forms
 
 if TYPE_CHECKING:
     from ..facts.surface import Entity
@@ -74,7 +74,7 @@ class ChangingName:
         self.package, self.name, self.what, self._lines = package, name, what, lines
         self._by_count: dict[int, tuple[bool, bool]] = {}
 
-    def with_line(self, events: Sequence[ChangeEvent], forms_of: _Forms) -> ChangingName:
+    def add_line(self, events: Sequence[ChangeEvent], forms_of: _Forms) -> ChangingName:
         """The same name with the line of another generation, which goes first and says what it is."""
         return ChangingName(self.package, self.name, events[0].told[0].what, ((events, forms_of), *self._lines))
 
@@ -93,7 +93,7 @@ class ChangingName:
         """Whether a use of it may be wrong in one of the versions."""
         return (
             self.there
-            or any(_others(one.standing) or _has_other_default(one.standing) for one in self.forms)
+            or any(_list_other_forms(one.standing) or _has_other_default(one.standing) for one in self.forms)
             or self.virtual
         )
 
@@ -102,7 +102,7 @@ class ChangingName:
         """Whether a method that overrides it may override nothing in one of the versions."""
         return self.what == "method" and any(
             any("result" in told.aspects for told in event.told)
-            or any(not _signatures(form) <= _signatures(standing.here) for form in (event.had, event.has))
+            or any(not _list_signatures(form) <= _list_signatures(standing.here) for form in (event.had, event.has))
             for standing, *_ in self.forms
             for event in (*standing.past, *standing.future)
         )
@@ -124,10 +124,10 @@ class ChangingName:
         """What arguments may show themselves to be and one of the versions does not take, but one beside it may."""
         found: set[str] = set()
         for one in self.forms:
-            here = callable_forms(one.standing.here)
-            types = {other.types for form in _others(one.standing) for other in callable_forms(form)}
+            here = list_callable_forms(one.standing.here)
+            types = {other.types for form in _list_other_forms(one.standing) for other in list_callable_forms(form)}
             if types - {other.types for other in here}:
-                found.update(*(refused_by(type_) for other in here for type_ in other.types))
+                found.update(*(list_refused_kinds(type_) for other in here for type_ in other.types))
         return frozenset(found)
 
     def differs(self, how: str, arguments: int, given: Collection[str], templated: bool = False) -> bool:
@@ -149,16 +149,16 @@ class ChangingName:
         """Whether a call with so many arguments may be wrong, and the same where its template arguments are written."""
         unwritten = False
         for standing, version, last, first, history in self.forms:
-            here = [one for one in callable_forms(standing.here) if one.accepts(arguments)]
+            here = [one for one in list_callable_forms(standing.here) if one.accepts(arguments)]
             if not here:
-                others = (one for form in _others(standing) for one in callable_forms(form))
+                others = (one for form in _list_other_forms(standing) for one in list_callable_forms(form))
                 if any(one.accepts(arguments) for one in others):
                     return True, True
                 continue
             relying = _has_other_default(standing) and all(one.most < 0 or arguments < one.most for one in here)
-            if relying and (history is None or default_changed(history(), self.name, last, first, arguments)):
+            if relying and (history is None or compare_defaults(history(), self.name, last, first, arguments)):
                 return True, True
-            if not unwritten and any(one.accepts(arguments) for one in lost_forms(standing.before, standing.here)):
+            if not unwritten and any(one.accepts(arguments) for one in find_lost_forms(standing.before, standing.here)):
                 # An argument of a template may have to be written.
                 known = history() if history is not None else None
                 forms = standing.here, standing.before
@@ -166,7 +166,7 @@ class ChangingName:
         return unwritten, False
 
 
-def _others(standing: Standing) -> list[Form]:
+def _list_other_forms(standing: Standing) -> list[Form]:
     """The forms that other versions have and that are not as one has it."""
     forms = (*(event.had for event in standing.past), *(event.has for event in standing.future))
     return [form for form in forms if form is not None and form != standing.here]
@@ -177,14 +177,14 @@ def _has_other_default(standing: Standing) -> bool:
     return bool(standing.past) and all(told.kind == "default" for told in standing.past[-1].told)
 
 
-def _signatures(form: Form | None) -> frozenset[tuple[tuple[str, ...], bool]]:
+def _list_signatures(form: Form | None) -> frozenset[tuple[tuple[str, ...], bool]]:
     """The parameters of what may be overridden, and whether it is const."""
-    return frozenset((one.types, "const" in one.traits) for one in virtual_forms(form))
+    return frozenset((one.types, "const" in one.traits) for one in list_virtual_forms(form))
 
 
 def _is_pure(form: Form | None) -> bool:
     """Whether a form makes others implement it."""
-    return any("pure" in one.traits for one in virtual_forms(form))
+    return any("pure" in one.traits for one in list_virtual_forms(form))
 
 
 class PackageNames:
@@ -249,57 +249,57 @@ class Changes:
     ):
         self._lines, self._asked, self._history = lines, asked, history
 
-    @cached_method
-    def known(self, package: str, ros: int = 0) -> PackageNames | None:
+    @cache_method
+    def find_package_names(self, package: str, ros: int = 0) -> PackageNames | None:
         """What of a package is not the same in all its versions of a ROS generation (0: of any)."""
         lines = {at: line for at, line in self._lines(package).items() if ros in (0, at)}
-        asked = [(line, self._forms(package, at, line)) for at, line in lines.items()]
-        return _known(package, asked) if lines else None
+        asked = [(line, self._make_forms(package, at, line)) for at, line in lines.items()]
+        return _collect_names(package, asked) if lines else None
 
-    def types(self, package: str, ros: int, name: str, kinds: Collection[str]) -> frozenset[str]:
+    def list_types(self, package: str, ros: int, name: str, kinds: Collection[str]) -> frozenset[str]:
         """The types that the versions asked about (the last one stored when that is any) declare for a name, as
         written there; empty where one of them declares it as a template, or none declares it. kinds: of Entity."""
-        found = list(self._entities(package, ros, name))
+        found = list(self._list_entities(package, ros, name))
         if any(entity.template is not None for entity in found):
             return frozenset()
         return frozenset(entity.type for entity in found if entity.kind in kinds)
 
     def declares(self, package: str, ros: int, name: str) -> bool:
         """Whether one of these versions declares a name."""
-        return any(True for _ in self._entities(package, ros, name))
+        return any(True for _ in self._list_entities(package, ros, name))
 
-    def _entities(self, package: str, ros: int, name: str) -> Iterator[Entity]:
+    def _list_entities(self, package: str, ros: int, name: str) -> Iterator[Entity]:
         for at in self._lines(package):
             history = self._history(package, at) if self._history is not None and ros in (0, at) else None
             if history is None:
                 continue
-            asked = self._asked.of(package, at) if self._asked is not None else ((history.versions[-1], False),)
+            asked = self._asked.list_asked(package, at) if self._asked is not None else ((history.versions[-1], False),)
             for version, ahead in asked:
-                yield from history.entities(name, version) if not ahead else ()
+                yield from history.iterate_entities(name, version) if not ahead else ()
 
-    def _forms(self, package: str, ros: int, line: Line) -> _Forms:
+    def _make_forms(self, package: str, ros: int, line: Line) -> _Forms:
         """What gives, of the events of a name of C++ in a line, how the versions that are asked about have it."""
         places: dict[int, bool] = {}
-        for version, ahead in self._asked.of(package, ros) if self._asked is not None else ():
-            place = line.place(version)
+        for version, ahead in self._asked.list_asked(package, ros) if self._asked is not None else ():
+            place = line.find_place(version)
             if place is not None:
                 places[place] = ahead and places.get(place, True)
         history = partial(self._history, package, ros) if self._history is not None else None
         every = self._asked is None
         return lambda events: tuple(
-            _asked_forms(events, line, _every_place(events) if every else places, history)
+            _list_asked_forms(events, line, _list_event_places(events) if every else places, history)
         )  # fmt: skip
 
 
 _Forms = Callable[[Sequence["ChangeEvent"]], tuple[AskedForm, ...]]
 
 
-def _every_place(events: Sequence[ChangeEvent]) -> Mapping[int, bool]:
+def _list_event_places(events: Sequence[ChangeEvent]) -> Mapping[int, bool]:
     """The first version, and those that the events are of."""
     return dict.fromkeys((0, *(event.place for event in events)), False)
 
 
-def _asked_forms(
+def _list_asked_forms(
     events: Sequence[ChangeEvent],
     line: Line,
     places: Mapping[int, bool],
@@ -307,7 +307,7 @@ def _asked_forms(
 ) -> Iterator[AskedForm]:
     """How versions have a name. places: of the versions in their line, and of each whether only an update brings it."""
     for place, ahead in places.items():
-        standing = standing_at("c++", events, place)
+        standing = find_standing("c++", events, place)
         if ahead and not standing.past:
             continue  # what an update breaks, it changes itself
         if ahead:
@@ -320,7 +320,7 @@ _INTERNAL = frozenset(("detail", "details", "internal", "impl", "operator"))
 _MEMBERS = frozenset(("method", "field", "constructor", "destructor", "conversion"))
 
 
-def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> PackageNames:
+def _collect_names(package: str, lines: Iterable[tuple[Line, _Forms]]) -> PackageNames:
     names: dict[str, ChangingName] = {}
     bases: dict[str, tuple[str, ...]] = {}
     classes: dict[str, str] = {}
@@ -336,7 +336,7 @@ def _known(package: str, lines: Iterable[tuple[Line, _Forms]]) -> PackageNames:
             if before is None:
                 names[full] = ChangingName(package, full, what, ((events, forms_of),))
             else:
-                names[full] = before.with_line(events, forms_of)
+                names[full] = before.add_line(events, forms_of)
             if what in _MEMBERS:
                 classes[outer] = package
             elif what in CLASSES:
@@ -399,7 +399,7 @@ class Vocabulary:
         self._known: dict[str, PackageNames] = {}
         waiting = list(packages)
         for package in waiting:  # classes of other packages come along with what is derived from them
-            known = changes.known(package, ros) if package not in self._known and package != own else None
+            known = changes.find_package_names(package, ros) if package not in self._known and package != own else None
             if known is not None:
                 self._known[package] = known
                 waiting.extend(known.heads)
@@ -412,7 +412,7 @@ class Vocabulary:
         self.words = frozenset().union(*(known.by_last for known in self._wanted))
         """Last parts of the names of which some may be looked for."""
 
-    def looked_for(self, words: Collection[str]) -> set[str]:
+    def select_wanted(self, words: Collection[str]) -> set[str]:
         """Those of some words that are the last part of a name which is looked for."""
         known = self._looked_for
         for word in words:
@@ -420,8 +420,8 @@ class Vocabulary:
                 known[word] = any(one.names[full].matters for one in self._wanted for full in one.by_last.get(word, ()))
         return {word for word in words if known[word]}
 
-    @cached_method
-    def by_last(self, word: str) -> tuple[str, ...]:
+    @cache_method
+    def list_by_last(self, word: str) -> tuple[str, ...]:
         """Changing names that end so and of which a use can matter."""
         names = (name for one in self._known.values() for name in one.by_last.get(word, ()) if one.names[name].matters)
         return tuple(dict.fromkeys(names))
@@ -430,28 +430,28 @@ class Vocabulary:
         """Whether a package's names are among these."""
         return package in self._known
 
-    def bases(self, full: str) -> tuple[str, ...]:
+    def list_bases(self, full: str) -> tuple[str, ...]:
         """The bases of a class."""
         return self._known[self.classes[full]].bases.get(full, ()) if full in self.classes else ()
 
-    @cached_method
-    def speakers_of_virtual(self, word: str) -> frozenset[str]:
-        """As speakers_of(), for methods that are looked for and that others may override."""
+    @cache_method
+    def list_virtual_speakers(self, word: str) -> frozenset[str]:
+        """As list_member_speakers(), for methods that are looked for and that others may override."""
         names = (full for one in self._wanted for full in one.by_last.get(word, ()) if one.names[full].virtual)
-        return frozenset().union(*(self.speakers(full.rpartition("::")[0]) for full in names))
+        return frozenset().union(*(self.list_speakers(full.rpartition("::")[0]) for full in names))
 
-    def line(self, full: str) -> list[str]:
+    def list_lineage(self, full: str) -> list[str]:
         """A class and those that it is derived from, nearest first."""
         found = [full]
         for one in found:
-            found.extend(base for base in self.bases(one) if base not in found)
+            found.extend(base for base in self.list_bases(one) if base not in found)
         return found
 
-    @cached_method
-    def member(self, full: str, last: str) -> tuple[str, tuple[str, ...]] | None:
+    @cache_method
+    def find_member(self, full: str, last: str) -> tuple[str, tuple[str, ...]] | None:
         """The changing name that a member of a class is, with the packages of the classes in between; None where one
         of those has the member itself, which hides that of its base."""
-        line = self.line(full)
+        line = self.list_lineage(full)
         place = next((n for n, one in enumerate(line) if f"{one}::{last}" in self.names), None)
         if place is None:
             return None
@@ -460,27 +460,27 @@ class Vocabulary:
             return None
         return f"{line[place]}::{last}", tuple(dict.fromkeys(package for package, _ in between))
 
-    @cached_method
-    def types_of(self, full: str, last: str, kind: str) -> tuple[str, frozenset[str]]:
+    @cache_method
+    def find_member_types(self, full: str, last: str, kind: str) -> tuple[str, frozenset[str]]:
         """The class that declares a member of a class, itself or a base of it, and the member's types as written
         there, see Changes.types(); empty ones where none does. kind: `function` for what it gives back, `variable`,
         `alias`."""
-        for one in self.line(full):
+        for one in self.list_lineage(full):
             package = self.classes.get(one)
-            types = self._changes.types(package, self._ros, f"{one}::{last}", _KINDS[kind]) if package else None
+            types = self._changes.list_types(package, self._ros, f"{one}::{last}", _KINDS[kind]) if package else None
             if types:
                 return one, types
         return "", frozenset()
 
-    def speakers_of(self, word: str) -> frozenset[str]:
+    def list_member_speakers(self, word: str) -> frozenset[str]:
         """Last parts of the classes that have a changing member of this name, and of those derived from them."""
-        return frozenset().union(*(self.speakers(name.rpartition("::")[0]) for name in self.by_last(word)))
+        return frozenset().union(*(self.list_speakers(name.rpartition("::")[0]) for name in self.list_by_last(word)))
 
     def has_space(self, head: str) -> bool:
         """Whether names of a known package begin so."""
         return self.classes.begins(head)
 
-    def pure(self, full: str) -> Sequence[str]:
+    def list_pure(self, full: str) -> Sequence[str]:
         """The methods of a class that only some versions make others implement."""
         return self._known[self.classes[full]].pure.get(full, ()) if full in self.classes else ()
 
@@ -489,39 +489,39 @@ class Vocabulary:
         """Last parts of the classes with methods that only some versions make others implement, and of those derived
         from them."""
         owners = (owner for known in self._wanted for owner in known.pure)
-        return frozenset().union(*(self.speakers(owner) for owner in owners))
+        return frozenset().union(*(self.list_speakers(owner) for owner in owners))
 
-    @cached_method
-    def constructors(self, word: str) -> tuple[str, ...]:
+    @cache_method
+    def list_constructors(self, word: str) -> tuple[str, ...]:
         """Changing constructors of classes whose name ends so."""
         ending = f"::{word}::{word}"
-        return tuple(name for name in self.by_last(word) if f"::{name}".endswith(ending))
+        return tuple(name for name in self.list_by_last(word) if f"::{name}".endswith(ending))
 
-    @cached_method
-    def of_classes(self, word: str) -> bool:
+    @cache_method
+    def is_member(self, word: str) -> bool:
         """Whether a member of a class is so called."""
-        return any(name.rpartition("::")[0] in self.classes for name in self.by_last(word))
+        return any(name.rpartition("::")[0] in self.classes for name in self.list_by_last(word))
 
     def can_be_meant(self, word: str, near: Iterable[frozenset[str]]) -> bool:
         """Whether a word can be the last part of a name that is looked for. near: the words of the file, and of each
         that it includes: the class or namespace around the name, or a class that is derived from it, has to be there
         too."""
-        alone, speakers = self._around(word)
+        alone, speakers = self._find_owner_speakers(word)
         return alone or any(not words.isdisjoint(speakers) for words in near)
 
-    @cached_method
-    def _around(self, word: str) -> tuple[bool, frozenset[str]]:
-        wanted = [name for name in self.by_last(word) if self.names[name].package not in self.home]
+    @cache_method
+    def _find_owner_speakers(self, word: str) -> tuple[bool, frozenset[str]]:
+        wanted = [name for name in self.list_by_last(word) if self.names[name].package not in self.home]
         owners = [name.rpartition("::")[0] for name in wanted]
-        return "" in owners, frozenset().union(*(self.speakers(owner) for owner in owners if owner))
+        return "" in owners, frozenset().union(*(self.list_speakers(owner) for owner in owners if owner))
 
-    def speakers(self, owner: str) -> frozenset[str]:
+    def list_speakers(self, owner: str) -> frozenset[str]:
         """Last parts of the classes that may have what a class has: one of them stands wherever a member of it is
         used."""
-        return self._speakers(owner.rpartition("::")[2])
+        return self._list_speakers(owner.rpartition("::")[2])
 
-    @cached_method
-    def _speakers(self, last: str) -> frozenset[str]:
+    @cache_method
+    def _list_speakers(self, last: str) -> frozenset[str]:
         names = {last: None}
         for name in (waiting := [last]):
             for known in self._known.values():

@@ -26,11 +26,11 @@ def build_order(view: TargetView) -> list[str]:
     packages = {}
     for package in view.workspace:
         lists: dict[str, list[Dependency]] = {}
-        for name, kinds in view.declared(package).items():
+        for name, kinds in view.collect_declared(package).items():
             for kind in kinds & _LISTS.keys():
                 lists.setdefault(_LISTS[kind], []).append(Dependency(name))
         for dependency in package.manifest.dependencies:
-            if dependency.kind == "group" and view.active_manifest(dependency.condition):
+            if dependency.kind == "group" and view.is_declaration_active(dependency.condition):
                 members = [Dependency(name) for name in groups.get(dependency.name, ()) if name != package.name]
                 lists.setdefault("build_depends", []).extend(members)
         packages[package.name] = Package(name=package.name, **lists)

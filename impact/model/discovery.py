@@ -17,11 +17,11 @@ from typing import Any
 
 import msgspec
 
-from ...edges.patterns import PatternError, cost_of, matches
+from ...edges.patterns import PatternError, compute_cost, matches
 from ..facts.colcon import ColconFile
 from ..facts.extract import ExtractedFacts
 from ..facts.manifest import Manifest
-from ..tree import PathProblem, Tree, inside
+from ..tree import PathProblem, Tree, normalize_path
 
 _FILES = frozenset(
     ("package.xml", "CMakeLists.txt", "setup.py", "setup.cfg", "pyproject.toml", "colcon.pkg", "manifest.xml")
@@ -99,7 +99,7 @@ class Discovered:
         """The git repository of each package, by the package's path; both relative to the tree."""
         return {place.path: place.repository for place in (*self.packages, *self.foreign)}
 
-    def owner(self, path: str) -> PackagePlace | None:
+    def find_owner(self, path: str) -> PackagePlace | None:
         """The innermost of `packages` that a file or folder lies in; None where there is none."""
         owners = self._owners
         if path in owners:
@@ -134,29 +134,29 @@ class _Search:
     def __init__(self, tree: Tree, gathered: ExtractedFacts):
         self.tree = tree
         self.gathered = gathered
-        gathered.preload(gathered.paths("manifest", "manifest_variant"))
+        gathered.preload(gathered.list_paths("manifest", "manifest_variant"))
         self.problems: list[PathProblem] = []
         self.unmatched: set[PathProblem] = set()
         self.files: dict[str, set[str]] = {}
         self.lists_repositories = any(problem.is_submodule for problem in tree.problems)
-        for entry in tree.entries():
+        for entry in tree.list_entries():
             folder, _, name = entry.path.rpartition("/")
             self.lists_repositories = self.lists_repositories or name.endswith(REPOSITORY_LISTS)
             if name in _FILES or (name[:7].lower() == "package" and _VARIANT.match(name)):
                 self.files.setdefault(folder, set()).add(name)
         self.repositories = tree.repositories
-        self.defaults = self._defaults()
-        self.meta = self._meta()
+        self.defaults = self._read_defaults()
+        self.meta = self._read_meta()
         self.matching_left = _MATCHING_AT_MOST
         self.left_out = {
-            key: (frozenset(_strings(names)), tuple(dict.fromkeys(_strings(patterns))), path, regex_path)
+            key: (frozenset(_list_strings(names)), tuple(dict.fromkeys(_list_strings(patterns))), path, regex_path)
             for key in ("packages-ignore", "packages-skip")
             for names, path in (self.defaults.get(key, (None, "")),)
             for patterns, regex_path in (self.defaults.get(key + "-regex", (None, "")),)
         }
 
     def run(self) -> Discovered:
-        found_bases, only = self._bases()
+        found_bases, only = self._list_bases()
         bases = frozenset(found_bases)
         places: dict[str, PackagePlace] = {}
         foreign: dict[str, PackagePlace] = {}
@@ -164,29 +164,29 @@ class _Search:
         real_paths: set[str] = set()
         blocked: set[str] = set()
         # parents sort before their children; folders reached through a link come last, the real place has precedence
-        order = sorted(self.files, key=lambda folder: (self._alias(folder) is not None, folder))
+        order = sorted(self.files, key=lambda folder: (self._resolve_alias(folder) is not None, folder))
         for folder in order:
             names = self.files[folder]
-            above = self._above(folder, places)
+            above = self._find_above(folder, places)
             if above is not None:
                 if "package.xml" in names:
                     nested.setdefault(above, []).append(_join(folder, "package.xml"))
                 continue
-            if not (_crawled(folder, bases) or folder in only):
+            if not (_is_crawled(folder, bases) or folder in only):
                 continue
-            real = self._alias(folder) or folder
+            real = self._resolve_alias(folder) or folder
             if real in real_paths:
                 continue
-            stop = self._above(folder, foreign)
-            place = self._with_manifest(folder, names, "" if stop is None else foreign[stop].name)
+            stop = self._find_above(folder, foreign)
+            place = self._make_with_manifest(folder, names, "" if stop is None else foreign[stop].name)
             if place is not None:
                 places[folder] = place
                 real_paths.add(real)
-            elif stop is None and self._above(folder, blocked) is None:
+            elif stop is None and self._find_above(folder, blocked) is None:
                 if "manifest.xml" in names:
                     blocked.add(folder)  # rosbuild's; colcon leaves such a folder alone
                     continue
-                place = self._without_manifest(folder, names)
+                place = self._make_without_manifest(folder, names)
                 if place is not None:
                     foreign[folder] = place
                     real_paths.add(real)
@@ -196,13 +196,13 @@ class _Search:
                 msgspec.structs.replace(
                     place,
                     nested=tuple(nested.get(place.path, ())),
-                    repository=self._repository(place.path),
-                    ignored=self._ignored(place.name),
+                    repository=self._find_repository(place.path),
+                    ignored=self._explain_ignored(place.name),
                 )
             )
         return Discovered(found, self.problems, self.lists_repositories)
 
-    def _above(self, folder: str, places: Iterable[str]) -> str | None:
+    def _find_above(self, folder: str, places: Iterable[str]) -> str | None:
         """The nearest of the places above the folder."""
         if not places:
             return None
@@ -212,7 +212,7 @@ class _Search:
                 return folder
         return None
 
-    def _alias(self, folder: str) -> str | None:
+    def _resolve_alias(self, folder: str) -> str | None:
         """The real path of a folder that was reached through a link."""
         aliases = self.tree.aliases
         link = folder if aliases else ""
@@ -220,72 +220,72 @@ class _Search:
             link = link.rpartition("/")[0]
         return aliases[link] + folder[len(link) :] if link else None
 
-    def _repository(self, folder: str) -> str | None:
+    def _find_repository(self, folder: str) -> str | None:
         if folder in self.repositories:
             return folder
-        return self._above(folder, self.repositories)
+        return self._find_above(folder, self.repositories)
 
-    def _with_manifest(self, folder: str, names: set[str], hidden_by: str) -> PackagePlace | None:
+    def _make_with_manifest(self, folder: str, names: set[str], hidden_by: str) -> PackagePlace | None:
         variants = sorted(
             (int(match[1] or match[2]), _join(folder, name)) for name in names if (match := _VARIANT.match(name))
         )
         usual = "package.xml" in names
         path = _join(folder, "package.xml") if usual else variants[-1][1] if variants else ""
-        manifest = self._manifest(path)
+        manifest = self._find_manifest(path)
         if manifest is None or not (usual or manifest.name):
             return None
-        given = self._given(folder, names)
-        name = _text(given.get("name")) or manifest.name or _folder_name(folder, self.tree)
-        given = {**self._named(name), **given}
+        given = self._read_settings(folder, names)
+        name = _convert_to_text(given.get("name")) or manifest.name or _get_folder_name(folder, self.tree)
+        given = {**self._get_settings_by_name(name), **given}
         return PackagePlace(
             path=folder,
             manifest_path=path,
             name=name,
-            kind=_text(given.get("type")) or "ros",
+            kind=_convert_to_text(given.get("type")) or "ros",
             variants=tuple(variants),
             hidden_by=hidden_by,
-            extra_dependencies=_extra(given),
+            extra_dependencies=_list_extra_dependencies(given),
         )
 
-    def _without_manifest(self, folder: str, names: set[str]) -> PackagePlace | None:
-        given = self._given(folder, names)
-        kind = _text(given.get("type"))
-        name = _text(given.get("name"))
+    def _make_without_manifest(self, folder: str, names: set[str]) -> PackagePlace | None:
+        given = self._read_settings(folder, names)
+        kind = _convert_to_text(given.get("type"))
+        name = _convert_to_text(given.get("name"))
         if kind in ("", "cmake") and "CMakeLists.txt" in names:
-            found = self._project_name(folder)
+            found = self._read_project_name(folder)
             if found is None:
                 return None
             kind, name = "cmake", name or found
         elif kind in ("", "python") and "setup.py" in names:
-            found = self._python_name(folder, names)
+            found = self._read_python_name(folder, names)
             if not (name or found):
                 return None
             kind, name = "python", name or found
         if not (kind and name):
             return None
-        given = {**self._named(name), **given}
-        return PackagePlace(folder, "", name, kind, extra_dependencies=_extra(given))
+        given = {**self._get_settings_by_name(name), **given}
+        return PackagePlace(folder, "", name, kind, extra_dependencies=_list_extra_dependencies(given))
 
-    def _project_name(self, folder: str) -> str | None:
+    def _read_project_name(self, folder: str) -> str | None:
         """The name in project(), else the folder's; None for the file that catkin puts above all packages."""
         file = self._read(_join(folder, "CMakeLists.txt"), "colcon_cmake")
-        return None if file.is_top else file.name or _folder_name(folder, self.tree)
+        return None if file.is_top else file.name or _get_folder_name(folder, self.tree)
 
-    def _python_name(self, folder: str, names: set[str]) -> str:
+    def _read_python_name(self, folder: str, names: set[str]) -> str:
         for name, kind in _PYTHON_NAMES.items():
             if name in names and (found := self._read(_join(folder, name), kind).name):
                 return found
         return ""
 
     def _read(self, path: str, kind: str) -> ColconFile:
-        for file in self.gathered.look((path,), kind, on_error=self._unreadable).values():
+        for file in self.gathered.look((path,), kind, on_error=self._note_unreadable).values():
             return file
         return ColconFile()
 
-    def _unreadable(self, path: str, error: OSError) -> None:
+    def _note_unreadable(self, path: str, error: OSError) -> None:
         self.problems.append(PathProblem(path, f"cannot be read: {(error.strerror or '').lower()}"))
 
-    def _yaml(self, path: str) -> dict[str, Any]:
+    def _read_yaml(self, path: str) -> dict[str, Any]:
         file = self._read(path, "colcon_settings")
         self.problems += [
             PathProblem(path, f"{problem.message}, so colcon's settings in it are not known")
@@ -293,63 +293,63 @@ class _Search:
         ]
         return file.settings
 
-    def _defaults(self) -> dict[str, Any]:
+    def _read_defaults(self) -> dict[str, Any]:
         """Colcon's default arguments for building, from the files a workspace keeps them in."""
         merged: dict[str, Any] = {}
         for path in _DEFAULTS:
             if not self.tree.exists(path):
                 continue
-            data = self._yaml(path)
+            data = self._read_yaml(path)
             for verb in ("", "build"):
                 section = data.get(verb)
                 if isinstance(section, dict):
                     merged.update((str(key), (value, path)) for key, value in section.items())
         return merged
 
-    def _meta(self) -> tuple[dict[str, dict], dict[str, dict]]:
+    def _read_meta(self) -> tuple[dict[str, dict], dict[str, dict]]:
         """(by package name, by path) of the workspace's colcon.meta files."""
         by_name: dict[str, dict] = {}
         by_path: dict[str, dict] = {}
-        wanted = [*_strings(self.defaults.get("metas", (None, ""))[0])] or ["colcon.meta"]
+        wanted = [*_list_strings(self.defaults.get("metas", (None, ""))[0])] or ["colcon.meta"]
         for name in wanted:
-            path = inside(name)
+            path = normalize_path(name)
             if path is None or not self.tree.exists(path):
                 continue
             if self.tree.is_dir(path):
                 path = _join(path, "colcon.meta")
                 if not self.tree.exists(path):
                     continue
-            data = self._yaml(path)
+            data = self._read_yaml(path)
             for key, into in (("names", by_name), ("paths", by_path)):
                 section = data.get(key)
                 for subject, values in section.items() if isinstance(section, dict) else ():
-                    place = str(subject) if key == "names" else inside(str(subject))
+                    place = str(subject) if key == "names" else normalize_path(str(subject))
                     if place is not None and isinstance(values, dict):
                         into.setdefault(place, {}).update(values)
         return by_name, by_path
 
-    def _manifest(self, path: str) -> Manifest | None:
-        return self.gathered.facts(path).facts if path in self.gathered.kinds else None
+    def _find_manifest(self, path: str) -> Manifest | None:
+        return self.gathered.get_facts(path).facts if path in self.gathered.kinds else None
 
-    def _given(self, folder: str, names: set[str]) -> dict[str, Any]:
+    def _read_settings(self, folder: str, names: set[str]) -> dict[str, Any]:
         """What colcon.pkg and colcon.meta say of a folder; the latter weighs more."""
-        given = self._yaml(_join(folder, "colcon.pkg")) if "colcon.pkg" in names else {}
+        given = self._read_yaml(_join(folder, "colcon.pkg")) if "colcon.pkg" in names else {}
         return {**given, **self.meta[1].get(folder, {})}
 
-    def _named(self, name: str) -> dict[str, Any]:
+    def _get_settings_by_name(self, name: str) -> dict[str, Any]:
         return self.meta[0].get(name, {})
 
-    def _bases(self) -> tuple[list[str], set[str]]:
+    def _list_bases(self) -> tuple[list[str], set[str]]:
         """(folders that are searched, folders that are only looked at themselves)."""
         bases, path = self.defaults.get("base-paths", (None, ""))
         only, _ = self.defaults.get("paths", (None, ""))
-        return self._folders(bases, path) or [""], set(self._folders(only, path))
+        return self._list_folders(bases, path) or [""], set(self._list_folders(only, path))
 
-    def _folders(self, patterns: Any, path: str) -> list[str]:
+    def _list_folders(self, patterns: Any, path: str) -> list[str]:
         found = []
         globs = 0
-        for pattern in dict.fromkeys(_strings(patterns)):
-            clean = inside(pattern)
+        for pattern in dict.fromkeys(_list_strings(patterns)):
+            clean = normalize_path(pattern)
             if clean is None:
                 self.problems.append(PathProblem(path, f"`{pattern}` lies outside of the workspace and is not read"))
             elif re.search(r"[*?\[]", clean):
@@ -368,7 +368,7 @@ class _Search:
                 found.append(clean)
         return found
 
-    def _ignored(self, name: str) -> str:
+    def _explain_ignored(self, name: str) -> str:
         for key, (names, patterns, path, regex_path) in self.left_out.items():
             if name in names:
                 return f"{key} in {path}"
@@ -381,7 +381,7 @@ class _Search:
         if self.matching_left < 0:
             return False
         try:
-            self.matching_left -= cost_of(pattern, name)
+            self.matching_left -= compute_cost(pattern, name)
             if self.matching_left < 0:
                 self.problems.append(PathProblem(path, f"{key}: takes too long, the rest of it is not matched"))
                 return False
@@ -394,7 +394,7 @@ class _Search:
             return False
 
 
-def _crawled(folder: str, bases: frozenset[str]) -> bool:
+def _is_crawled(folder: str, bases: frozenset[str]) -> bool:
     """True when colcon gets to a folder from one of the base paths: it enters no hidden folder."""
     while folder not in bases:
         above, _, name = folder.rpartition("/")
@@ -408,40 +408,40 @@ def _join(folder: str, name: str) -> str:
     return f"{folder}/{name}" if folder else name
 
 
-def _folder_name(folder: str, tree: Tree) -> str:
+def _get_folder_name(folder: str, tree: Tree) -> str:
     return folder.rpartition("/")[2] or tree.name
 
 
-def _text(value: Any) -> str:
+def _convert_to_text(value: Any) -> str:
     return value if isinstance(value, str) else ""
 
 
-def _strings(value: Any) -> list[str]:
+def _list_strings(value: Any) -> list[str]:
     if isinstance(value, str):
         return value.split()
     return [str(item) for item in value] if isinstance(value, (list, tuple)) else []
 
 
-def _extra(given: dict[str, Any]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(name for key in _DEPENDENCY_KEYS for name in _strings(given.get(key))))
+def _list_extra_dependencies(given: dict[str, Any]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name for key in _DEPENDENCY_KEYS for name in _list_strings(given.get(key))))
 
 
-def manifest_at(gathered: ExtractedFacts, path: str) -> Manifest | None:
+def find_manifest(gathered: ExtractedFacts, path: str) -> Manifest | None:
     """What a manifest says; None where there is none, or it could not be read."""
     if path not in gathered.kinds:
         return None
-    facts = gathered.facts(path).facts
+    facts = gathered.get_facts(path).facts
     return facts if isinstance(facts, Manifest) else None
 
 
-def generation(discovered: Discovered, gathered: ExtractedFacts) -> int:
+def detect_generation(discovered: Discovered, gathered: ExtractedFacts) -> int:
     """1 or 2: which ROS generation most packages of the tree are written for, 2 where none tells."""
-    manifests = (manifest_at(gathered, place.manifest_path) for place in discovered.packages)
-    told = [ros for manifest in manifests if manifest is not None and (ros := _generation_of(manifest))]
+    manifests = (find_manifest(gathered, place.manifest_path) for place in discovered.packages)
+    told = [ros for manifest in manifests if manifest is not None and (ros := _classify_generation(manifest))]
     return 1 if told.count(2) * 2 < len(told) else 2
 
 
-def _generation_of(manifest: Manifest) -> int:
+def _classify_generation(manifest: Manifest) -> int:
     """1 or 2, what a manifest's build tools tell; 0 for plain CMake, which either may have. Packages for both are
     taken to be written for 2."""
     names = {d.name for d in manifest.dependencies} | {t for t, _ in manifest.build_types}

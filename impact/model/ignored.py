@@ -15,7 +15,7 @@ def is_ignored(path: str, rules: Iterable[tuple[str, tuple[str, ...]]]) -> bool:
         above = ["/".join(parts[: count + 1]) for count in range(len(parts))]
         for pattern in patterns:
             negated = pattern.startswith("!")
-            expression = _expression(pattern[negated:])
+            expression = _compile_pattern(pattern[negated:])
             if expression is not None and any(expression.fullmatch(one) for one in above):
                 ignored = not negated
     return ignored
@@ -32,7 +32,7 @@ def holds_ignored(path: str, rules: Iterable[tuple[str, tuple[str, ...]]]) -> bo
 
 
 @lru_cache(maxsize=1000)
-def _expression(pattern: str) -> re.Pattern[str] | None:
+def _compile_pattern(pattern: str) -> re.Pattern[str] | None:
     """A pattern as an expression for paths relative to its file; one with a slash inside counts from there on."""
     text = pattern.rstrip("/").removeprefix("\\")
     anchored = "/" in text

@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 
 from ...edges import processes
-from ...edges.console import UserError, counted
+from ...edges.console import UserError, format_count
 from ...edges.files import read_start, read_text
-from ...edges.limits import limits
+from ...edges.limits import get_limits
 from ..facts import elf
 from ..facts.elf import Elf
-from ..facts.store import Store, fact_key, pack, unpack
+from ..facts.store import Store, make_fact_key, pack, unpack
 from ..targets.machine.loader import open_library
 from ..tree import PathProblem, shown
 
@@ -106,8 +106,8 @@ def read_installed(
         what = "is a file" if folder.exists() else "there is no such folder"
         raise InstallError(f"--install {label}: {what}; give the install or devel folder of a built workspace")
     problems: list[PathProblem] = []
-    files = list(_candidates(folder, problems))
-    facts = _facts([real for _, real in files], store, jobs or processes.cores())
+    files = list(_list_candidates(folder, problems))
+    facts = _read_facts([real for _, real in files], store, jobs or processes.count_cores())
     binaries = []
     names = set()
     owner = _Owner(folder, packages, owners or {})
@@ -116,19 +116,19 @@ def read_installed(
     for path, real in files:
         found = facts[real]
         if isinstance(found, str):
-            problems.append(PathProblem(_joined(label, path), found))
+            problems.append(PathProblem(_join_path(label, path), found))
             continue
         if found is None:
             continue
         seen = True
         if found.problem:
-            problems.append(PathProblem(_joined(label, path), found.problem))
+            problems.append(PathProblem(_join_path(label, path), found.problem))
         if not found.dynamic:
             continue
         names.update((path.rpartition("/")[2], *([found.soname] if found.soname else [])))
         if real not in told:
             told.add(real)
-            binaries.append(Binary(path, os.path.dirname(real), owner.of(path, real), found))
+            binaries.append(Binary(path, os.path.dirname(real), owner.find_package(path, real), found))
     if not seen:
         unread = f" ({problems[0].path}: {problems[0].message})" if problems else ""
         raise InstallError(
@@ -136,30 +136,30 @@ def read_installed(
             "or give another folder"
         )
     return InstallSpace(
-        label, tuple(binaries), frozenset(names), tuple(problems), tuple(islice(_underlays(folder), _PREFIXES))
+        label, tuple(binaries), frozenset(names), tuple(problems), tuple(islice(_read_underlays(folder), _PREFIXES))
     )
 
 
-def _joined(label: str, path: str) -> str:
+def _join_path(label: str, path: str) -> str:
     return os.path.join(label, path).replace(os.sep, "/")
 
 
-def _candidates(folder: Path, problems: list[PathProblem]) -> Iterator[tuple[str, str]]:
+def _list_candidates(folder: Path, problems: list[PathProblem]) -> Iterator[tuple[str, str]]:
     """(path below the folder, the file it leads to) of what may be built files, sorted."""
 
-    def unread(error: OSError) -> None:
+    def add_unread(error: OSError) -> None:
         where = os.path.relpath(os.fsdecode(error.filename or folder), folder)
-        problems.append(PathProblem(_joined(shown(os.fspath(folder)), shown(where)), _reason(error)))
+        problems.append(PathProblem(_join_path(shown(os.fspath(folder)), shown(where)), _explain(error)))
 
     entries = 0
-    for here, folders, names in os.walk(folder, onerror=unread):
+    for here, folders, names in os.walk(folder, onerror=add_unread):
         folders[:] = sorted(name for name in folders if name not in _LEFT_OUT)
-        if folders and here.count(os.sep) - os.fspath(folder).count(os.sep) >= limits().depth:
-            unread(OSError(errno.ELOOP, f"folders nested deeper than {limits().depth}", here))
+        if folders and here.count(os.sep) - os.fspath(folder).count(os.sep) >= get_limits().depth:
+            add_unread(OSError(errno.ELOOP, f"folders nested deeper than {get_limits().depth}", here))
             folders.clear()
         entries += len(names)
-        if entries > limits().entries:
-            unread(OSError(errno.EFBIG, f"more than {limits().entries:,} files, the others are left out", here))
+        if entries > get_limits().entries:
+            add_unread(OSError(errno.EFBIG, f"more than {get_limits().entries:,} files, the others are left out", here))
             return
         for name in sorted(names):
             if name.endswith(_TEXT_ENDS):
@@ -172,10 +172,10 @@ def _candidates(folder: Path, problems: list[PathProblem]) -> Iterator[tuple[str
                     yield path, real
             except OSError as error:
                 if not os.path.islink(whole):
-                    problems.append(PathProblem(_joined(shown(os.fspath(folder)), shown(path)), _reason(error)))
+                    problems.append(PathProblem(_join_path(shown(os.fspath(folder)), shown(path)), _explain(error)))
 
 
-def _facts(paths: Iterable[str], store: Store, jobs: int) -> dict[str, Elf | str | None]:
+def _read_facts(paths: Iterable[str], store: Store, jobs: int) -> dict[str, Elf | str | None]:
     """What each file asks for: None for one that is no ELF file, a text that says why one could not be read."""
     result: dict[str, Elf | str | None] = {}
     sizes: dict[str, int] = {}
@@ -186,13 +186,13 @@ def _facts(paths: Iterable[str], store: Store, jobs: int) -> dict[str, Elf | str
             else:
                 result[path] = None
         except OSError as error:
-            result[path] = _reason(error)
+            result[path] = _explain(error)
     keys: dict[str, bytes] = {}
     for path in sizes:
         try:
-            keys[path] = fact_key(_content_id(path), elf.EXTRACTOR)
+            keys[path] = make_fact_key(_compute_content_id(path), elf.EXTRACTOR)
         except OSError as error:
-            result[path] = _reason(error)
+            result[path] = _explain(error)
     known: dict[bytes, Elf] = {}
     for key, data in store.get(set(keys.values())):
         try:
@@ -214,11 +214,11 @@ def _read_all(
     parts = [part for at in range(jobs * _PARTS_PER_JOB) if (part := items[at :: jobs * _PARTS_PER_JOB])]
     jobs = 1 if sum(sizes[path] for _, path in items) < _ALONE_BYTES else jobs
     store.close()  # no other process may go on with a connection of this one
-    for _, rows in processes.forked_rows(_extracted, parts, jobs):
+    for _, rows in processes.run_forked_rows(_extract_facts, parts, jobs):
         yield from (row for row in rows if row is not None)
 
 
-def _extracted(items: Iterable[tuple[bytes, str]]) -> list[tuple[bytes, bytes]]:
+def _extract_facts(items: Iterable[tuple[bytes, str]]) -> list[tuple[bytes, bytes]]:
     """(key, packed facts) of files; no facts for one that cannot be read any more."""
     rows = []
     for number, (key, path) in enumerate(items):
@@ -232,7 +232,7 @@ def _extracted(items: Iterable[tuple[bytes, str]]) -> list[tuple[bytes, bytes]]:
     return rows
 
 
-def _content_id(path: str) -> str:
+def _compute_content_id(path: str) -> str:
     """git's id of the file's content."""
     with open_library(path) as file:
         digest = hashlib.sha1(b"blob %d\0" % os.fstat(file.fileno()).st_size, usedforsecurity=False)
@@ -241,11 +241,11 @@ def _content_id(path: str) -> str:
     return digest.hexdigest()
 
 
-def _reason(error: OSError) -> str:
+def _explain(error: OSError) -> str:
     return f"cannot be read: {(error.strerror or type(error).__name__).lower()}"
 
 
-def of_workspace(folder: Path, root: Path, workspace: Workspace, store: Store, jobs: int | None = None) -> InstallSpace:
+def read_space(folder: Path, root: Path, workspace: Workspace, store: Store, jobs: int | None = None) -> InstallSpace:
     """The install space of a workspace whose root is given. Raises as read_installed() does."""
     owners: dict[str, str] = {}
     for package in workspace:
@@ -259,45 +259,45 @@ def of_workspace(folder: Path, root: Path, workspace: Workspace, store: Store, j
     return found if inside.startswith("..") else found._replace(label=inside.replace(os.sep, "/"))
 
 
-def shelves(installed: InstallSpace, targets: Sequence[Chosen], config: Config) -> list[Shelf]:
+def list_shelves(installed: InstallSpace, targets: Sequence[Chosen], config: Config) -> list[Shelf]:
     """What each target has to run the files with, and this machine, on its own where no target is it."""
-    from ..targets.capture import platform_of, prefixes
-    from ..targets.machine.loader import Loader, own_machine
+    from ..targets.capture import list_prefixes, read_platform
+    from ..targets.machine.loader import Loader, detect_machine
     from ..targets.machine.shared_libraries import DescribedShelf, MachineShelf
-    from ..targets.machine.sonames import default_sonames
-    from ..targets.platform import normal_platform
+    from ..targets.machine.sonames import load_sonames
+    from ..targets.platform import normalize_platform
 
     base = config.path.parent if config.path else Path()
     underlays = [str(base / os.path.expanduser(underlay)) for underlay in config.underlays]
-    sourced = [str(prefix) for prefix in prefixes(Path("/"), dict(os.environ))]
-    own, near = _library_folders(underlays), _library_folders([*installed.underlays, *sourced])
-    platform = normal_platform(platform_of(Path("/")))
-    loader, machine = Loader([*own, *near]), own_machine()
+    sourced = [str(prefix) for prefix in list_prefixes(Path("/"), dict(os.environ))]
+    own, near = _list_library_folders(underlays), _list_library_folders([*installed.underlays, *sourced])
+    platform = normalize_platform(read_platform(Path("/")))
+    loader, machine = Loader([*own, *near]), detect_machine()
     found: list[Shelf] = []
     distro = os.environ.get("ROS_DISTRO", "")
     for chosen in targets:
         target = chosen.target
         # Sourced here and not dated otherwise: then it is this very machine, and its files say more than any list.
         if target.name == target.distro == distro and target.platform == platform:
-            found.append(MachineShelf(target.name, loader, machine, platform, default_sonames()))
+            found.append(MachineShelf(target.name, loader, machine, platform, load_sonames()))
         else:
-            found.append(DescribedShelf(target, default_sonames(), _names_in(own), _names_in(near)))
+            found.append(DescribedShelf(target, load_sonames(), _list_library_names(own), _list_library_names(near)))
     if not any(isinstance(shelf, MachineShelf) for shelf in found):
-        found.append(MachineShelf(THIS_MACHINE, loader, machine, platform, default_sonames()))
+        found.append(MachineShelf(THIS_MACHINE, loader, machine, platform, load_sonames()))
     return found
 
 
-def of_other_machines(installed: InstallSpace, shelves: Iterable[Shelf]) -> Iterator[PathProblem]:
+def list_foreign_files(installed: InstallSpace, shelves: Iterable[Shelf]) -> Iterator[PathProblem]:
     """What cannot be told of files that are built for another kind of machine than one that would run them."""
     for shelf in shelves:
         others = Counter(b.elf.machine for b in installed.binaries if shelf.machine and b.elf.machine != shelf.machine)
         for machine, count in sorted(others.items()):
             kind = machine.removeprefix("EM_").lower() or "a machine that is not named"
-            files = counted(count, "file")
+            files = format_count(count, "file")
             yield PathProblem(installed.label, f"{files} built for {kind}, not checked against {shelf.name}")
 
 
-def _library_folders(prefixes: Iterable[str]) -> list[str]:
+def _list_library_folders(prefixes: Iterable[str]) -> list[str]:
     """Folders with libraries of prefixes: merged, isolated, and those of vendor packages."""
     patterns = ("lib", "lib64", "lib/*-linux-gnu*", "opt/*/lib", "*/lib")
     found: dict[str, None] = {}
@@ -307,7 +307,7 @@ def _library_folders(prefixes: Iterable[str]) -> list[str]:
     return list(found)
 
 
-def _names_in(folders: Iterable[str]) -> frozenset[str]:
+def _list_library_names(folders: Iterable[str]) -> frozenset[str]:
     names: set[str] = set()
     for folder in folders:
         try:
@@ -329,7 +329,7 @@ class _Owner:
         self._built = built
         self._isolated = {
             place.name
-            for place in _folders(folder)
+            for place in _list_folders(folder)
             if (place / "share" / place.name / "package.xml").exists()
             or (place / "share" / "colcon-core" / "packages" / place.name).exists()
         }
@@ -339,9 +339,9 @@ class _Owner:
         self._single = next(iter(self._known)) if len(self._known) == 1 else ""
         self._known.update(packages)
         self._builds = [folder.parent / "build", folder.parent / "build_isolated", folder.parent.parent / "build"]
-        self._listed = self._manifests(folder)
+        self._listed = self._read_manifests(folder)
 
-    def of(self, path: str, real: str) -> str:
+    def find_package(self, path: str, real: str) -> str:
         """The package of a file, empty where nothing tells."""
         parts = path.split("/")
         if len(parts) > 2 and (parts[0] in self._isolated or (parts[0] in self._known and parts[1] in _BELOW_A_PREFIX)):
@@ -365,14 +365,14 @@ class _Owner:
                 return candidate
         return self._single
 
-    def _manifests(self, folder: Path) -> dict[str, str]:
+    def _read_manifests(self, folder: Path) -> dict[str, str]:
         """Paths below the folder to the package whose build listed them as installed."""
         found = {}
         start = os.path.realpath(folder)
         for build in self._builds:
             for manifest in sorted(build.glob("*/install_manifest.txt")):
                 try:
-                    lines = read_text(manifest, limits().listing, "replace").splitlines()
+                    lines = read_text(manifest, get_limits().listing, "replace").splitlines()
                 except OSError:
                     continue
                 for line in lines:
@@ -381,26 +381,26 @@ class _Owner:
         return found
 
 
-def _folders(folder: Path) -> list[Path]:
+def _list_folders(folder: Path) -> list[Path]:
     try:
         return [place for place in folder.iterdir() if place.is_dir()]
     except OSError:
         return []
 
 
-def _underlays(folder: Path) -> Iterator[str]:
+def _read_underlays(folder: Path) -> Iterator[str]:
     """Prefixes that an install space was built on, as its own setup files name them; for the prefix of one package the
     install space around it."""
     marks = ("share", "share/colcon-core/packages")
     if folder.name and any((folder / mark / folder.name).exists() for mark in marks):
         yield str(folder.parent)
-        yield from _underlays(folder.parent)
+        yield from _read_underlays(folder.parent)
     for name, pattern, parted in (
         ("setup.sh", _PREFIX_OF_COLCON, ""),
         ("_setup_util.py", _PREFIXES_OF_CATKIN, ";"),
     ):
         try:
-            text = read_text(folder / name, limits().settings, "replace")
+            text = read_text(folder / name, get_limits().settings, "replace")
         except OSError:
             continue
         for match in pattern.finditer(text):

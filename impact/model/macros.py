@@ -34,14 +34,14 @@ class Macros:
                 self._tests[macro.name] = (*self._tests.get(macro.name, ()), macro)
         self._known: dict[tuple[Condition, frozenset[str] | None], Condition] = {}
 
-    def asked(self, conditions: tuple[Condition, ...], targets: Iterable[str]) -> tuple[Condition, ...]:
+    def resolve_conditions(self, conditions: tuple[Condition, ...], targets: Iterable[str]) -> tuple[Condition, ...]:
         """Conditions in a file that these targets compile, with those on such macros as CMake asks them."""
         if not self._tests or not any(c.language == "cpp" for c in conditions):
             return conditions
         compiled = frozenset(targets)
-        return tuple(self._told(c, compiled) if c.language == "cpp" else c for c in conditions)
+        return tuple(self._resolve_condition(c, compiled) if c.language == "cpp" else c for c in conditions)
 
-    def _told(self, condition: Condition, targets: frozenset[str]) -> Condition:
+    def _resolve_condition(self, condition: Condition, targets: frozenset[str]) -> Condition:
         found = _ASKED.match(condition.text.strip())
         if found is None:
             return condition
@@ -60,7 +60,7 @@ class Macros:
                 open_ended = any("$" in item for linked in reached for item in linked)
                 return condition if open_ended else Condition("macro", "FALSE", condition.negated)
             told = tuple(m for m in macros if any(m.target in linked for linked in with_it))
-        return Condition("macro", _either(tuple(m.conditions for m in told)), condition.negated)
+        return Condition("macro", _join_alternatives(tuple(m.conditions for m in told)), condition.negated)
 
     def _follow(self, target: str) -> frozenset[str]:
         """A target and what it links, by links of links."""
@@ -70,7 +70,7 @@ class Macros:
 
 
 @lru_cache(1024)
-def _either(alternatives: tuple[tuple[Condition, ...], ...]) -> str:
+def _join_alternatives(alternatives: tuple[tuple[Condition, ...], ...]) -> str:
     """One test of CMake for: all conditions of any alternative hold."""
     return " OR ".join(
         "( {} )".format(" AND ".join(f"NOT ( {c.text} )" if c.negated else f"( {c.text} )" for c in each) or "TRUE")

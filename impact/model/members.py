@@ -46,7 +46,7 @@ class FoundField(NamedTuple):
     sure: bool
 
 
-def interfaces_included(paths: Iterable[str], table: Fields) -> tuple[list[NamedInterface], list[str]]:
+def find_included_interfaces(paths: Iterable[str], table: Fields) -> tuple[list[NamedInterface], list[str]]:
     """The interfaces whose generated headers include paths name, and the paths that look so but are not known."""
     found: dict[NamedInterface, None] = {}
     unknown = []
@@ -62,7 +62,7 @@ def interfaces_included(paths: Iterable[str], table: Fields) -> tuple[list[Named
             ros = 1
         else:
             continue
-        history = table.history(head, ros)
+        history = table.find_history(head, ros)
         name = history.by_header.get(stem) if history is not None else None
         if name is not None:
             found[NamedInterface(head, ros, name)] = None
@@ -71,19 +71,21 @@ def interfaces_included(paths: Iterable[str], table: Fields) -> tuple[list[Named
     return list(found), unknown
 
 
-def interface_named(text: str, table: Fields) -> NamedInterface | None:
+def find_interface(text: str, table: Fields) -> NamedInterface | None:
     """The interface that a qualified C++ name (`pkg::msg::Name`, `pkg::Name`, whatever stands behind) is of."""
     parts = text.split("::")
     if len(parts) > 2 and parts[1] in ("msg", "srv", "action"):
-        history = table.history(parts[0], 2)
+        history = table.find_history(parts[0], 2)
         name = f"{parts[1]}/{parts[2]}"
-        return NamedInterface(parts[0], 2, name) if history is not None and history.spans(name) is not None else None
-    history = table.history(parts[0], 1) if len(parts) > 1 else None
+        return (
+            NamedInterface(parts[0], 2, name) if history is not None and history.find_spans(name) is not None else None
+        )
+    history = table.find_history(parts[0], 1) if len(parts) > 1 else None
     known = history.by_header.get(parts[1].removesuffix("Ptr").removesuffix("Const")) if history is not None else None
     return NamedInterface(parts[0], 1, known) if known is not None and "/" not in parts[1] else None
 
 
-def interfaces_imported(imports: Iterable[tuple[str, tuple[str, ...]]], table: Fields) -> list[NamedInterface]:
+def find_imported_interfaces(imports: Iterable[tuple[str, tuple[str, ...]]], table: Fields) -> list[NamedInterface]:
     """The interfaces that modules such as `pkg.msg` and names imported from them bring."""
     found: dict[NamedInterface, None] = {}
     for module, names in imports:
@@ -91,12 +93,12 @@ def interfaces_imported(imports: Iterable[tuple[str, tuple[str, ...]]], table: F
         if kind not in ("msg", "srv", "action"):
             continue
         for ros in (2, 1):
-            history = table.history(package, ros)
+            history = table.find_history(package, ros)
             if history is None:
                 continue
             for name in names:
                 known = f"{kind}/{name}"
-                if history.spans(known) is not None:
+                if history.find_spans(known) is not None:
                     found[NamedInterface(package, ros, known)] = None
                 elif ros == 1 and name in history.by_header and name not in ("", "*"):
                     found[NamedInterface(package, ros, history.by_header[name])] = None
@@ -125,8 +127,8 @@ class InterfaceScope:
             interface = waiting.pop()
             if interface in self.definitions:
                 continue
-            history = table.history(interface.package, interface.ros)
-            definition = history.definition(interface.name) if history is not None else None
+            history = table.find_history(interface.package, interface.ros)
+            definition = history.find_definition(interface.name) if history is not None else None
             if history is None or definition is None:
                 continue
             self.definitions[interface] = definition
@@ -135,11 +137,11 @@ class InterfaceScope:
             elif asked is None:
                 self._lacking[interface] = definition.changing
             else:
-                versions = tuple(version for version, _ in asked.of(interface.package, interface.ros))
-                self._lacking[interface] = history.lacking(interface.name, versions) if versions else frozenset()
+                versions = tuple(version for version, _ in asked.list_asked(interface.package, interface.ros))
+                self._lacking[interface] = history.list_lacking(interface.name, versions) if versions else frozenset()
             for members in definition.sections.values():
                 for rows in members.values():
-                    waiting.extend(nested(row, interface.ros) for row in rows if row.nested)
+                    waiting.extend(get_nested_interface(row, interface.ros) for row in rows if row.nested)
         self.changing = frozenset().union(*self._lacking.values())
         self.by_name: dict[str, list[tuple[NamedInterface, str]]] = {}
         for interface in sorted(self.definitions):
@@ -151,32 +153,32 @@ class InterfaceScope:
                 for part in PARTS[kind]:
                     self.by_name.setdefault(f"{interface.short}_{part.capitalize()}", []).append((interface, part))
 
-    def step(self, type_: MemberType, name: str) -> MemberType | None:
+    def resolve_field(self, type_: MemberType, name: str) -> MemberType | None:
         """What a field of a value is; None when the versions differ in that, or it is no interface."""
         definition = self.definitions.get(type_.interface)
         if definition is None or type_.several:
             return None
         if type_.section in ("", *_WRAPPERS):
-            return self._part(type_, name, definition)
-        rows = definition.members(type_.section, name)
+            return self._resolve_part(type_, name, definition)
+        rows = definition.list_members(type_.section, name)
         kinds = {(row.nested, row.array) for row in rows if not row.constant}
         if len(kinds) != 1:
             inner = f"{type_.section}.{name}"
             return type_._replace(section=inner) if inner in definition.sections else None
         (inner, array), = kinds  # fmt: skip
-        return MemberType(nested(rows[0], type_.interface.ros), "message", array) if inner else None
+        return MemberType(get_nested_interface(rows[0], type_.interface.ros), "message", array) if inner else None
 
-    def _part(self, type_: MemberType, name: str, definition: Definition) -> MemberType | None:
+    def _resolve_part(self, type_: MemberType, name: str, definition: Definition) -> MemberType | None:
         """`srv.request`, and `.goal` of what ROS 1 sends around a goal."""
         wanted = type_.section.removeprefix("action") or name
         return type_._replace(section=name) if wanted == name and name in definition.sections else None
 
-    def changes(self, type_: MemberType, name: str) -> str | None:
+    def find_changed_section(self, type_: MemberType, name: str) -> str | None:
         """The section in which a value has a member that some versions lack, None when it has not."""
         definition = self.definitions.get(type_.interface)
         if definition is None or type_.several or name not in self._lacking[type_.interface]:
             return None
-        return type_.section if definition.members(type_.section, name) else None
+        return type_.section if definition.list_members(type_.section, name) else None
 
 
 FAR = 240
@@ -186,13 +188,13 @@ PARTS = {"msg": (), "srv": ("request", "response"), "action": ("goal", "result",
 _WRAPPERS = ("action", "actiongoal", "actionresult", "actionfeedback")
 
 
-def nested(member: FieldMember, ros: int) -> NamedInterface:
+def get_nested_interface(member: FieldMember, ros: int) -> NamedInterface:
     """The interface that a field is made of."""
     package, _, name = member.nested.partition("/")
     return NamedInterface(package, ros, f"msg/{name}")
 
 
-def section_of(told: tuple[NamedInterface, str], words: list[str]) -> str | None:
+def find_section(told: tuple[NamedInterface, str], words: list[str]) -> str | None:
     """The section of a type that scopes behind an interface's name tell; None when they name something else."""
     interface, section = told
     for word in words:

@@ -4,13 +4,13 @@ import re
 from collections.abc import Iterable
 
 
-def folded(name: str) -> str:
+def fold_name(name: str) -> str:
     """A name without what people mix up: case, dashes, underscores, a trailing digit, a python or lib prefix."""
     name = re.sub(r"[-_.\s]", "", name.lower())
     return re.sub(r"^(?:python3?|lib|ros)(?=\w{3})|(?:dev|\d)$", "", name)
 
 
-def one_edit(a: str, b: str) -> bool:
+def is_one_edit(a: str, b: str) -> bool:
     """True when one insertion, deletion, replacement or swap of neighbours turns a into b."""
     if a == b or abs(len(a) - len(b)) > 1:
         return False
@@ -28,7 +28,7 @@ def one_edit(a: str, b: str) -> bool:
 
 def is_slip(one: str, other: str) -> bool:
     """True when one edit turns a name into another and their digits are the same: those tell versions apart."""
-    return one_edit(one, other) and re.findall(r"\d", one) == re.findall(r"\d", other)
+    return is_one_edit(one, other) and re.findall(r"\d", one) == re.findall(r"\d", other)
 
 
 class SpellingIndex:
@@ -43,13 +43,13 @@ class SpellingIndex:
         if self._folded is None:
             self._folded = {}
             for name in sorted(self.names):
-                self._folded.setdefault(folded(name), []).append(name)
+                self._folded.setdefault(fold_name(name), []).append(name)
                 self._by_length.setdefault((len(name), name[:1].lower()), []).append(name)
         return self._folded
 
-    def nearest(self, name: str) -> str | None:
+    def find_nearest(self, name: str) -> str | None:
         """The known name that differs only in case, separators or prefix, else the only one a single edit away."""
-        same = self._index().get(folded(name), [])
+        same = self._index().get(fold_name(name), [])
         if same:
             return min(same, key=lambda n: (abs(len(n) - len(name)), n))
         if len(name) < 5:
@@ -58,6 +58,6 @@ class SpellingIndex:
             n
             for size in (-1, 0, 1)
             for n in self._by_length.get((len(name) + size, name[:1].lower()), ())
-            if one_edit(name, n)
+            if is_one_edit(name, n)
         ]
         return near[0] if len(near) == 1 else None

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from ...edges.memory import cached_method
+from ...edges.memory import cache_method
 from ...edges.reach import walk
 from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
@@ -29,11 +29,11 @@ from ..facts.place import Allow, Reference
 from ..facts.python.reader import Import
 from ..facts.python.source import PythonFile
 from ..facts.python.uses import PythonUse
-from ..facts.searches import SearchedCpp, WordUse, declares_in_tf2, declares_type, opens_space
+from ..facts.searches import SearchedCpp, WordUse, declares_in_tf2, declares_type, opens_namespace
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
-from ..targets.providers.message_headers import type_in
+from ..targets.providers.message_headers import parse_type
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .cmake.installed import HEADER_ENDINGS
@@ -317,7 +317,7 @@ def build_type_of(manifest: Manifest, ros: int) -> str:
     return "catkin" if manifest.format < 3 or "catkin" in tools else "cmake"
 
 
-def role_of_folder(path: str) -> str | None:
+def find_folder_role(path: str) -> str | None:
     """`test` or `aside` when a folder of the path says so, else None. Hidden folders hold what development needs. path
     is relative to the package."""
     parts = path.lower().split("/")[:-1]
@@ -360,7 +360,7 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
         words = {name for name in self.headers_of if "::" not in name}
         return UsageTable(self.uses() if self.uses is not None else {}, self.words | words)
 
-    def searches(self) -> dict[str, tuple[str, UsageTable]]:
+    def make_searches(self) -> dict[str, tuple[str, UsageTable]]:
         """What is looked for in files while their facts are made, since every join asks for it; as gather() has it."""
         return {"cpp": ("searched_cpp", self.in_cpp)}
 
@@ -386,17 +386,17 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
 
         return Changing(self.surfaces) if self.surfaces is not None else None
 
-    @cached_method
-    def about(self, written: str) -> tuple[str, str, tuple[str, ...] | None]:
+    @cache_method
+    def describe_name(self, written: str) -> tuple[str, str, tuple[str, ...] | None]:
         """Of a qualified name of C++: the watched name that it is a use of, as meant() says; the name, or the type of
         an interface that it begins with; and the headers one of which has to define that, None where any may."""
         text = written.removeprefix("::")
         headers = self.headers_of.get(text)
-        if headers is None and (made := type_in(text)) is not None:
-            return self.meant(text), made.name, made.headers
-        return self.meant(text), text, headers
+        if headers is None and (made := parse_type(text)) is not None:
+            return self.find_watched_name(text), made.name, made.headers
+        return self.find_watched_name(text), text, headers
 
-    def meant(self, text: str) -> str:
+    def find_watched_name(self, text: str) -> str:
         """The watched name that a qualified name of C++ is a use of, empty when it is of none. It is its own name where
         a watched bare word ends it."""
         wanted = text
@@ -421,7 +421,7 @@ class PackageJoin:
         self.name, self.path, self.manifest_path = place.name or manifest.name, place.path, place.manifest_path
         self.manifest, self.build, self.build_type, self.files = manifest, build, build_type, tuple(files)
         self.generation = 2 if build_type.startswith("ament") else 1 if build_type == "catkin" else 0
-        self.kinds, self.facts, self.look = gathered.kinds, gathered.facts, gathered.look
+        self.kinds, self.facts, self.look = gathered.kinds, gathered.get_facts, gathered.look
         self.watched, self.home, self.asked, self.changing = watched, home, asked, changing
         self.read = cache(read)  # a file is looked into for several reasons
         self.prefix = f"{self.path}/" if self.path else ""
@@ -436,10 +436,10 @@ class PackageJoin:
         self.macros = Macros((), ())
         self.unresolved_receivers = 0
 
-    def inside(self, path: str) -> str:
+    def strip_prefix(self, path: str) -> str:
         return path[len(self.prefix) :]
 
-    def written_inner(self, path: str) -> tuple[IncludeUse, ...]:
+    def list_inner_includes(self, path: str) -> tuple[IncludeUse, ...]:
         """The includes of a header that files of the package answer."""
         return tuple(
             IncludeUse(i.path, At(path, i.line, i.column), "", True, i.conditions)
@@ -447,7 +447,7 @@ class PackageJoin:
             if to is not None
         )
 
-    def digest(self) -> LinkedPackage:
+    def build_digest(self) -> LinkedPackage:
         """All that rules ask of the package."""
         allows, problems, distros = [], [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
@@ -507,27 +507,27 @@ class PackageJoin:
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
         if self.build_type == "catkin":  # which starts programs from the source space too
-            own = (r for p, r in references if r.package == self.name and self.role(p) is None)
+            own = (r for p, r in references if r.package == self.name and self.find_role(p) is None)
             self.start_scripts(python, {r.name for r in own if r.kind == "executable"})
         table = self.watched.in_cpp
         if table.patterns or table.words:
             self.searched = self.look(self.cpp, "searched_cpp", table)
         links = {target.name: {link.item for link in target.links} for target in self.build.targets}
         self.macros = Macros(self.build.macros, {name for facts in self.cpp.values() for name in facts.defined}, links)
-        roles = self.roles()
-        includes, names, needed = self.sources(roles)
-        imports, python_names, syntax, modules = self.python(python)
+        roles = self.compute_roles()
+        includes, names, needed = self.collect_sources(roles)
+        imports, python_names, syntax, modules = self.collect_python(python)
         by_commands = (path for use in self.build.uses for path in use.makes)
         made = modules.union(part for path in by_commands for part in path.split("/"))
         run_setup = {
             path: file.python
             for path, file in (setup if self.build_type in ("ament_python", "catkin") else ())
-            if self.inside(path) == "setup.py" and file.python is not None
+            if self.strip_prefix(path) == "setup.py" and file.python is not None
         }
         for path, facts in run_setup.items():
             syntax.extend(_list_syntax(path, "build", facts))
 
-        uses = [*self.uses(roles), *self.python_uses(python), *self.parameter_uses(parameters)]
+        uses = [*self.list_uses(roles), *self.list_python_uses(python), *self.list_parameter_uses(parameters)]
         return LinkedPackage(
             self.name,
             self.path,
@@ -538,19 +538,19 @@ class PackageJoin:
             includes=tuple(includes),
             imports=tuple(imports),
             references=tuple(
-                ReferenceUse(r, At(p, r.line, r.column), "aside" if p in unused else self.role(p) or "run")
+                ReferenceUse(r, At(p, r.line, r.column), "aside" if p in unused else self.find_role(p) or "run")
                 for p, r in references
             ),
             names=tuple(names + python_names),
             needed_headers=tuple(needed),
-            reaches=tuple(self.reaches(dict.fromkeys(n.at.path for n in needed), roles).items()),
+            reaches=tuple(self.compute_reaches(dict.fromkeys(n.at.path for n in needed), roles).items()),
             inner=tuple(
                 (path, inner)
                 for path, found in self.resolved.items()
                 if is_header(path) and (inner := tuple(to for to, _ in found if to is not None))
             ),
             written_inner=tuple(
-                (path, written) for path in roles if is_header(path) and (written := self.written_inner(path))
+                (path, written) for path in roles if is_header(path) and (written := self.list_inner_includes(path))
             ),
             interfaces=tuple(interfaces),
             syntax=tuple(syntax),
@@ -568,16 +568,16 @@ class PackageJoin:
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
             named=self.find_named(data_words),
-            defined=tuple(sorted(self.defined_names())),
+            defined=tuple(sorted(self.list_defined_names())),
             source_targets=tuple((p, r[2]) for p, r in roles.items() if r[2]),
             uses=tuple(uses),
             functions=tuple(sorted({name for found in self.searched.values() for name in found.functions})),
             methods=tuple(sorted(self.python_methods)),
-            members=(*self.members(roles), *self.python_members(python)),
-            python_api=tuple(self.python_api(python)),
-            cpp_api=tuple(self.cpp_api(roles)),
+            members=(*self.list_member_uses(roles), *self.list_python_member_uses(python)),
+            python_api=tuple(self.list_python_api_uses(python)),
+            cpp_api=tuple(self.list_cpp_api_uses(roles)),
             undefined=tuple(
-                self.imported(p, i)
+                self.make_import_use(p, i)
                 for p, i in (
                     *list_undefined(python, made, self.files),
                     *list_undefined(run_setup, (), ()),
@@ -586,14 +586,14 @@ class PackageJoin:
                     *list_unlisted(python, [(p, f) for p, f in setup if p in run_setup]),
                 )
             ),
-            python_offer=offer_python(python, made, self.files, self.python_roots(setup)),
-            own_calls=tuple(self.own_calls(roles)),
+            python_offer=offer_python(python, made, self.files, self.list_python_roots(setup)),
+            own_calls=tuple(self.list_own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
-            settings=tuple(self.settings(parameters, launches)),
+            settings=tuple(self.list_settings(parameters, launches)),
             distros=tuple(distros),
         )
 
-    def answers(self, include: str, includer: str) -> str | None:
+    def find_included_file(self, include: str, includer: str) -> str | None:
         """The file of the package that an include names, or None."""
         if include.startswith("."):
             wanted = posixpath.normpath(posixpath.join(posixpath.dirname(includer), include))
@@ -625,12 +625,12 @@ class PackageJoin:
         items += [link.item for t in self.build.targets for link in t.links if link.how == "include"]
         return {posixpath.normpath(item).removeprefix(".") for item in items}
 
-    def roles(self) -> dict[str, tuple[str, bool, tuple[str, ...], tuple[Condition, ...]]]:
+    def compute_roles(self) -> dict[str, tuple[str, bool, tuple[str, ...], tuple[Condition, ...]]]:
         """For every C++ file that something reaches: role, public, the targets that compile it, their conditions."""
         for path in self.cpp:
             self.by_name.setdefault(path.rsplit("/", 1)[-1].removesuffix(".in"), []).append(path)
         for path, facts in self.cpp.items():
-            self.resolved[path] = [(self.answers(i.path, path), i) for i in facts.includes]
+            self.resolved[path] = [(self.find_included_file(i.path, path), i) for i in facts.includes]
         roots: dict[str, list] = {}
         for target in self.build.targets:
             for source in target.sources:
@@ -651,18 +651,18 @@ class PackageJoin:
                     reached[at] = (role, public, set(names), list(under))
                 else:
                     merged = role if known[0] == role else "build"
-                    kept = known[3] if public else _either(known[3], under)  # installing builds nothing
+                    kept = known[3] if public else _merge_conditions(known[3], under)  # installing builds nothing
                     reached[at] = (merged, known[1] or public, known[2] | set(names), kept)
                 for to, include in self.resolved.get(at, ()):
                     if to is not None:
-                        around = self.macros.asked(include.conditions, names)
+                        around = self.macros.resolve_conditions(include.conditions, names)
                         stack.append((to, under + around if around else under))
 
         # A header among the sources of a target is compiled with the sources that include it, and not for itself.
         for source, targets in sorted(roots.items(), key=lambda root: is_header(root[0])):
             if is_header(source) and source in reached:
                 continue
-            inside = role_of_folder(self.inside(source))
+            inside = find_folder_role(self.strip_prefix(source))
             for target in targets:
                 role = "test" if target.kind == "test" or inside == "test" else "build"
                 if role == "build" and any(
@@ -672,11 +672,11 @@ class PackageJoin:
                 own = next((conditions for path, conditions in target.guarded if path == source), ())
                 names = () if is_header(source) else (target.name,)
                 walk(source, role, False, names, target.conditions + own)
-        for header in self.installed_headers():
+        for header in self.list_installed_headers():
             walk(header, "build", True, (), ())
         return {p: (r[0], r[1], tuple(sorted(r[2])), tuple(r[3])) for p, r in reached.items()}
 
-    def own_calls(self, roles) -> Iterator[tuple[str, str, str]]:
+    def list_own_calls(self, roles) -> Iterator[tuple[str, str, str]]:
         """As LinkedPackage.own_calls."""
         from .cpp.own_calls import list_own_calls
 
@@ -685,13 +685,13 @@ class PackageJoin:
         if len(set(sources.values())) < 2:
             return
 
-        def included(path: str) -> Collection[str]:
+        def list_included(path: str) -> Collection[str]:
             # What nothing compiles may belong to something that is not built here.
             return {to for to, i in self.resolved.get(path, ()) if to is not None and not i.conditions}
 
-        yield from list_own_calls(sources, included, self.spoken, lambda paths: self.look(paths, "called_cpp"))
+        yield from list_own_calls(sources, list_included, self.list_words, lambda paths: self.look(paths, "called_cpp"))
 
-    def installed_headers(self) -> list[str]:
+    def list_installed_headers(self) -> list[str]:
         folders, single = [], set()
         for rule in self.build.installs:
             if rule.kind == "directory" and "include" in rule.destination.lower():
@@ -704,7 +704,7 @@ class PackageJoin:
                 found.append(path)
         return found
 
-    def sources(self, roles):
+    def collect_sources(self, roles):
         includes: list[IncludeUse] = []
         names: list[NameUse] = []
         needed: list[NeededHeader] = []
@@ -719,22 +719,22 @@ class PackageJoin:
                 if to is None:
                     includes.append(
                         IncludeUse(include.path, At(path, include.line, include.column), role, public,
-                                   conditions + self.macros.asked(include.conditions, targets), targets,
+                                   conditions + self.macros.resolve_conditions(include.conditions, targets), targets,
                                    self.is_idle(include.path.partition("/")[0]))
                     )  # fmt: skip
             types = set()
             for name in facts.qualified:
-                wanted, text, headers = watched.about(name.text)
+                wanted, text, headers = watched.describe_name(name.text)
                 if wanted:
                     names.append(NameUse(wanted, At(path, name.line, name.column), role, public, "cpp",
-                                         conditions + self.macros.asked(name.conditions, targets),
+                                         conditions + self.macros.resolve_conditions(name.conditions, targets),
                                          targets))  # fmt: skip
                 if headers is None or text in types:
                     continue
-                if type_in(text) is not None:
+                if parse_type(text) is not None:
                     types.add(text)
-                if self.reach(path).isdisjoint(headers) and not self.declares(path, text):
-                    around = conditions + self.macros.asked(name.conditions, targets)
+                if self.list_reaching_paths(path).isdisjoint(headers) and not self.declares(path, text):
+                    around = conditions + self.macros.resolve_conditions(name.conditions, targets)
                     std = text.startswith("std::") and text not in _ANNOUNCED
                     whole = std or text in facts.variables
                     needed.append(NeededHeader(text, At(path, name.line, name.column), role, around, whole))
@@ -743,9 +743,9 @@ class PackageJoin:
                 if word.text in defined:
                     continue
                 if word.text in watched.words and not word.initialised:  # else it is a variable of the file's own
-                    names.append(self.bare(word, path, role, public, targets, conditions))
+                    names.append(self.make_bare_use(word, path, role, public, targets, conditions))
                 headers = watched.headers_of.get(word.text)
-                if headers is not None and self.reach(path).isdisjoint(headers):
+                if headers is not None and self.list_reaching_paths(path).isdisjoint(headers):
                     needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
         return includes, names, needed
 
@@ -756,13 +756,13 @@ class PackageJoin:
         names.update(name for facts in self.cpp.values() for name in (*facts.using, *facts.types))
         return frozenset(name.removeprefix("::").partition("::")[0] for name in names)
 
-    @cached_method
+    @cache_method
     def is_idle(self, space: str) -> bool:
         """Whether no C++ file names anything of a namespace, or a macro that is called after it."""
         macro = f"{space.upper()}_"
         return space not in self.spaces and not any(macro in facts.words for facts in self.cpp.values())
 
-    def defined_names(self) -> Iterator[str]:
+    def list_defined_names(self) -> Iterator[str]:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
         namespace that is called like another package whose versions are stored."""
         asked, surfaces = self.watched.in_tables, self.watched.surfaces
@@ -772,13 +772,13 @@ class PackageJoin:
             if name in asked or (head in others and head != self.name):
                 yield name
 
-    def uses(self, roles) -> Iterator[NameUse]:
+    def list_uses(self, roles) -> Iterator[NameUse]:
         """Every use that some table row is about, in files that something compiles."""
         for path, (role, public, targets, conditions) in roles.items():
             found = self.searched.get(path)
             for use in found.uses if found is not None else ():
                 yield NameUse(use.label, At(path, use.line, use.column), role, public, "cpp",
-                              conditions + self.macros.asked(use.conditions, targets), targets,
+                              conditions + self.macros.resolve_conditions(use.conditions, targets), targets,
                               f"<{use.types}>".join(_OPEN_TYPES.split(use.label)))  # fmt: skip
 
     def find_named(self, texts: Iterable[str]) -> tuple[str, ...]:
@@ -786,7 +786,7 @@ class PackageJoin:
         declared = {dependency.name for dependency in self.manifest.dependencies}
         return tuple(sorted({name for text in texts for name in declared.intersection(text.split(" "))}))
 
-    def python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
+    def list_python_uses(self, files: dict[str, PythonFile]) -> Iterator[NameUse]:
         """The same in Python files that import the package which the row is about."""
         importing: dict[str, list[str]] = {}
         for path, facts in files.items():
@@ -797,23 +797,23 @@ class PackageJoin:
         self.python_methods.update(name for each in found.values() for one in each.values() for name in one.functions)
         for path in files:
             for package in sorted(found):
-                yield from self.alike(path, "python", found[package])
+                yield from self.list_text_uses(path, "python", found[package])
 
-    def parameter_uses(self, paths: Collection[str]) -> Iterator[NameUse]:
+    def list_parameter_uses(self, paths: Collection[str]) -> Iterator[NameUse]:
         """The same in files of parameters."""
         if self.watched.parameters:
             found = self.look(paths, "searched_text", self.watched.in_parameters)
             for path in paths:
-                yield from self.alike(path, "yaml", found)
+                yield from self.list_text_uses(path, "yaml", found)
 
-    def alike(self, path: str, language: str, found: Mapping[str, Any]) -> Iterator[NameUse]:
+    def list_text_uses(self, path: str, language: str, found: Mapping[str, Any]) -> Iterator[NameUse]:
         """The uses that were found in a file that no compiler reads."""
         for use in found[path].uses if path in found else ():
-            yield NameUse(use.label, At(path, use.line, use.column), self.python_role(path), False, language)
+            yield NameUse(use.label, At(path, use.line, use.column), self.find_python_role(path), False, language)
 
-    def settings(self, parameters: Iterable[str], launches: list[tuple[str, str]]) -> Iterator[SettingUse]:
+    def list_settings(self, parameters: Iterable[str], launches: list[tuple[str, str]]) -> Iterator[SettingUse]:
         """Parameters of other packages' nodes that files of parameters and launch files set, of those that change."""
-        from .settings import NamedNode, in_launch, in_parameters, mentions_changing, named_in
+        from .settings import NamedNode, list_launch_settings, list_named_nodes, list_settings, mentions_changing
 
         changing = self.watched.changing_parameters
         if not changing:
@@ -821,43 +821,43 @@ class PackageJoin:
         started: dict[str, list[NamedNode]] = {}
 
         @cache
-        def spoken(path: str) -> set[str]:
+        def read_words(path: str) -> set[str]:
             return set(self.facts(path).facts.words.split(" "))
 
-        def launched(path: str, kind: str) -> Iterable[LaunchFile]:
+        def read_launches(path: str, kind: str) -> Iterable[LaunchFile]:
             return self.look((path,), f"flow_{kind}").values()
 
-        def named(name: str, packages: Collection[str]) -> NamedNode | None:
+        def find_node(name: str, packages: Collection[str]) -> NamedNode | None:
             other = None
             for path, kind in launches:
-                if path not in started and mentions(name, spoken(path)):
-                    started[path] = [one for file in launched(path, kind) for one in named_in(file)]
+                if path not in started and mentions(name, read_words(path)):
+                    started[path] = [one for file in read_launches(path, kind) for one in list_named_nodes(file)]
                 for one in started.get(path, ()):
                     if one.name == name and one.package in packages:
                         return one
                     other = one if one.name == name else other
             return other
 
-        wanted = [p for p in parameters if "ros__parameters" in (words := spoken(p)) and words & changing.keys()]
+        wanted = [p for p in parameters if "ros__parameters" in (words := read_words(p)) and words & changing.keys()]
         for path, file in self.look(wanted, "flow_parameters").items():
-            for found in in_parameters(file, changing, named):
-                yield self.setting(path, found)
+            for found in list_settings(file, changing, find_node):
+                yield self.make_setting_use(path, found)
         for path, kind in launches:
-            for file in launched(path, kind) if mentions_changing(spoken(path), changing) else ():
-                for found in in_launch(file, changing):
-                    yield self.setting(path, found)
+            for file in read_launches(path, kind) if mentions_changing(read_words(path), changing) else ():
+                for found in list_launch_settings(file, changing):
+                    yield self.make_setting_use(path, found)
 
-    def setting(self, path: str, found: Setting) -> SettingUse:
+    def make_setting_use(self, path: str, found: Setting) -> SettingUse:
         """A value that a file sets, as rules ask of it."""
         value = "" if found.value is None else str(found.value)
-        place = At(path, found.line), self.python_role(path)
+        place = At(path, found.line), self.find_python_role(path)
         return SettingUse(found.name, found.package, found.plugin, found.node, found.others, *place, value)
 
-    def members(self, roles) -> Iterator[MemberUse]:
+    def list_member_uses(self, roles) -> Iterator[MemberUse]:
         """Uses of fields and constants that only some versions of an interface have, in files that are compiled."""
         from .cpp.resolver import Resolver
         from .cpp.uses import MemberUses
-        from .members import InterfaceScope, interface_named, interfaces_included
+        from .members import InterfaceScope, find_included_interfaces, find_interface
 
         table, asked = self.watched.fields, self.asked
         if table is None:
@@ -865,9 +865,9 @@ class PackageJoin:
         paths = {include.path for resolved in self.resolved.values() for to, include in resolved if to is None}
         # Interfaces that come along with other headers are told by their names.
         kinds = {name.text: None for facts in self.cpp.values() for name in facts.qualified}
-        meant = {text: interface for text in kinds if (interface := interface_named(text, table)) is not None}
+        meant = {text: interface for text in kinds if (interface := find_interface(text, table)) is not None}
         changing = InterfaceScope(
-            (*interfaces_included(paths, table)[0], *meant.values()), table, asked, self.home
+            (*find_included_interfaces(paths, table)[0], *meant.values()), table, asked, self.home
         ).changing
         if not changing:
             return
@@ -882,7 +882,7 @@ class PackageJoin:
             spoken.update(short)  # words of a file are at least four characters long
             if not changing & spoken:
                 continue
-            included, unknown = interfaces_included(sorted(self.reach(path)), table)
+            included, unknown = find_included_interfaces(sorted(self.list_reaching_paths(path)), table)
             named = [meant[name.text] for name in facts.qualified if name.text in meant]
             key = frozenset((*included, *named))
             scope = scopes.get(key)
@@ -890,21 +890,21 @@ class PackageJoin:
                 scope = scopes[key] = InterfaceScope(key, table, asked, self.home)
             if not scope.changing & spoken:
                 continue
-            words = [word for word in sorted(scope.changing & spoken) if self.known(path).code.may_have_member(word)]
+            words = [word for word in sorted(scope.changing & spoken) if self.load(path).code.may_have_member(word)]
             if not words:
                 continue
-            headers = [self.known(to) for to in sorted(self.reached(path)) if to != path]
-            code = self.known(path).code
+            headers = [self.load(to) for to in sorted(self.list_reached(path)) if to != path]
+            code = self.load(path).code
             seen = set()
-            for found in MemberUses(Resolver((self.known(path), *headers), None, scope)).found(words, not unknown):
-                around = self.macros.asked(code.conditions(found.offset) or (), targets)
+            for found in MemberUses(Resolver((self.load(path), *headers), None, scope)).find_uses(words, not unknown):
+                around = self.macros.resolve_conditions(code.find_conditions(found.offset) or (), targets)
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
                     at = At(path, *code.place(found.offset))
-                    yield _member_use(found, at, role, "cpp", conditions + around)
+                    yield _make_member_use(found, at, role, "cpp", conditions + around)
 
-    def cpp_api(self, roles) -> Iterator[CppApiUse]:
+    def list_cpp_api_uses(self, roles) -> Iterator[CppApiUse]:
         """Uses of C++ names of packages outside of the workspace that are not the same in all versions, in files that
         are compiled."""
         from .api import ASSIGNING, Vocabulary
@@ -913,37 +913,37 @@ class PackageJoin:
 
         if self.changing is None:
             return
-        spoken = {path: self.spoken(path) for path in self.cpp if path in roles}
+        spoken = {path: self.list_words(path) for path in self.cpp if path in roles}
         packages = {i.path.partition("/")[0] for found in self.resolved.values() for to, i in found if to is None}
         packages.update(dependency.name for dependency in self.manifest.dependencies)
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
         ros = self.generation
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.changing, ros, self.home)
-        assigning = vocabulary.looked_for(vocabulary.words & ASSIGNING.keys())
+        assigning = vocabulary.select_wanted(vocabulary.words & ASSIGNING.keys())
         exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
         exported_words = {name.rpartition("::")[2] for name in exported}
         for path, (role, _, targets, conditions) in roles.items():
-            words = vocabulary.looked_for(vocabulary.words & spoken[path]) | assigning if path in spoken else set()
+            words = vocabulary.select_wanted(vocabulary.words & spoken[path]) | assigning if path in spoken else set()
             has_exported = not exported_words.isdisjoint(spoken.get(path, ()))
             if not words and not has_exported:
                 continue
-            reached = sorted(to for to in self.reached(path) if to != path and to in spoken)
+            reached = sorted(to for to in self.list_reached(path) if to != path and to in spoken)
             near = [spoken[path], *(spoken[to] for to in reached)]
             has_exported = (
                 has_exported
                 and any(not one.isdisjoint(vocabulary.speakers_of_pure) for one in near)
-                and not exported_words.isdisjoint(self.known(path).code.like_classes)
+                and not exported_words.isdisjoint(self.load(path).code.like_classes)
             )
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
             if not words and not has_exported:
                 continue
-            code = self.known(path).code
+            code = self.load(path).code
             seen = set()
-            resolver = Resolver([self.known(path), *(self.known(to) for to in reached)], vocabulary, None)
-            heads = {include.partition("/")[0] for include in self.reach(path)}
+            resolver = Resolver([self.load(path), *(self.load(to) for to in reached)], vocabulary, None)
+            heads = {include.partition("/")[0] for include in self.list_reaching_paths(path)}
             uses = ApiUses(resolver, heads)
-            for found in (*uses.found(words), *(uses.unimplemented(exported) if has_exported else ())):
-                around = code.conditions(found.offset)
+            for found in (*uses.find_uses(words), *(uses.find_unimplemented(exported) if has_exported else ())):
+                around = code.find_conditions(found.offset)
                 # Every call is a use of its own.
                 key = (*(found if found.how == "call" else found._replace(offset=0)), around)
                 if around is not None and key not in seen:
@@ -953,96 +953,96 @@ class PackageJoin:
                                     found.templated, conditions + around, targets)  # fmt: skip
             self.unresolved_receivers += len(uses.unresolved)
 
-    @cached_method
-    def known(self, path: str) -> KnownFile:
+    @cache_method
+    def load(self, path: str) -> KnownFile:
         """What a file declares and uses."""
         from ..facts.cpp.code import CppCode
         from .cpp.resolver import KnownFile
 
-        return KnownFile(CppCode(self.read(path)), self.spoken(path) if path in self.cpp else frozenset())
+        return KnownFile(CppCode(self.read(path)), self.list_words(path) if path in self.cpp else frozenset())
 
-    @cached_method
-    def spoken(self, path: str) -> frozenset[str]:
+    @cache_method
+    def list_words(self, path: str) -> frozenset[str]:
         """Every word of a C++ file that has four letters or more, and all parts of its qualified names."""
         facts = self.cpp[path]
         parts = (part for name in facts.qualified for part in name.text.split("::"))
         return frozenset((*facts.words.split(" "), *parts, *facts.using))
 
-    def python_members(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
+    def list_python_member_uses(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""
         from .members import InterfaceScope
-        from .python.members import changing_members, interfaces_used, may_use_interfaces
+        from .python.members import find_changing_members, list_used, may_use_interfaces
 
         table, asked = self.watched.fields, self.asked
         if table is None:
             return
         for path, facts in files.items():
-            used = interfaces_used(facts.fields, table) if may_use_interfaces(facts, table, asked, self.home) else []
+            used = list_used(facts.fields, table) if may_use_interfaces(facts, table, asked, self.home) else []
             seen = set()
             # Both generations import an interface alike: each is followed for itself.
             for ros in sorted({interface.ros for interface in used}):
                 scope = InterfaceScope(
                     (interface for interface in used if interface.ros == ros), table, asked, self.home
                 )
-                for use, found in changing_members(facts.fields, scope) if scope.changing else ():
+                for use, found in find_changing_members(facts.fields, scope) if scope.changing else ():
                     key = (found.interface, found.section, found.member)
                     if key not in seen:
                         seen.add(key)
                         at = At(path, use.line, use.column)
-                        yield _member_use(found, at, self.python_role(path), "python")
+                        yield _make_member_use(found, at, self.find_python_role(path), "python")
 
-    def python_api(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
+    def list_python_api_uses(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
         """Uses of Python names of other packages that may not be the same in all versions."""
-        from .python.api import python_packages, uses_of
+        from .python.api import find_python_packages, find_uses
 
         changing = self.watched.changing_python
         if changing is None:
             return
-        own = {self.name, *python_packages(self.files)}
+        own = {self.name, *find_python_packages(self.files)}
         own.update(posixpath.basename(path).removesuffix(".py") for path in files)
         for path, facts in files.items():
-            for use in uses_of(facts, frozenset(own), changing):
-                yield PythonApiUse(use, At(path, use.line, use.column), self.python_role(path))
+            for use in find_uses(facts, frozenset(own), changing):
+                yield PythonApiUse(use, At(path, use.line, use.column), self.find_python_role(path))
 
-    def bare(self, word: WordUse, path, role, public, targets, conditions) -> NameUse:
+    def make_bare_use(self, word: WordUse, path, role, public, targets, conditions) -> NameUse:
         """A use of a bare word, with the preprocessor conditions around it."""
-        around = self.macros.asked(word.conditions, targets)
+        around = self.macros.resolve_conditions(word.conditions, targets)
         return NameUse(word.text, At(path, word.line, word.column), role, public, "cpp", conditions + around, targets)
 
-    @cached_method
-    def reach(self, path: str) -> frozenset[str]:
+    @cache_method
+    def list_reaching_paths(self, path: str) -> frozenset[str]:
         """All include paths that reach a file, through files of the package."""
-        return frozenset(include.path for at in self.reached(path) for _, include in self.resolved.get(at, ()))
+        return frozenset(include.path for at in self.list_reached(path) for _, include in self.resolved.get(at, ()))
 
-    def reaches(self, paths: Iterable[str], roles) -> dict[str, tuple[tuple[str, ...], ...]]:
+    def compute_reaches(self, paths: Iterable[str], roles) -> dict[str, tuple[tuple[str, ...], ...]]:
         """For each file, what reaches it in the sources that compile it; the least of them tell enough. A header that
         none does is taken alone, and one that is only a part of another as that one includes it."""
-        found: dict[str, set[tuple[str, ...]]] = {p: set() if is_header(p) else {self.outward(p)} for p in paths}
+        found: dict[str, set[tuple[str, ...]]] = {p: set() if is_header(p) else {self.list_outward(p)} for p in paths}
         besides: dict[str, set[tuple[str, ...]]] = {p: set() for p in found}
-        own = {path: frozenset(self.outward(path)) for path in found if is_header(path)}
+        own = {path: frozenset(self.list_outward(path)) for path in found if is_header(path)}
         for source, (role, *_) in roles.items():
             if is_header(source):
                 continue
-            for path, before in self.met(source, own):
+            for path, before in self.list_met_headers(source, own):
                 # An installed header may be compiled by nothing but programs that are called tests.
                 (found if role == roles[path][0] else besides)[path].add(tuple(sorted(own[path] | before)))
         for path, sets in found.items():
             sets.update(besides[path] if not sets else ())
         parts = {path: own[path] for path, sets in found.items() if not sets and _PART.search(path)}
-        for header in self.outermost(roles) if parts else ():
-            for path, before in self.met(header, parts):
+        for header in self.list_outermost(roles) if parts else ():
+            for path, before in self.list_met_headers(header, parts):
                 found[path].add(tuple(sorted(own[path] | before)))
         return {
-            path: tuple(sorted(sets, key=lambda s: (len(s), s))[:_SOURCES]) or (self.outward(path),)
+            path: tuple(sorted(sets, key=lambda s: (len(s), s))[:_SOURCES]) or (self.list_outward(path),)
             for path, sets in found.items()
         }
 
-    def outermost(self, roles) -> Iterator[str]:
+    def list_outermost(self, roles) -> Iterator[str]:
         """The headers that no other header of the package includes."""
         inner = {to for path, resolved in self.resolved.items() if is_header(path) for to, _ in resolved}
         return (path for path in roles if is_header(path) and path not in inner)
 
-    def met(self, source: str, wanted: Container[str]) -> Iterator[tuple[str, frozenset[str]]]:
+    def list_met_headers(self, source: str, wanted: Container[str]) -> Iterator[tuple[str, frozenset[str]]]:
         """Headers among the wanted ones as a source comes to include them, with the include paths that no file of the
         package answers up to there."""
         before: dict[str, None] = {}
@@ -1059,13 +1059,13 @@ class PackageJoin:
                     yield to, frozenset(before)
                 stack.append(iter(self.resolved.get(to, ())))
 
-    def outward(self, path: str) -> tuple[str, ...]:
+    def list_outward(self, path: str) -> tuple[str, ...]:
         """The include paths among them that no file of the package answers."""
-        found = {i.path for at in self.reached(path) for to, i in self.resolved.get(at, ()) if to is None}
+        found = {i.path for at in self.list_reached(path) for to, i in self.resolved.get(at, ()) if to is None}
         return tuple(sorted(found))
 
-    @cached_method
-    def reached(self, path: str) -> tuple[str, ...]:
+    @cache_method
+    def list_reached(self, path: str) -> tuple[str, ...]:
         """The file and the files of the package that it includes, directly or not."""
         return tuple(walk([path], lambda at: (to for to, _ in self.resolved.get(at, ()) if to is not None)))
 
@@ -1076,39 +1076,39 @@ class PackageJoin:
         head = space.partition("::")[0]
         if head in ("", "std"):
             return False
-        if type_in(name) is not None:  # tf2 has a Quaternion too
-            texts = (self.read(at) for at in self.reached(path) if self.may_open(at, head))
-            return any(opens_space(text, head) and declares_type(text, word) for text in texts)
+        if parse_type(name) is not None:  # tf2 has a Quaternion too
+            texts = (self.read(at) for at in self.list_reached(path) if self.may_open(at, head))
+            return any(opens_namespace(text, head) and declares_type(text, word) for text in texts)
         declares = declares_in_tf2 if space == "tf2" and word[0].islower() else declares_type
-        speaking = (at for at in self.reached(path) if len(word) < 4 or word in self.spoken(at))
+        speaking = (at for at in self.list_reached(path) if len(word) < 4 or word in self.list_words(at))
         return any(declares(self.read(at), word) for at in speaking)
 
     def may_open(self, path: str, space: str) -> bool:
         """Whether a C++ file may open a namespace: its name stands there alone, or before another part that makes no
         type of an interface of it."""
-        return len(space) < 4 or space in self.opened_spaces(path)
+        return len(space) < 4 or space in self.list_opened_words(path)
 
-    @cached_method
-    def opened_spaces(self, path: str) -> frozenset[str]:
+    @cache_method
+    def list_opened_words(self, path: str) -> frozenset[str]:
         """Every word of a C++ file that has four letters or more, and the first parts of its qualified names, those of
         types of interfaces aside."""
         facts = self.cpp[path]
-        heads = (name.text.partition("::")[0] for name in facts.qualified if type_in(name.text) is None)
+        heads = (name.text.partition("::")[0] for name in facts.qualified if parse_type(name.text) is None)
         return frozenset((*facts.words.split(" "), *heads))
 
-    def python(self, files: dict[str, PythonFile]):
+    def collect_python(self, files: dict[str, PythonFile]):
         """Imports, watched names and syntax of Python files, and the modules that the package has itself."""
-        modules = self.python_modules()
+        modules = self.list_python_modules()
         imports: list[ImportUse] = []
         names: list[NameUse] = []
         syntax: list[SyntaxUse] = []
         for path, facts in files.items():
-            role = self.python_role(path)
+            role = self.find_python_role(path)
             others = [item for item in facts.imports if not item.level]
             for item in others:
                 head = item.module.split(".")[0]
                 if head and head != self.name and head not in modules:
-                    imports.append(self.imported(path, item))
+                    imports.append(self.make_import_use(path, item))
             mentioned = [(attribute.text, attribute) for attribute in facts.attributes]
             mentioned += [(text, i) for i in others for text in (i.module, *(f"{i.module}.{n}" for n in i.names))]
             names.extend(
@@ -1119,11 +1119,11 @@ class PackageJoin:
             syntax.extend(_list_syntax(path, role, facts))
         return imports, names, syntax, modules
 
-    def python_modules(self) -> set[str]:
+    def list_python_modules(self) -> set[str]:
         """Names of modules, packages and built libraries that Python files of the package may import."""
         modules: set[str] = set()
         for path in self.files:
-            inside = self.inside(path)
+            inside = self.strip_prefix(path)
             if inside.endswith(".py"):
                 parts = inside[:-3].split("/")
                 if parts[-1] == "__init__":
@@ -1136,27 +1136,27 @@ class PackageJoin:
         modules.update(t.output_name for t in self.build.targets if t.output_name)
         return modules
 
-    def imported(self, path: str, item: Import) -> ImportUse:
+    def make_import_use(self, path: str, item: Import) -> ImportUse:
         """An import of a Python file."""
-        at, role = At(path, item.line, item.column), self.python_role(path)
+        at, role = At(path, item.line, item.column), self.find_python_role(path)
         return ImportUse(item.module, item.names, at, role, item.conditions, item.lazy)
 
-    def python_roots(self, setup: Iterable[tuple[str, SetupFile]]) -> set[str]:
+    def list_python_roots(self, setup: Iterable[tuple[str, SetupFile]]) -> set[str]:
         """Where Python packages may lie that others can import once the package is installed."""
         roots = {posixpath.join(self.path, folder, self.name) for folder in ("", "src")}
         for path, file in setup:
             if posixpath.dirname(path) == self.path:
                 tops = (name.partition(".")[0] for name in file.packages if name.isidentifier())
-                roots.update(file.places_of(self.path, top)[0].removesuffix(".py") for top in tops)
+                roots.update(file.list_module_paths(self.path, top)[0].removesuffix(".py") for top in tops)
         return roots
 
-    @cached_method
-    def python_role(self, path: str) -> str:
+    @cache_method
+    def find_python_role(self, path: str) -> str:
         """The role of what a Python file needs, as ImportUse has it."""
-        inside = self.inside(path)
+        inside = self.strip_prefix(path)
         if inside in ("setup.py", "conanfile.py"):
             return "build"
-        role = self.role(path)
+        role = self.find_role(path)
         if role == "test" and not self.is_run_as_test(path):
             return "aside"
         return role or ("run" if path in self.started or self.is_installed(path) else "aside")
@@ -1186,13 +1186,13 @@ class PackageJoin:
                 folder = posixpath.dirname(path)
                 waiting.extend(f"{folder}/{item.module.split('.')[0]}.py" for item in files[path].imports)
 
-    @cached_method
-    def role(self, path: str) -> str | None:
-        """As role_of_folder(). What only the name of the file or of the package calls an example is none where the
+    @cache_method
+    def find_role(self, path: str) -> str | None:
+        """As find_folder_role(). What only the name of the file or of the package calls an example is none where the
         package installs the file, along with others of its things."""
-        inside = self.inside(path)
-        role = role_of_folder(inside)
-        by_folder = role_of_folder(f"{posixpath.dirname(inside)}/")
+        inside = self.strip_prefix(path)
+        role = find_folder_role(inside)
+        by_folder = find_folder_role(f"{posixpath.dirname(inside)}/")
         if role == "test" or by_folder is not None or (role is None and not _ASIDE_NAME.search(self.name)):
             return role
         installs = self.build_type == "ament_python" or bool(self.build.installs)
@@ -1219,8 +1219,8 @@ class PackageJoin:
         single, folders = self._covered
         if path in single or any(not f or path.startswith(f + "/") or f == self.path for f in folders):
             return True
-        # catkin_python_setup() installs what setup.py names, which by custom lies in src/.
-        inside = self.inside(path)
+        # install_python_setup() installs what setup.py names, which by custom lies in src/.
+        inside = self.strip_prefix(path)
         return self.build_type == "catkin" and inside.startswith("src/") and self.prefix + "setup.py" in self.files
 
 
@@ -1229,7 +1229,7 @@ _MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)
 _BUILT = re.compile(r"\$\{\w*BINARY_DIR\}")
 
 
-def _member_use(
+def _make_member_use(
     found: FoundField, at: At, role: str, language: str, conditions: tuple[Condition, ...] = ()
 ) -> MemberUse:
     kind = found.interface
@@ -1265,7 +1265,7 @@ _ANNOUNCED = frozenset({"std::string"}).union(
 _ONE_OF_SEVERAL = Condition("cmake", "<one of several conditions>")
 
 
-def _either(one: list[Condition], other: tuple[Condition, ...]) -> list[Condition]:
+def _merge_conditions(one: list[Condition], other: tuple[Condition, ...]) -> list[Condition]:
     """What holds where a file is built under one set of conditions or another."""
     common = [c for c in one if c in other]
     return common if len(common) in (len(one), len(other)) else [*common, _ONE_OF_SEVERAL]

@@ -9,10 +9,10 @@ import re
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import NamedTuple
 
-from ..facts.launch.actions import Action, LaunchFile, plain
+from ..facts.launch.actions import Action, LaunchFile, find_literal
 from ..facts.launch.parameter_files import ParameterEntry, ParameterFile
 from ..facts.launch.references import CLASS
-from ..targets.parameters import last_part
+from ..targets.parameters import find_last_part
 
 Changing = Mapping[str, frozenset[str]]
 """Last parts of parameters' names, with the packages of which some versions declare one so called."""
@@ -46,7 +46,7 @@ def mentions_changing(words: Collection[str], changing: Changing) -> bool:
     return any(not changing[word].isdisjoint(words) for word in changing.keys() & words)
 
 
-def in_parameters(
+def list_settings(
     file: ParameterFile, changing: Changing, named: Callable[[str, Collection[str]], NamedNode | None]
 ) -> Iterator[Setting]:
     """What a file of ROS 2 parameters sets. named: the node that goes by a name, one of some packages first, None where
@@ -63,10 +63,10 @@ def in_parameters(
         for key, entry in entries if len(key) == 2 and key[1] == "type" and _is_class(entry.value)
     }  # fmt: skip
     for path, entries in nodes.items():
-        yield from _of_node(path[-1].rpartition("/")[2] if path else "", entries, controllers, changing, named)
+        yield from _list_settings(path[-1].rpartition("/")[2] if path else "", entries, controllers, changing, named)
 
 
-def _of_node(
+def _list_settings(
     node: str,
     entries: list[tuple[list[str], ParameterEntry]],
     controllers: Mapping[str, str],
@@ -74,7 +74,7 @@ def _of_node(
     named: Callable[[str, Collection[str]], NamedNode | None],
 ) -> Iterator[Setting]:
     plugins = {tuple(key[:-1]): entry.value for key, entry in entries if key[-1] == "plugin" and _is_class(entry.value)}
-    others = tuple(sorted({_package(name) for name in plugins.values()}))
+    others = tuple(sorted({_get_package(name) for name in plugins.values()}))
     for key, entry in entries:
         losers = changing.get(key[-1])
         if losers is None or key[-1] == "plugin":
@@ -82,8 +82,8 @@ def _of_node(
         owner = next((tuple(key[:end]) for end in range(len(key) - 1, -1, -1) if tuple(key[:end]) in plugins), None)
         class_, name = (plugins[owner], key[len(owner) :]) if owner is not None else (controllers.get(node, ""), key)
         if class_:
-            if _package(class_) in losers:
-                yield Setting(".".join(name), _package(class_), class_, node, entry.line, others, entry.value)
+            if _get_package(class_) in losers:
+                yield Setting(".".join(name), _get_package(class_), class_, node, entry.line, others, entry.value)
         elif node and "*" not in node:
             known = named(node, losers)
             if known is not None and known.package not in losers:
@@ -96,36 +96,36 @@ def _is_class(value: object) -> bool:
     return isinstance(value, str) and CLASS.match(value) is not None
 
 
-def _package(class_: str) -> str:
+def _get_package(class_: str) -> str:
     """The package that a class of a plugin is called after."""
     return re.split(r"/|::", class_)[0]
 
 
-def in_launch(file: LaunchFile, changing: Changing) -> Iterator[Setting]:
+def list_launch_settings(file: LaunchFile, changing: Changing) -> Iterator[Setting]:
     """What a launch file itself sets for the nodes and components that it starts."""
-    for action in _actions(file.actions):
-        package = plain(action.get("package")) or ""
-        plugin, program = plain(action.get("plugin")) or "", plain(action.get("executable")) or ""
+    for action in _list_actions(file.actions):
+        package = find_literal(action.get("package")) or ""
+        plugin, program = find_literal(action.get("plugin")) or "", find_literal(action.get("executable")) or ""
         if not package or not (plugin or program):
             continue
         for child in action.children:
-            name = (plain(child.get("name")) or "").lstrip("~/") if child.kind == "parameter" else ""
-            if package in changing.get(last_part(name), ()):
+            name = (find_literal(child.get("name")) or "").lstrip("~/") if child.kind == "parameter" else ""
+            if package in changing.get(find_last_part(name), ()):
                 program = "" if plugin else program
-                value = plain(child.get("value"))
+                value = find_literal(child.get("value"))
                 yield Setting(name.replace("/", "."), package, plugin, program, child.line, value=value)
 
 
-def named_in(file: LaunchFile) -> Iterator[NamedNode]:
+def list_named_nodes(file: LaunchFile) -> Iterator[NamedNode]:
     """The nodes that a launch file starts, as far as they are told plainly; one that it gives no name goes by that of
     its program."""
-    for action in _actions(file.actions):
-        package, program = plain(action.get("package")), plain(action.get("executable"))
+    for action in _list_actions(file.actions):
+        package, program = find_literal(action.get("package")), find_literal(action.get("executable"))
         if package and program:
-            yield NamedNode(package, program, plain(action.get("name")) or program)
+            yield NamedNode(package, program, find_literal(action.get("name")) or program)
 
 
-def _actions(actions: Collection[Action]) -> Iterator[Action]:
+def _list_actions(actions: Collection[Action]) -> Iterator[Action]:
     for action in actions:
         yield action
-        yield from _actions(action.children)
+        yield from _list_actions(action.children)

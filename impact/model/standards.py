@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from ..targets.providers.library import default_standard, standard_year
-from ..targets.version import at_least
-from .cmake.links import package_of, reached_targets
+from ..targets.providers.library import find_default_standard, get_year
+from ..targets.version import is_at_least
+from .cmake.links import list_reached_targets, resolve_package
 
 if TYPE_CHECKING:
     from .package import NameUse
@@ -24,20 +24,20 @@ def find_standards(view: TargetView, package: Package) -> dict[str, int]:
     targets = {target.name: target for target in package.build.targets}
     found: dict[str, int] = {}
     for target in targets.values():
-        year = standard_year(target.standard) if target.standard else 0
+        year = get_year(target.standard) if target.standard else 0
         others: set[str] = set()
-        for own in reached_targets(targets, [target.name], _PASSING_ON):
+        for own in list_reached_targets(targets, [target.name], _PASSING_ON):
             if own.public_standard:
-                year = max(year, standard_year(own.public_standard))
-            others.update(package_of(link.item) for link in own.links if link.how in _PASSING_ON)
+                year = max(year, get_year(own.public_standard))
+            others.update(resolve_package(link.item) for link in own.links if link.how in _PASSING_ON)
         if "catkin" in others:
             others.update(f.name for f in package.build.found if f.how == "catkin")
-        for name in view.roles.found_with(others - targets.keys()) if others else ():
+        for name in view.roles.list_found_with(others - targets.keys()) if others else ():
             other = view.workspace.packages.get(name)
             asked = max((t.public_standard for t in other.build.targets), default=0) if other is not None else (
-                view.offers.standard(name)
+                view.offers.find_standard(name)
             )
-            year = max(year, standard_year(asked) if asked else 0)
+            year = max(year, get_year(asked) if asked else 0)
         if year:
             found[target.name] = year
     return found
@@ -53,7 +53,7 @@ def may_be_raised(view: TargetView, package: Package, names: Iterable[str]) -> b
         if item in seen:
             continue
         seen.add(item)
-        owner = package_of(item)
+        owner = resolve_package(item)
         other = view.workspace.packages.get(owner) if item not in targets and owner != package.name else None
         if item in targets:
             waiting.extend([targets[item].alias_of, *(link.item for link in targets[item].links if link.how == "link")])
@@ -61,7 +61,7 @@ def may_be_raised(view: TargetView, package: Package, names: Iterable[str]) -> b
             # Its libraries are handed on with what they link.
             found = [other] if other is not None else _list_found(view, package)
             waiting.extend(link.item for one in found for made in one.build.targets for link in made.links)
-        elif "::" in item and owner not in _ASKS_FOR_LITTLE and not view.offers.standard(owner):
+        elif "::" in item and owner not in _ASKS_FOR_LITTLE and not view.offers.find_standard(owner):
             return True
     return False
 
@@ -80,9 +80,9 @@ def _find_raised(view: TargetView) -> int:
     does since 9.0 (its CMakeLists.txt); of others before, none is known to ask for more than C++14."""
     if view.target.ros == 1:
         return 0
-    if not at_least(view.target.version("rclcpp") or "9.0", "9.0"):
+    if not is_at_least(view.target.find_version("rclcpp") or "9.0", "9.0"):
         return 2014
-    return 2020 if at_least(view.target.library("gcc") or "", "15") else 2017
+    return 2020 if is_at_least(view.target.find_library("gcc") or "", "15") else 2017
 
 
 def find_failing_standard(
@@ -93,11 +93,11 @@ def find_failing_standard(
     if not refused_from and not needs:
         return ""
     build = package.build
-    default = default_standard(view.target)
+    default = find_default_standard(view.target)
     own = [t.standard for t in build.targets if t.name in use.targets and t.standard]
-    fixed = view.standard(package)
+    fixed = view.find_standard(package)
     set_for = ([fixed[0]] if fixed else []) + own
-    have = max((standard_year(number) for number in set_for), default=default)
+    have = max((get_year(number) for number in set_for), default=default)
     if have is None:
         return None
     if not set_for and may_be_set_elsewhere(view, package):
@@ -106,7 +106,7 @@ def find_failing_standard(
         return f"C++{have % 100:02d}" if have >= refused_from else None
     if max(have, _find_raised(view)) >= needs or not use.targets or use.role != "build":
         return None
-    if not view.certain(use.conditions) or may_be_raised(view, package, use.targets):
+    if not view.is_sure(use.conditions) or may_be_raised(view, package, use.targets):
         return None
     return f"C++{have % 100:02d}"
 
@@ -123,6 +123,6 @@ def may_be_set_elsewhere(view: TargetView, package: Package) -> bool:
         return True
     if any("include(" in reason for _, reason in package.build.unresolved):
         return True
-    found = view.transitive_dependencies(f.name for f in package.build.found)
+    found = view.list_transitive(f.name for f in package.build.found)
     own = [view.workspace.packages[name] for name in found if name in view.workspace.packages]
     return any(path.endswith((".cmake", ".cmake.in", ".cmake.em")) for other in own for path in other.files)

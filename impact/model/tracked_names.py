@@ -7,12 +7,12 @@ from functools import cache
 import msgspec
 
 from ..facts.usage import Pattern
-from ..targets.changes import all_rows, all_uses, looked_for, stamp_of_uses, transitive_includes
-from ..targets.providers.includes import offered
+from ..targets.changes import compute_uses_stamp, index_uses, load_rows, load_transitive, load_uses
+from ..targets.providers.includes import load_offered
 from ..targets.providers.library import OPENCV_FUNCTIONS
-from ..targets.providers.standard import offering
-from ..targets.surface.fields import default_fields
-from ..targets.surface.store import shipped
+from ..targets.providers.standard import index_headers
+from ..targets.surface.fields import load_fields
+from ..targets.surface.store import load_shipped
 from .package import Watched
 
 _KINDS = frozenset({"api-removed", "api-renamed", "api-changed", "python-removed", "python-api"})
@@ -21,10 +21,10 @@ _DOTTED = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*\Z")
 
 
 @cache
-def watched() -> Watched:
+def load_watched() -> Watched:
     """All names that some known change is about, with a version that changes when the tables do."""
     words, qualified, python, headers = set(), set(OPENCV_FUNCTIONS), set(), {}
-    for row in all_rows():
+    for row in load_rows():
         if row.kind not in _KINDS or not row.old:
             continue
         if row.kind.startswith("python"):
@@ -38,23 +38,23 @@ def watched() -> Watched:
             # A new name of which an old one is told may be used where it is not there yet.
             if row.new_since and len(row.new) > 7 and _WORD.match(row.new) and not row.ambiguous:
                 (qualified if "::" in row.new else words).add(row.new)
-    headers.update({name: found for name, found in offered().items() if name not in headers})
-    headers.update({name: tuple(h for h in found if "bits/" not in h) for name, found in offering().items()})
-    for include in transitive_includes():
+    headers.update({name: found for name, found in load_offered().items() if name not in headers})
+    headers.update({name: tuple(h for h in found if "bits/" not in h) for name, found in index_headers().items()})
+    for include in load_transitive():
         headers[include.name] = tuple(dict.fromkeys((*include.headers, *headers.get(include.name, ()))))
     modules: dict[str, list[tuple[str, Pattern]]] = {}
-    for label, row in all_uses().items():
+    for label, row in load_uses().items():
         if row.pattern is not None and row.pattern.language == "python":
-            modules.setdefault(row.package, []).append((label, _bare(row.pattern)))
+            modules.setdefault(row.package, []).append((label, _strip_pattern(row.pattern)))
     parameters = []
-    for label, row in all_uses("behaviour").items():
+    for label, row in load_uses("behaviour").items():
         if row.pattern is None:
             continue
         if row.pattern.language == "yaml":
-            parameters.append((label, _bare(row.pattern)))
+            parameters.append((label, _strip_pattern(row.pattern)))
         for module in row.pattern.imports:
-            modules.setdefault(module, []).append((label, _bare(row.pattern)))
-    fields = default_fields()
+            modules.setdefault(module, []).append((label, _strip_pattern(row.pattern)))
+    fields = load_fields()
     version = hashlib.sha1(
         repr(
             (
@@ -64,19 +64,19 @@ def watched() -> Watched:
                 sorted(headers.items()),
                 modules,
                 parameters,
-                stamp_of_uses(),
+                compute_uses_stamp(),
                 fields.version,
-                shipped().stamp,
+                load_shipped().stamp,
             )
         ).encode()
     ).hexdigest()
     return Watched(
-        *(frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields, shipped()),
+        *(frozenset(words), frozenset(qualified), frozenset(python), headers, modules, version, fields, load_shipped()),
         parameters=parameters,
-        uses=looked_for,
+        uses=index_uses,
     )
 
 
-def _bare(pattern: Pattern) -> Pattern:
+def _strip_pattern(pattern: Pattern) -> Pattern:
     """How a use looks, without what its table says besides, so that it can be remembered and read back."""
     return msgspec.convert(pattern, Pattern, from_attributes=True)

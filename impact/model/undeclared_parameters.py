@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...edges.memory import kept_with
+from ...edges.memory import cache_in_derived
 from ..targets.availability import decides
-from ..targets.parameters import last_part, renamed_parameters
+from ..targets.parameters import find_last_part, find_renamed_parameters
 from ..targets.surface.changes import PARAMETER
 from ..targets.surface.offers import Offered, PackageOffer
 
@@ -37,12 +37,12 @@ def list_undeclared_parameters(view: TargetView, package: Package) -> Iterator[U
     uses = [use for use in package.digest.settings if use.role == "run"]
     beside: dict[tuple[str, str, str], set[str]] = {}
     for use in uses:
-        beside.setdefault((use.at.path, use.plugin, use.node), set()).add(last_part(use.name))
+        beside.setdefault((use.at.path, use.plugin, use.node), set()).add(find_last_part(use.name))
     for use in dict.fromkeys(uses):
         offered = next((found for offer in _list_owners(view, use) if (found := _find_offered(view, offer, use))), None)
         if offered is None:
             continue
-        others = renamed_parameters(offered.package).get(last_part(use.name), ())
+        others = find_renamed_parameters(offered.package).get(find_last_part(use.name), ())
         if beside[use.at.path, use.plugin, use.node].isdisjoint(others):
             instead = _find_replacement(view, offered, others)
             if not _is_default(view, use, offered, instead):
@@ -52,13 +52,13 @@ def list_undeclared_parameters(view: TargetView, package: Package) -> Iterator[U
 def _list_owners(view: TargetView, use: SettingUse) -> Iterator[PackageOffer]:
     """The packages that have the node or plugin on the target: one that is named, or those of which a program is called
     like the node."""
-    changing = view.offers.surfaces.changing_parameters.get(last_part(use.name), frozenset[str]())
+    changing = view.offers.surfaces.changing_parameters.get(find_last_part(use.name), frozenset[str]())
     for name in [use.package] if use.package else sorted(changing):
         if name in view.workspace.packages:
             continue
         if not use.package and _find_starters(view).get(use.node, {name}) != {name}:
             continue  # by that name another package's program is meant
-        offer = view.offers.package(name)
+        offer = view.offers.find_package(name)
         if offer is None:
             continue
         programs = (program.name for program in offer.build.programs)
@@ -67,7 +67,7 @@ def _list_owners(view: TargetView, use: SettingUse) -> Iterator[PackageOffer]:
             yield offer
 
 
-@kept_with
+@cache_in_derived
 def _find_starters(view: TargetView) -> dict[str, set[str]]:
     """The packages whose program of a name the workspace builds, or starts from a launch file."""
     found: dict[str, set[str]] = {}
@@ -85,10 +85,10 @@ def _find_starters(view: TargetView) -> dict[str, set[str]]:
 
 def _find_offered(view: TargetView, offer: PackageOffer, use: SettingUse) -> Offered | None:
     """What is known of a parameter that the package lacks on the target, None where it is not sure that it does."""
-    last = last_part(use.name)
+    last = find_last_part(use.name)
     found = None
     for declared in offer.line.events.get(PARAMETER, ()):
-        if last_part(declared) == last and means(declared, use.name, of_plugin=bool(use.plugin)):
+        if find_last_part(declared) == last and means(declared, use.name, of_plugin=bool(use.plugin)):
             offered = offer.get(PARAMETER, declared)
             if offered is None or offered.state not in ("removed", "moved", "absent"):
                 return None
@@ -116,36 +116,36 @@ def _fits(wanted: list[str], given: list[str]) -> bool:
 
 def _is_declared_by(view: TargetView, packages: Iterable[str], last: str) -> bool:
     """Whether some of these packages, or of what is installed with them, may declare a parameter that ends so."""
-    for name in view.transitive_dependencies(packages):
+    for name in view.list_transitive(packages):
         if name in view.workspace.packages:
             return True
-        offer = view.offers.package(name)
-        if offer is not None and any(last_part(declared) == last for declared in offer.parameters):
+        offer = view.offers.find_package(name)
+        if offer is not None and any(find_last_part(declared) == last for declared in offer.parameters):
             return True
     return False
 
 
 def _find_replacement(view: TargetView, offered: Offered, others: Iterable[str]) -> str:
     """The other name of a parameter that is declared on the target."""
-    offer = view.offers.package(offered.package)
-    declared = {last_part(name) for name in offer.parameters} if offer is not None else set()
+    offer = view.offers.find_package(offered.package)
+    declared = {find_last_part(name) for name in offer.parameters} if offer is not None else set()
     return next((name for name in others if name in declared), "")
 
 
 def _is_default(view: TargetView, use: SettingUse, offered: Offered, instead: str) -> bool:
     """Whether the value that is set is that which holds without: what the other name has by default, and where there is
     no other name what the parameter itself had."""
-    offer = view.offers.package(offered.package)
+    offer = view.offers.find_package(offered.package)
     if offer is None or offered.state == "absent" or not use.value:
         return False
     if instead:
-        default = next((value for name, value in offer.parameters.items() if last_part(name) == instead), None)
+        default = next((value for name, value in offer.parameters.items() if find_last_part(name) == instead), None)
     else:
-        default = offer.last_default(offered.name)
-    return default is not None and _plain(default) == _plain(use.value)
+        default = offer.find_last_default(offered.name)
+    return default is not None and _normalise_value(default) == _normalise_value(use.value)
 
 
-def _plain(value: str) -> str | float:
+def _normalise_value(value: str) -> str | float:
     text = value.strip("\"'").lower()
     try:
         return float(text)

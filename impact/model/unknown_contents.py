@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from ...edges.memory import cached_method
+from ...edges.memory import cache_method
 from .workspace import Package
 
 if TYPE_CHECKING:
@@ -53,13 +53,13 @@ class UnknownContents:
         """Whether something may come along by dependencies that are not known: those of a package that no index has, of
         the members of a group, or of a release whose manifest is not known. Packages that are called as those of
         interfaces are bring only others of them, and what they run with."""
-        unknown = self._unknown_along(package)
+        unknown = self._list_unknown_along(package)
         if wanted and not INTERFACES.search(wanted) and wanted not in self._with_interfaces:
             unknown = tuple(name for name in unknown if not INTERFACES.search(name))
         grouped = any(dependency.kind == "group" for dependency in package.manifest.dependencies)
         if grouped or any(name != wanted for name in unknown):
             return True
-        return bool(providers) and self._view.answered(providers, self._view.may_bring(package))
+        return bool(providers) and self._view.is_met(providers, self._view.may_bring(package))
 
     def is_likely(self, package: Package, wanted: str) -> bool:
         """Whether something wanted is most likely there, since something of unknown contents is called after it: made
@@ -74,7 +74,7 @@ class UnknownContents:
     def is_made_apart(self, package: Package, wanted: str) -> bool:
         """Whether something, or its folder, is called after what the build of a package downloads, or after a folder
         that was not read, such as a submodule."""
-        made = self._made_apart(package)
+        made = self._list_made_apart(package)
         return bool(made) and any(part.startswith(made) for part in re.split(r"/|::", wanted.lower()))
 
     def is_of_submodule(self, name: str) -> bool:
@@ -85,7 +85,7 @@ class UnknownContents:
     def list_opaque(self, package: Package) -> tuple[str, ...]:
         """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them
         (Gazebo and its metapackages come from their own): they may bring any system library."""
-        return self._opaque_along(self._view.build_environment(package))
+        return self._list_opaque_along(self._view.build_environment(package))
 
     def list_unknown(self, names: frozenset[str]) -> tuple[str, ...]:
         """Those of the names whose dependencies are not known anywhere."""
@@ -93,28 +93,28 @@ class UnknownContents:
         return tuple(
             n for n in names
             if n not in view.workspace.packages and n not in view.preinstalled and target.resolve(n) is None
-            and not target.known_key(n)  # a key that the platform lacks brings nothing
-            and target.dependencies(n) is None and target.similar_dependencies(n) is None
-            and not target.other_generation(n)  # nor does a package that cannot be had
+            and not target.knows_key(n)  # a key that the platform lacks brings nothing
+            and target.list_dependencies(n) is None and target.list_similar(n) is None
+            and not target.is_other_generation(n)  # nor does a package that cannot be had
         )  # fmt: skip
 
-    @cached_method
+    @cache_method
     def list_unknown_found(self, package: Package) -> tuple[str, ...]:
         """What CMake finds and nobody is known to provide, so that it may find anything else in turn."""
         view, modules = self._view, self._view.workspace.find_modules
-        found = {f.name for f in package.build.found if f.how in FINDING and view.active(f.conditions)}
-        return tuple(name for name in found if "$" not in name and name not in modules and not view.cmake(name))
+        found = {f.name for f in package.build.found if f.how in FINDING and view.applies(f.conditions)}
+        return tuple(name for name in found if "$" not in name and name not in modules and not view.find_cmake(name))
 
-    @cached_method
-    def _unknown_along(self, package: Package) -> tuple[str, ...]:
+    @cache_method
+    def _list_unknown_along(self, package: Package) -> tuple[str, ...]:
         return self.list_unknown(self._view.build_environment(package))
 
     @cached_property
     def _with_interfaces(self) -> frozenset[str]:
-        return self._view.transitive_dependencies(_WITH_INTERFACES)
+        return self._view.list_transitive(_WITH_INTERFACES)
 
-    @cached_method
-    def _made_apart(self, package: Package) -> tuple[str, ...]:
+    @cache_method
+    def _list_made_apart(self, package: Package) -> tuple[str, ...]:
         """How names begin of what a package downloads, and of its folders that were not read. A download is called
         after its project, or one of the folders that it fills in the build is."""
         workspace, build = self._view.workspace, package.build
@@ -130,11 +130,11 @@ class UnknownContents:
         first = (re.match(r"[a-z0-9]+", name.lower()) for name in names - _PLAIN_FOLDERS)
         return tuple({one.group() for one in first if one and len(one.group()) >= _SHORTEST})
 
-    @cached_method
-    def _opaque_along(self, names: frozenset[str]) -> tuple[str, ...]:
+    @cache_method
+    def _list_opaque_along(self, names: frozenset[str]) -> tuple[str, ...]:
         return tuple(n for n in names if n not in self._view.workspace.packages and self._is_opaque(n))
 
-    @cached_method
+    @cache_method
     def _is_opaque(self, name: str) -> bool:
         bringing = [] if name.startswith("python") else list(self._list_bringing(name))
         return bool(bringing) and (
@@ -144,12 +144,12 @@ class UnknownContents:
     def _list_bringing(self, key: str) -> Iterator[str]:
         """The packages of a key that may bring libraries: those for development, Gazebo's, and collections of no
         archive that was read."""
-        for debian in self._view.debian(key):
+        for debian in self._view.list_debs(key):
             collects = not debian.startswith("lib") and not self._view.apt.knows(debian)
             if collects or debian.endswith("-dev") or debian.startswith("gazebo"):
                 yield debian
 
-    @cached_method
+    @cache_method
     def is_carried_library(self, name: str) -> bool:
         """Whether a package that is not of the workspace is another project's library, whose installed files are not
         all stored: built with plain CMake or Meson, or a package that carries it."""
@@ -157,5 +157,5 @@ class UnknownContents:
         if name in view.workspace.packages:
             return False
         types = {one.partition(":")[0] for one in view.target.build_type(name).split(";")}
-        plain = view.target.version(name) is not None and not types.isdisjoint(("cmake", "meson"))
+        plain = view.target.find_version(name) is not None and not types.isdisjoint(("cmake", "meson"))
         return plain or name.endswith("_vendor")

@@ -11,33 +11,33 @@ from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from ...edges.memory import cached_method
+from ...edges.memory import cache_method
 from ...edges.reach import Reach
-from ..conditions import Environment, all_hold
-from ..conditions.cmake import packages_asked
+from ..conditions import Environment, evaluate_all
+from ..conditions.cmake import list_tested_packages
 from ..config import Config
 from ..facts.condition import Condition
 from ..facts.manifest import Dependency
-from ..targets.availability import Availabilities, Availability, Horizon, Symbol, coming_changes, horizons
+from ..targets.availability import Availabilities, Availability, Horizon, Symbol, find_coming_changes, list_horizons
 from ..targets.changes import DISTROS, ChangeRow
 from ..targets.distro.distro import DistroTarget
 from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
-from ..targets.providers.apt import Apt, apt_of
-from ..targets.providers.includes import HeadersOfMachine, machine, machine_of
-from ..targets.providers.libraries import system_libraries
-from ..targets.providers.library import default_standard, include_roots, standard_year
+from ..targets.providers.apt import Apt, load_apt
+from ..targets.providers.includes import HeadersOfMachine, load_machine, make_machine
+from ..targets.providers.libraries import load_libraries
+from ..targets.providers.library import find_default_standard, get_year, include_roots
 from ..targets.providers.providers import Providers
-from ..targets.providers.stdlib import ever_stdlib, stdlib
+from ..targets.providers.stdlib import is_in_stdlib, was_ever_in_stdlib
 from ..targets.surface.offers import Offers
 from ..targets.surface.offers_python import PythonOffers
 from ..targets.target import ChangeInForce, Provider
-from ..targets.version import at_least
-from .cmake.build import At, FoundPackage, for_tests, select_active
+from ..targets.version import is_at_least
+from .cmake.build import At, FoundPackage, is_for_tests, select_active
 from .cmake.names import MODULES, SINCE
 from .misspelling import SpellingIndex
-from .package import role_of_folder
-from .python.api import python_packages
+from .package import find_folder_role
+from .python.api import find_python_packages
 from .roles import Roles
 from .unknown_contents import INTERFACES, UnknownContents
 from .workspace import Package, Workspace
@@ -76,7 +76,7 @@ _HOW = {
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
 
 
-def weight(need: Need) -> tuple:
+def make_sort_key(need: Need) -> tuple:
     """Sort key: what is surest to break comes first."""
     return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at.path, need.at.line)
 
@@ -122,13 +122,13 @@ class TargetView:
         self._reach_of_headers = Reach(self._look_at_header)
         # Of what was reached: headers of the workspace, and with them those that it generates.
         self._own_headers = self._owned = 0
-        # What others worked out about it, see kept_with().
+        # What others worked out about it, see cache_in_derived().
         self.derived: dict[Any, Any] = {}
         self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
 
     def __iter__(self) -> Iterator[Package]:
         """Packages that are built on this target and that rules are to report on: all of them, or those of `part`."""
-        for package in self.everyone():
+        for package in self.list_built():
             if self.reports_on(package.name):
                 yield package
 
@@ -136,14 +136,14 @@ class TargetView:
         """True for packages that rules are to report on; the others are there to be looked at."""
         return self.part is None or name in self.part
 
-    def everyone(self) -> Iterator[Package]:
+    def list_built(self) -> Iterator[Package]:
         """All packages of the workspace that are built on this target, as they are built there."""
         return map(self._select_active, filter(self.builds, self.workspace))
 
-    @cached_method
+    @cache_method
     def _select_active(self, package: Package) -> Package:
         """A package without what its CMake surely does not do on this target."""
-        build = select_active(package.build, self.active)
+        build = select_active(package.build, self.applies)
         return package if build is package.build else Package(package.digest, build)
 
     def builds(self, package: Package) -> bool:
@@ -153,19 +153,19 @@ class TargetView:
     @cached_property
     def environment(self) -> Environment:
         """What conditions are evaluated against."""
-        return self._environment_on(self.target)
+        return self._make_environment(self.target)
 
-    @cached_method
-    def _environment_on(self, target: DistroTarget) -> Environment:
-        def version(name: str) -> str | None:
-            return target.version(name) or target.library(name.lower())
+    @cache_method
+    def _make_environment(self, target: DistroTarget) -> Environment:
+        def find_version(name: str) -> str | None:
+            return target.find_version(name) or target.find_library(name.lower())
 
         return Environment(
             ros_distro=target.distro,
             ros_version=str(target.ros),
             python=(2, 7) if target.python_major == 2 else (3, target.python) if target.python else None,
             codename=target.platform.split(" ")[-1],
-            versions=version,
+            versions=find_version,
             packages=lambda name: self._has_package(name, target),
             headers=self._has_header if target is self.target else lambda path: None,
             testing=True,
@@ -174,9 +174,9 @@ class TargetView:
 
     def _has_package(self, name: str, target: DistroTarget) -> bool | None:
         """Whether a package is there, on a target or in the workspace; None for names that no package ever had."""
-        if name in self.workspace.packages or target.version(name) is not None:
+        if name in self.workspace.packages or target.find_version(name) is not None:
             return True
-        return False if target.ever_released(name) else None
+        return False if target.was_ever_released(name) else None
 
     def _is_gone(self, kind: str, name: str, target: DistroTarget) -> bool:
         """Whether known changes tell that a target has a package, or a command of CMake, no longer."""
@@ -190,74 +190,74 @@ class TargetView:
         """Whether the compiler finds a header on the target, for __has_include; None when that is not known."""
         if self.workspace.provides_header(path):
             return True
-        for change in self.changes("header-renamed", "header-moved", "header-removed"):
+        for change in self.list_changes("header-renamed", "header-moved", "header-removed"):
             if change.old == path and change.state in ("removed", "deprecated"):
                 return change.state == "deprecated"
             if change.new == path:
                 return change.state != "absent"
-        known = {*self._releases_having(path, self.header(path)).values()}
+        known = {*self._find_releases_having(path, self.find_header(path)).values()}
         if True in known or known == {False}:
             return True in known
-        found = self.header_availability(path)
+        found = self.find_header_availability(path)
         if found is None or found.state == "unknown" or (found.is_missing and not found.sure):
             return None
         return not found.is_missing
 
-    def active(self, conditions: Iterable[Condition]) -> bool:
+    def applies(self, conditions: Iterable[Condition]) -> bool:
         """False only when a statement under these conditions surely does not count on the target."""
         conditions = tuple(conditions)
         return not conditions or self._hold(conditions) is not False
 
-    def certain(self, conditions: Iterable[Condition]) -> bool:
+    def is_sure(self, conditions: Iterable[Condition]) -> bool:
         """True only when a statement under these conditions surely counts on the target."""
         conditions = tuple(conditions)
         return not conditions or self._hold(conditions) is True
 
-    @cached_method
+    @cache_method
     def _hold(self, conditions: tuple[Condition, ...]) -> bool | None:
-        return all_hold(conditions, self.environment)
+        return evaluate_all(conditions, self.environment)
 
-    def standard(self, package: Package) -> tuple[int, At] | None:
+    def find_standard(self, package: Package) -> tuple[int, At] | None:
         """The highest C++ standard that a package sets for everything on this target, and where."""
         build = package.build
-        held = [(number, at) for number, at, conditions in build.standards if self.active(conditions)]
-        return max(held, key=lambda entry: standard_year(entry[0])) if held else None
+        held = [(number, at) for number, at, conditions in build.standards if self.applies(conditions)]
+        return max(held, key=lambda entry: get_year(entry[0])) if held else None
 
-    @cached_method
-    def language(self, package: Package) -> int:
+    @cache_method
+    def compute_language(self, package: Package) -> int:
         """The year of the highest C++ standard that a part of a package may be compiled under on this target, as far
         as the workspace tells: what it sets itself or packages that it finds do, C++17, or the compiler's default."""
-        years = [2017, default_standard(self.target) or 2017]
-        for name in {package.name, *self.transitive_dependencies(found.name for found in package.build.found)}:
+        years = [2017, find_default_standard(self.target) or 2017]
+        for name in {package.name, *self.list_transitive(found.name for found in package.build.found)}:
             own = self.workspace.packages.get(name)
             if own is not None:
-                years.extend(standard_year(number) for number, *_ in own.build.standards)
-                years.extend(standard_year(max(t.standard, t.public_standard)) for t in own.build.targets)
+                years.extend(get_year(number) for number, *_ in own.build.standards)
+                years.extend(get_year(max(t.standard, t.public_standard)) for t in own.build.targets)
         return max(years)
 
-    def language_asked(self, package: Package) -> int:
+    def compute_asked_language(self, package: Package) -> int:
         """The same, and what the released packages ask for that come along with those which it finds."""
         found = (
-            self.transitive_dependencies(found.name for found in package.build.found) - self.workspace.packages.keys()
+            self.list_transitive(found.name for found in package.build.found) - self.workspace.packages.keys()
         )
-        return max(self.language(package), *(standard_year(self.offers.standard(name)) for name in found), 0)
+        return max(self.compute_language(package), *(get_year(self.offers.find_standard(name)) for name in found), 0)
 
-    def built(self, role: str) -> bool:
+    def is_built(self, role: str) -> bool:
         """True for code that is built or run wherever the package is: colcon builds tests along, catkin on request."""
         return role in ("build", "run") or (role == "test" and self.target.ros == 2)
 
-    def active_manifest(self, condition: str) -> bool:
+    def is_declaration_active(self, condition: str) -> bool:
         """False only when the condition attribute of a dependency surely does not hold on the target."""
-        return not condition or self.active((Condition("manifest", condition),))
+        return not condition or self.applies((Condition("manifest", condition),))
 
-    def dependencies(self, package: Package) -> Iterator[Dependency]:
+    def list_dependencies(self, package: Package) -> Iterator[Dependency]:
         """What the manifest of a package declares on this target to be installed."""
         for dependency in package.manifest.dependencies:
             installed = dependency.kind not in ("conflict", "replace", "group", "member_of_group")
-            if installed and self.active_manifest(dependency.condition):
+            if installed and self.is_declaration_active(dependency.condition):
                 yield dependency
 
-    def manifest_place(self, package: Package, dependency: Dependency | str) -> At:
+    def find_place(self, package: Package, dependency: Dependency | str) -> At:
         """Where a dependency is declared, or the first of a name."""
         if isinstance(dependency, str):
             dependency = next(one for one in package.manifest.dependencies if one.name == dependency)
@@ -266,17 +266,19 @@ class TargetView:
     @cached_property
     def known_names(self) -> SpellingIndex:
         """Every name a manifest may declare here: packages of the workspace, released ones, rosdep keys."""
-        return SpellingIndex({*self.workspace.packages, *self.target.released_names(), *self.target.key_names()})
+        return SpellingIndex({*self.workspace.packages, *self.target.list_released(), *self.target.list_keys()})
 
-    def available(self, name: str) -> bool:
+    def is_available(self, name: str) -> bool:
         """True when a package of this name is in the workspace, released on the target, or a rosdep key there."""
         target = self.target
-        return name in self.workspace.packages or target.version(name) is not None or target.resolve(name) is not None
+        return (
+            name in self.workspace.packages or target.find_version(name) is not None or target.resolve(name) is not None
+        )
 
     @cached_property
     def machine(self) -> HeadersOfMachine:
         """The headers that the target has, see targets/includes.py."""
-        return machine(self.target)
+        return make_machine(self.target)
 
     @cached_property
     def offers(self) -> Offers:
@@ -293,49 +295,49 @@ class TargetView:
         """Top-level Python modules that packages of the workspace bring, or may bring."""
         found = {name.removesuffix("_py") for name in self.workspace.packages} | self.workspace.may_have
         for package in self.workspace:
-            found |= python_packages(package.digest.files)
+            found |= find_python_packages(package.digest.files)
         return frozenset(found)
 
     @cached_property
     def newest(self) -> DistroTarget | None:
         """The newest long-term distro of this generation; None when this target is it or newer, or when it is asked for
         itself, so that its own view tells of it."""
-        newest = self.target.newest()
+        newest = self.target.find_newest()
         return None if newest is None or newest.distro in self.asked else newest
 
     @cached_property
     def later_machine(self) -> HeadersOfMachine | None:
         """Those of the newest long-term distro, see newest."""
         newest = self.newest
-        return machine_of(newest.distro, newest.ros) if newest is not None else None
+        return load_machine(newest.distro, newest.ros) if newest is not None else None
 
     @cached_property
     def earlier_machines(self) -> tuple[HeadersOfMachine, ...]:
         """Those of the earlier distros of the same generation, newest first."""
         first, last = DISTROS["ardent" if self.target.ros == 2 else "groovy"], DISTROS.get(self.target.distro, 0)
         earlier = [name for name, place in DISTROS.items() if first <= place < last]
-        return tuple(machine_of(name, self.target.ros) for name in reversed(earlier))
+        return tuple(load_machine(name, self.target.ros) for name in reversed(earlier))
 
-    @cached_method
-    def outward(self, paths: tuple[str, ...]) -> tuple[frozenset[str], frozenset[str]]:
+    @cache_method
+    def find_outward(self, paths: tuple[str, ...]) -> tuple[frozenset[str], frozenset[str]]:
         """What these include paths bring along in the workspace: paths of other places, and of its own headers; those
         that it generates from interfaces are among both."""
-        return self._outward_by_masks(*self._reach_of_headers.masks(paths))
+        return self._find_outward_by_masks(*self._reach_of_headers.collect_masks(paths))
 
-    def _outward_by_masks(self, reached: int, along: int) -> tuple[frozenset[str], frozenset[str]]:
+    def _find_outward_by_masks(self, reached: int, along: int) -> tuple[frozenset[str], frozenset[str]]:
         """What outward() says where an include leads to these headers. One answer is one object, so that joins of it
         are found again at once."""
         masks = reached & ~self._own_headers, reached & self._owned | along
         known = self._outward_sets.get(masks)
         if known is None:
-            found, own = (frozenset(self._reach_of_headers.names(mask)) for mask in masks)
+            found, own = (frozenset(self._reach_of_headers.list_names(mask)) for mask in masks)
             known = self._outward_sets[masks] = found, own
         return known
 
     def _look_at_header(self, path: str) -> tuple[list[str], list[str]]:
         """What an include path leads to, and the paths of its files as others write them."""
-        bit, files = self._reach_of_headers.bit(path), self._files_of(path)
-        inner = () if files else self._made_of(path)
+        bit, files = self._reach_of_headers.assign_bit(path), self._list_header_files(path)
+        inner = () if files else self._list_generated_includes(path)
         if files:
             self._own_headers |= bit
         if files or inner:
@@ -346,17 +348,17 @@ class TargetView:
             leads += self._inner.get(file, ())
         return leads, [f"/{file}".rpartition("/include/")[2] for file in files]
 
-    @cached_method
-    def _made_of(self, path: str) -> tuple[str, ...]:
+    @cache_method
+    def _list_generated_includes(self, path: str) -> tuple[str, ...]:
         """The generated headers that one which the workspace generates includes, itself first; none for others."""
-        package, inner = message_headers.package_of(path, self.target.ros), None
+        package, inner = message_headers.find_package(path, self.target.ros), None
         if package is not None and package in self.workspace.packages:
-            interfaces = self._own_interfaces(package)
-            inner = message_headers.included_by(path, self.target.ros, interfaces, self._parts_apart)
+            interfaces = self._collect_own_interfaces(package)
+            inner = message_headers.list_included(path, self.target.ros, interfaces, self._parts_apart)
         return () if inner is None else (path, *inner)
 
-    @cached_method
-    def _own_interfaces(self, package: str) -> message_headers.Definitions:
+    @cache_method
+    def _collect_own_interfaces(self, package: str) -> message_headers.Definitions:
         """The interfaces of a package of the workspace, by `msg/Name`."""
         known = message_headers.Definitions()
         for file in self.workspace.packages[package].digest.interfaces:
@@ -368,15 +370,15 @@ class TargetView:
     @cached_property
     def _parts_apart(self) -> bool:
         """Whether the parts of a generated header lie in a folder of their own."""
-        return at_least(self.target.version("rosidl_generator_cpp") or "0.9.0", "0.9.0")
+        return is_at_least(self.target.find_version("rosidl_generator_cpp") or "0.9.0", "0.9.0")
 
-    @cached_method
-    def _files_of(self, path: str) -> tuple[str, ...]:
+    @cache_method
+    def _list_header_files(self, path: str) -> tuple[str, ...]:
         """The headers of the workspace that an include path names; a file's own path names itself."""
         if path in self._header_files:
             return (path,)
         ending, found = "/" + path.lstrip("./"), []
-        for provider in self.header(path):
+        for provider in self.find_header(path):
             package = self.workspace.packages.get(provider.name) if provider.kind == "ros" else None
             if package is not None:
                 found.extend(h for h in package.digest.headers if h.removesuffix(".in").endswith(ending))
@@ -399,9 +401,9 @@ class TargetView:
                     found.setdefault(use.at.path, []).append(use.path)
         return found
 
-    def successor(self, name: str) -> str:
+    def find_successor(self, name: str) -> str:
         """What the known-changes table says to use instead of a package, as a cure; empty when it says nothing."""
-        for change in self.changes("package-renamed", "package-removed"):
+        for change in self.list_changes("package-renamed", "package-removed"):
             if change.new and name in (change.old, change.package):
                 return f"depend on `{change.new}`"
         return ""
@@ -411,89 +413,89 @@ class TargetView:
         """True when the configuration names underlays or .repos files, whose packages are not looked into."""
         return bool(self.config.underlays or self.config.repos)
 
-    def private(self, name: str) -> bool:
+    def is_private(self, name: str) -> bool:
         """True for packages that the configuration calls one's own, or has on every machine."""
         return name in self.config.private or name in self.config.installed
 
     @cached_property
     def installed(self) -> frozenset[str]:
         """Packages and rosdep keys that every machine has by the configuration, and what is installed with them."""
-        return self.transitive_dependencies(self.config.installed)
+        return self.list_transitive(self.config.installed)
 
-    @cached_method
+    @cache_method
     def is_standard(self, header: str) -> bool:
         """True for headers of the C and C++ standard libraries and of the operating system."""
-        return any(not p.name for p in self.providers.header(header))
+        return any(not p.name for p in self.providers.find_header(header))
 
-    def header_availability(self, path: str) -> Availability | None:
+    def find_header_availability(self, path: str) -> Availability | None:
         """How the target stands to a header of released packages; None where something else may have it."""
-        providers = self.header(path)
+        providers = self.find_header(path)
         owners = [p.name for p in providers if p.kind == "ros" and p.name not in self.workspace.packages]
-        if not owners or len(owners) < len(providers) or any(self.nested_header(owner, path) for owner in owners):
+        if not owners or len(owners) < len(providers) or any(self.has_nested_header(owner, path) for owner in owners):
             return None
-        return self.availability(Symbol("header", path, tuple(owners)))
+        return self.find_availability(Symbol("header", path, tuple(owners)))
 
-    @cached_method
-    def lost_header(self, path: str) -> Availability | None:
+    @cache_method
+    def find_lost_header(self, path: str) -> Availability | None:
         """How the target stands to a header that every released package which has, or had, it lacks in its version
-        here, where header_availability() does not tell. Its form is `broken` where the workspace names it and nobody
-        makes it, `platform` where nobody is known to have it, so that whatever brings unknown contents may, `nested`
-        where it is installed under another path."""
+        here, where find_header_availability() does not tell. Its form is `broken` where the workspace names it and
+        nobody makes it, `platform` where nobody is known to have it, so that whatever brings unknown contents may,
+        `nested` where it is installed under another path."""
         target, symbol = self.target, Symbol("header", path)
         if path in self.workspace.broken_headers:
             return Availability(symbol, "removed", form="broken")
-        if self.providers.system_has(path, target.platform) is False and all(
-            p.kind == "system" for p in self.header(path)
+        if self.providers.has_system_header(path, target.platform) is False and all(
+            p.kind == "system" for p in self.find_header(path)
         ):
             return Availability(symbol, "removed", target.platform, form="platform")
-        owners = [p.name for p in self.header(path) if p.kind == "ros" and p.name not in self.workspace.may_have]
-        if not owners or any(p.kind != "ros" for p in self.header(path)):
+        owners = [p.name for p in self.find_header(path) if p.kind == "ros" and p.name not in self.workspace.may_have]
+        if not owners or any(p.kind != "ros" for p in self.find_header(path)):
             return None
-        lacking = [(name, version) for name in owners if (version := target.version(name)) is not None]
+        lacking = [(name, version) for name in owners if (version := target.find_version(name)) is not None]
         if not lacking or any(self.has_released_header(name, path) is not False for name, _ in lacking):
             return None
         name, version = lacking[0]
-        if any(self.nested_header(owner, path) for owner, _ in lacking) or path.startswith(_GENERATED):
+        if any(self.has_nested_header(owner, path) for owner, _ in lacking) or path.startswith(_GENERATED):
             return None
         if not self.providers.has_headers(name, target.distro, version):
             return None  # a release without any header in its tree gets them while it is built
-        if not self.providers.header_history(name, path):
+        if not self.providers.list_header_spans(name, path):
             head, _, rest = path.partition("/")
             if rest.startswith(head + "/") and self.has_released_header(name, rest):
                 return Availability(symbol, "removed", name, version, replacement=rest, form="nested")
             return None
-        other = self._renamed(name, path)
+        other = self._find_renamed(name, path)
         evidence = Evidence(name, "removed", path, other, "header", header=path)
         return Availability(symbol, "removed", name, version, replacement=other, evidence=evidence)
 
     def has_released_header(self, package: str, path: str) -> bool | None:
         """Whether the target's release of a package has a header; None when its tree is not known."""
-        version = self.target.version(package)
+        version = self.target.find_version(package)
         return self.providers.has_header(package, path, self.target.distro, version) if version else None
 
-    def _releases_having(self, path: str, providers: Iterable[Provider]) -> dict[str, bool | None]:
+    def _find_releases_having(self, path: str, providers: Iterable[Provider]) -> dict[str, bool | None]:
         """The same by the packages among providers that the target has."""
-        named = (p.name for p in providers if p.kind == "ros" and self.target.version(p.name))
+        named = (p.name for p in providers if p.kind == "ros" and self.target.find_version(p.name))
         return {name: self.has_released_header(name, path) for name in named}
 
-    def nested_header(self, package: str, path: str) -> bool:
+    def has_nested_header(self, package: str, path: str) -> bool:
         """True when the release has the header in a subfolder that it exports too (xmlrpcpp/XmlRpc.h as XmlRpc.h)."""
         return "/" not in path and bool(self.has_released_header(package, f"{package}/{path}"))
 
-    def _renamed(self, name: str, path: str) -> str:
+    def _find_renamed(self, name: str, path: str) -> str:
         """The same header under another ending that the release has."""
         others = (path.rpartition(".")[0] + ending for ending in (".hpp", ".h", ".hh"))
         return next((other for other in others if other != path and self.has_released_header(name, other)), "")
 
-    @cached_method
-    def around(self, path: str) -> frozenset[str]:
+    @cache_method
+    def list_around(self, path: str) -> frozenset[str]:
         """Who could answer an include path, all that is installed along with them, and the platform libraries that
         these names stand for; empty when nobody could."""
-        names = self.transitive_dependencies(provider.name for provider in self.header(path))
-        return names.union(*map(self.libraries_of, names))
+        names = self.list_transitive(provider.name for provider in self.find_header(path))
+        return names.union(*map(self.list_libraries, names))
 
-    @cached_method
-    def libraries_of(self, name: str) -> list[str]:
+    @cache_method
+    def list_libraries(self, name: str) -> list[str]:
         """Platform libraries whose version a rosdep key or CMake name stands for."""
         folded = name.lower().removeprefix("lib").removesuffix("-dev").removesuffix("-all")
         known = self._library_names
@@ -501,16 +503,16 @@ class TargetView:
 
     @cached_property
     def _library_names(self) -> frozenset[str]:
-        return self.target.library_names()
+        return self.target.list_library_names()
 
-    def changes(self, *kinds: str) -> list[ChangeInForce]:
+    def list_changes(self, *kinds: str) -> list[ChangeInForce]:
         """Known upstream changes of these kinds that are in force on the target."""
         return [c for kind in kinds for c in self.target.changes().by_kind.get(kind, ())]
 
     @cached_property
     def horizons(self) -> tuple[Horizon, ...]:
         """What the target is going to be, soonest first; distros that are asked for themselves left out."""
-        return horizons(self.target, self.asked)
+        return list_horizons(self.target, self.asked)
 
     @cached_property
     def updates(self) -> tuple[Horizon, ...]:
@@ -522,11 +524,11 @@ class TargetView:
         """What of released packages and platform libraries is there."""
         return Availabilities(self.target, self.offers, self.providers, self.horizons)
 
-    def availability(self, symbol: Symbol) -> Availability:
+    def find_availability(self, symbol: Symbol) -> Availability:
         """How the target stands to something outside the workspace; what the workspace brings itself is there."""
         if not self.workspace.may_have.isdisjoint(symbol.packages):
             return Availability(symbol, "present")
-        return self.availabilities.on_horizon(symbol)
+        return self.availabilities.find_on_horizon(symbol)
 
     @cached_property
     def coming(self) -> dict[str, tuple[ChangeInForce, Horizon]]:
@@ -534,33 +536,33 @@ class TargetView:
         breaks when this machine, or a colleague's, is updated."""
         found: dict[str, tuple[ChangeInForce, Horizon]] = {}
         for ahead in self.horizons:
-            for change in coming_changes(self.target, ahead):
+            for change in find_coming_changes(self.target, ahead):
                 found.setdefault(change.old, (change, ahead))
         return found
 
-    @cached_method
-    def offers_on(self, ahead: Horizon) -> tuple[Offers, PythonOffers]:
+    @cache_method
+    def make_offers(self, ahead: Horizon) -> tuple[Offers, PythonOffers]:
         """What released packages offer on a horizon."""
         offers = Offers(ahead.target)
         return offers, PythonOffers(offers)
 
-    def active_on(self, ahead: Horizon, conditions: Iterable[Condition]) -> bool:
+    def is_active_on(self, ahead: Horizon, conditions: Iterable[Condition]) -> bool:
         """False when a statement under these conditions surely does not count on a horizon."""
-        return self._active_on(ahead.target, tuple(conditions))
+        return self._is_active_on(ahead.target, tuple(conditions))
 
-    @cached_method
-    def _active_on(self, target: DistroTarget, conditions: tuple[Condition, ...]) -> bool:
-        return all_hold(conditions, self._environment_on(target)) is not False
+    @cache_method
+    def _is_active_on(self, target: DistroTarget, conditions: tuple[Condition, ...]) -> bool:
+        return evaluate_all(conditions, self._make_environment(target)) is not False
 
     def breaks_under(self, found: Availability, conditions: Iterable[Condition]) -> bool:
         """True for what is missing, and for what is upcoming where these conditions hold on that horizon too."""
         if found.state == "upcoming" and found.horizon is not None:
-            return self.active_on(found.horizon, conditions)
+            return self.is_active_on(found.horizon, conditions)
         return found.is_missing
 
-    def later_active(self, conditions: Collection[Condition]) -> bool:
+    def is_active_later(self, conditions: Collection[Condition]) -> bool:
         """The same on the newest distro."""
-        return not conditions or not self.newest or self._active_on(self.newest, tuple(conditions))
+        return not conditions or not self.newest or self._is_active_on(self.newest, tuple(conditions))
 
     @property
     def horizon(self) -> str:
@@ -568,7 +570,7 @@ class TargetView:
         newest = self.newest
         return newest.distro if newest is not None else ""
 
-    def concerned(self, package: Package, change: ChangeInForce | ChangeRow, path: str) -> bool:
+    def may_concern(self, package: Package, change: ChangeInForce | ChangeRow, path: str) -> bool:
         """True when a file can mean the changed package by a name: the package declares or includes something of it,
         and the workspace does not hold it in a version of its own."""
         head = change.package
@@ -577,67 +579,67 @@ class TargetView:
         if path.endswith(".py") or change.kind.startswith("python"):
             return True
         names = self.build_environment(package)
-        if head in names or (any(head in (p.name, p.package) for p in self.cmake(head)) and head in names):
+        if head in names or (any(head in (p.name, p.package) for p in self.find_cmake(head)) and head in names):
             return True
         roots = include_roots(head)
         return any(i.path.startswith(roots) for i in package.digest.includes) if roots else head in names
 
-    @cached_method
+    @cache_method
     def is_included_under_conditions(self, package: Package, library: str) -> bool:
         """Whether a package includes headers of a library only under conditions that may not hold, as where it carries
         a copy of its own beside the platform's."""
         roots = include_roots(library)
         found = [i for i in package.digest.includes if roots and i.path.startswith(roots)]
-        return bool(found) and not any(self.certain(include.conditions) for include in found)
+        return bool(found) and not any(self.is_sure(include.conditions) for include in found)
 
-    @cached_method
-    def declared(self, package: Package) -> Mapping[str, set[str]]:
+    @cache_method
+    def collect_declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
         found: dict[str, set[str]] = {}
-        for dependency in self.dependencies(package):
+        for dependency in self.list_dependencies(package):
             found.setdefault(dependency.name, set()).add(dependency.kind)
         return MappingProxyType(found)
 
-    @cached_method
-    def installed_with(self, name: str) -> tuple[str, ...]:
+    @cache_method
+    def list_installed_with(self, name: str) -> tuple[str, ...]:
         """Direct dependencies that come with a package or key when it is installed."""
         package = self.workspace.packages.get(name)
         if package is not None:
-            return tuple(n for n, kinds in self.declared(package).items() if kinds & _INSTALLED_WITH)
-        released = self.target.dependencies(name) or self.target.similar_dependencies(name) or ()
+            return tuple(n for n, kinds in self.collect_declared(package).items() if kinds & _INSTALLED_WITH)
+        released = self.target.list_dependencies(name) or self.target.list_similar(name) or ()
         return tuple(d.name for d in released if d.kind in _INSTALLED_WITH)
 
-    @cached_method
+    @cache_method
     def build_environment(self, package: Package) -> frozenset[str]:
         """Everything on a machine that has just what the package declares, the package itself included."""
-        return self.transitive_dependencies(self._built_with(package)).union(self.preinstalled, (package.name,))
+        return self.list_transitive(self._list_built_with(package)).union(self.preinstalled, (package.name,))
 
     @cached_property
     def brought_to_workspace(self) -> frozenset[str]:
         """Everything on a machine that has just what all packages of the workspace declare."""
-        return frozenset().union(*(self.build_environment(package) for package in self.everyone()))
+        return frozenset().union(*(self.build_environment(package) for package in self.list_built()))
 
     @cached_property
     def apt(self) -> Apt:
         """What comes along with the platform's packages."""
-        return apt_of(self.target.platform)
+        return load_apt(self.target.platform)
 
     @cached_property
     def preinstalled(self) -> frozenset[str]:
         """What the build farm puts on every machine besides the platform's compiler: the workspace of ROS 2."""
-        return self.transitive_dependencies(["ros_workspace"]) if self.target.ros == 2 else frozenset()
+        return self.list_transitive(["ros_workspace"]) if self.target.ros == 2 else frozenset()
 
-    @cached_method
+    @cache_method
     def may_bring(self, package: Package) -> frozenset[str]:
         """build_environment(), and all that packages whose manifests are not known for their version here bring in the
         next one that is, or in any distro: what is not in it is sure to be missing, unless something of
         unknown_contents may come along."""
-        return self.widest_dependencies(self.build_environment(package))
+        return self.list_widest_dependencies(self.build_environment(package))
 
-    def widest_dependencies(self, names: Iterable[str]) -> frozenset[str]:
-        """transitive_dependencies(), and all that packages whose manifests are not known for their version here bring
+    def list_widest_dependencies(self, names: Iterable[str]) -> frozenset[str]:
+        """list_transitive(), and all that packages whose manifests are not known for their version here bring
         in the next one that is, or in any distro."""
-        return frozenset().union(*(_whole(name, self._possibly_with, self._widest) for name in names))
+        return frozenset().union(*(_collect_reached(name, self._list_possibly_with, self._widest) for name in names))
 
     @cached_property
     def unknown_contents(self) -> UnknownContents:
@@ -649,52 +651,52 @@ class TargetView:
         """What packages have at hand in each role, and what is handed on to them."""
         return Roles(self)
 
-    @cached_method
-    def _possibly_with(self, name: str) -> Iterable[str]:
+    @cache_method
+    def _list_possibly_with(self, name: str) -> Iterable[str]:
         if name in self.workspace.packages:
-            return self.installed_with(name)
-        if self.target.dependencies(name) is None:
-            return self.target.possible_dependencies(name)
-        return self.target.later_dependencies(name).union(self.installed_with(name))
+            return self.list_installed_with(name)
+        if self.target.list_dependencies(name) is None:
+            return self.target.list_possible(name)
+        return self.target.list_later_dependencies(name).union(self.list_installed_with(name))
 
-    def _built_with(self, package: Package) -> list[str]:
-        return [name for name, kinds in self.declared(package).items() if kinds & _BUILT_WITH]
+    def _list_built_with(self, package: Package) -> list[str]:
+        return [name for name, kinds in self.collect_declared(package).items() if kinds & _BUILT_WITH]
 
-    def transitive_dependencies(self, names: Iterable[str]) -> frozenset[str]:
+    def list_transitive(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""
         return self._find_transitive(frozenset(names))
 
-    @cached_method
+    @cache_method
     def _find_transitive(self, names: frozenset[str]) -> frozenset[str]:
-        return frozenset().union(*(_whole(name, self.installed_with, self._whole) for name in names))
+        return frozenset().union(*(_collect_reached(name, self.list_installed_with, self._whole) for name in names))
 
-    @cached_method
-    def debian(self, name: str) -> frozenset[str]:
+    @cache_method
+    def list_debs(self, name: str) -> frozenset[str]:
         """What a rosdep key installs here."""
         resolution = self.target.resolve(name)
         return frozenset(resolution.packages if resolution else ())
 
-    def answered(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
+    def is_met(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
         """True when one of the providers is among the names, as itself, as a key that installs the same package, or as
         the package that vendors it."""
         if not isinstance(names, _LASTING) or type(providers) is not tuple:
-            return self._answers(providers, names)  # they may change until they are asked again
+            return self._is_answered(providers, names)  # they may change until they are asked again
         # Asked of the same two again and again; both are kept, so that no other object gets their ids.
         key = id(providers), id(names)
         known = self._answered.get(key)
         if known is None:
-            known = self._answered[key] = (providers, names, self._answers(providers, names))
+            known = self._answered[key] = (providers, names, self._is_answered(providers, names))
         return known[2]
 
-    def _answers(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
+    def _is_answered(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
         for provider in providers:
             if not provider.name or provider.name in names or provider.name in self.installed:
                 return True
         vendored, installed = self._reach(names)
         for provider in providers:
-            if vendored and not vendored.isdisjoint(_stems(provider.name)):
+            if vendored and not vendored.isdisjoint(_list_stems(provider.name)):
                 return True
-            if provider.package in installed or not installed.isdisjoint(self.debian(provider.name)):
+            if provider.package in installed or not installed.isdisjoint(self.list_debs(provider.name)):
                 return True
         return False
 
@@ -706,16 +708,16 @@ class TargetView:
                 n.removesuffix("_vendor").removeprefix("rviz_") for n in names if n.endswith("_vendor")
             )
             installed = self.apt.base.union(
-                *(self.apt.brought_by(d) for n in names if n not in self.workspace.packages for d in self.debian(n)),
-                *(self.apt.brought_by(d) for n in self.installed for d in self.debian(n) or {n}),
+                *(self.apt.list_added(d) for n in names if n not in self.workspace.packages for d in self.list_debs(n)),
+                *(self.apt.list_added(d) for n in self.installed for d in self.list_debs(n) or {n}),
             )
             known = (names, vendored, installed)
             if isinstance(names, _LASTING):
                 self._reached[id(names)] = known
         return known[1], known[2]
 
-    @cached_method
-    def header(self, path: str) -> tuple[Provider, ...]:
+    @cache_method
+    def find_header(self, path: str) -> tuple[Provider, ...]:
         """Who could answer an include path; empty when nobody is known to, a nameless one when the compiler does."""
         if "/" not in path and self.is_standard(path):
             return (Provider("system", ""),)
@@ -724,95 +726,98 @@ class TargetView:
         if (
             own
             and head not in own
-            and self.target.ever_released(head)
+            and self.target.was_ever_released(head)
             and (path not in (rooted := self.workspace.rooted_headers) or all(f"{o}/{path}" in rooted for o in own))
         ):
             own = []  # a file of the workspace ends like this by chance
         if own:
             return tuple(Provider("ros", name) for name in own)
-        found = list(self.providers.header(path))
+        found = list(self.providers.find_header(path))
         if any(not p.name for p in found):
             return tuple(found)
-        found = self._having(path, self._bringing(path, found))
+        found = self._keep_having(path, self._keep_bringing(path, found))
         if "/" in path and not any(p.name == head for p in found) and self.is_package(head) and head not in _UMBRELLAS:
             convention = Provider("ros", head, "", False)
-            if self.target.version(head) is not None or not found or head in self.workspace.packages:
+            if self.target.find_version(head) is not None or not found or head in self.workspace.packages:
                 found.insert(0, convention)
             else:
                 found.append(convention)
         # A key that only depends on the package which has the header can satisfy a need, and is never its name.
-        return tuple(_without_broad(found))
+        return tuple(_drop_broad(found))
 
-    def _bringing(self, path: str, found: list[Provider]) -> list[Provider]:
+    def _keep_bringing(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the keys that bring the library of a header on other platforms than this one: whose packages were
         read, and neither have the header nor bring it along."""
-        libraries = system_libraries()
+        libraries = load_libraries()
         first = next((p.package for p in found if p.kind == "system"), "")
-        own = libraries.of_package(first) if first else ""
-        if not own or libraries.of_header(path) != own or not all(libraries.around(own, self.target.platform)):
+        own = libraries.find_by_package(first) if first else ""
+        if not own or libraries.find_by_header(path) != own or not all(libraries.find_range(own, self.target.platform)):
             return found
-        bringing = self.apt.bringing(libraries.packages(own))
+        bringing = self.apt.list_bringing(libraries.list_packages(own))
         return [
             p
             for p in found
             if p.kind != "system"
             or p.package in bringing
-            or not bringing.isdisjoint(names := self.debian(p.name) | {p.package})
-            or not all(of := [libraries.of_package(name) for name in names])
+            or not bringing.isdisjoint(names := self.list_debs(p.name) | {p.package})
+            or not all(of := [libraries.find_by_package(name) for name in names])
             or any(libraries.has(library, path) for library in of)
         ]
 
-    def _having(self, path: str, found: list[Provider]) -> list[Provider]:
+    def _keep_having(self, path: str, found: list[Provider]) -> list[Provider]:
         """Without the packages whose version here surely lacks a header that another one's surely has: it moved."""
         if len(found) < 2:
             return found
-        has = self._releases_having(path, (p for p in found if p.name not in self.workspace.packages))
+        has = self._find_releases_having(path, (p for p in found if p.name not in self.workspace.packages))
         return [p for p in found if has.get(p.name) is not False] if True in has.values() else found
 
     def is_package(self, name: str) -> bool:
         """True when the workspace has a package of this name, or any distro ever released one."""
-        return name in self.workspace.packages or self.target.ever_released(name)
+        return name in self.workspace.packages or self.target.was_ever_released(name)
 
-    @cached_method
-    def cmake(self, name: str) -> tuple[Provider, ...]:
+    @cache_method
+    def find_cmake(self, name: str) -> tuple[Provider, ...]:
         """Who could answer find_package(name)."""
         own = self.workspace.provides_cmake.get(name)
         found = [Provider("ros", own)] if own else []
         if not own:
             # `x-config.cmake` answers to any spelling of X, and ROS packages name theirs so.
             for spelling in dict.fromkeys((name, name.lower())):
-                if self.target.version(spelling) is not None or spelling in self.workspace.packages:
+                if self.target.find_version(spelling) is not None or spelling in self.workspace.packages:
                     found.append(Provider("ros", spelling))
-            found.extend(self._cmake_elsewhere(name))
+            found.extend(self._find_cmake_elsewhere(name))
             if not found:
                 # `gz-sim8` is what gz_sim_vendor brings.
                 vendor = re.sub(r"\d+$", "", name).replace("-", "_").lower() + "_vendor"
-                found = [Provider("ros", n, "", False) for n in (name, vendor) if self.target.ever_released(n)]
+                found = [Provider("ros", n, "", False) for n in (name, vendor) if self.target.was_ever_released(n)]
         return tuple(found)
 
-    def _cmake_elsewhere(self, name: str) -> list[Provider]:
-        known = self.providers.cmake(name)
+    def _find_cmake_elsewhere(self, name: str) -> list[Provider]:
+        known = self.providers.find_cmake(name)
         if name != name.lower():
             # `x-config.cmake` answers to any spelling of X.
-            known = known + [p for p in self.providers.cmake(name.lower()) if p not in known]
-        found = _without_broad([p for p in known if p.name != name or p.kind != "ros"])
+            known = known + [p for p in self.providers.find_cmake(name.lower()) if p not in known]
+        found = _drop_broad([p for p in known if p.name != name or p.kind != "ros"])
         modules = [p for p in found if p.sure and p.name in ("cmake_modules", "eigen3_cmake_module")]
         if modules and not self._has_find_module(name):
             # The library alone brings no find module of this name; catkin itself did until hydro.
             if self.target.distro in ("groovy", "hydro"):
                 return [Provider("system", "")]
-            configured = {*self.providers.installed_cmake(name), *self.providers.installed_cmake(name.lower())}
+            configured = {
+                *self.providers.find_installed_cmake(name),
+                *self.providers.find_installed_cmake(name.lower()),
+            }
             return [p for p in found if p.kind == "ros" or p in configured]
         return found
 
     def _has_find_module(self, name: str) -> bool:
         """Whether the target's CMake finds a package of this name by a module of its own."""
         module = f"Find{name}"
-        version = self.target.library("cmake")
-        return module in MODULES and (not version or at_least(version, SINCE.get(module, "0")))
+        version = self.target.find_library("cmake")
+        return module in MODULES and (not version or is_at_least(version, SINCE.get(module, "0")))
 
-    @cached_method
-    def module(self, module: str) -> tuple[Provider, ...]:
+    @cache_method
+    def find_module(self, module: str) -> tuple[Provider, ...]:
         """Who could answer `import module`."""
         head = module.split(".")[0]
         owners = self.workspace.modules.get(head, ())
@@ -821,9 +826,9 @@ class TargetView:
         if owners:
             return tuple(Provider("ros", owner) for owner in owners)
         # What is gone from Python is nobody else's module, and python-version says so.
-        if stdlib(module, self.target.python or 99, self.target.python_major) or ever_stdlib(module):
+        if is_in_stdlib(module, self.target.python or 99, self.target.python_major) or was_ever_in_stdlib(module):
             return (Provider("system", ""),)
-        found = list(self.providers.module(module))
+        found = list(self.providers.find_module(module))
         if not any(p.name == head for p in found) and self.is_package(head):
             found.insert(0, Provider("ros", head, "", False))
         if found:
@@ -832,34 +837,34 @@ class TargetView:
             found += [Provider("system", f"python3-{name}-pip", name, False) for name in names]
         return tuple(found)
 
-    @cached_method
-    def needs(self, package: Package) -> tuple[Need, ...]:
+    @cache_method
+    def list_needs(self, package: Package) -> tuple[Need, ...]:
         """Everything a package uses of others on this target."""
         return tuple(self._collect(package))
 
-    @cached_method
-    def weighed(self, package: Package) -> tuple[Need, ...]:
+    @cache_method
+    def sort_needs(self, package: Package) -> tuple[Need, ...]:
         """The same, what is surest to break first."""
-        return tuple(sorted(self.needs(package), key=weight))
+        return tuple(sorted(self.list_needs(package), key=make_sort_key))
 
     def _collect(self, package: Package) -> Iterator[Need]:
         digest = package.digest
         for found in package.build.found:
-            if found.how == "pkg_check_modules" and self.active(found.conditions):
-                yield from self._modules_asked(found)
-            if found.how == "program" and self.active(found.conditions):
-                yield from self._program_run(found)
-            if found.how not in ("find_package", "catkin") or not self.active(found.conditions):
+            if found.how == "pkg_check_modules" and self.applies(found.conditions):
+                yield from self._list_module_needs(found)
+            if found.how == "program" and self.applies(found.conditions):
+                yield from self._list_program_needs(found)
+            if found.how not in ("find_package", "catkin") or not self.applies(found.conditions):
                 continue
             if found.name == package.name or package.name in self.workspace.find_modules.get(found.name, ()):
                 continue
-            providers = self.cmake(found.name) or self._by_form(found.name, found.how == "catkin")
+            providers = self.find_cmake(found.name) or self._guess_by_form(found.name, found.how == "catkin")
             if not providers:
                 self.unresolved["cmake"].add(found.name)
                 continue
-            role, how = _role_of(found.conditions), "find_package" if found.how == "find_package" else "component"
-            in_tests = role_of_folder(found.at.path[len(package.path) :].lstrip("/")) == "test"
-            certain = self.certain(found.conditions)
+            role, how = _find_role(found.conditions), "find_package" if found.how == "find_package" else "component"
+            in_tests = find_folder_role(found.at.path[len(package.path) :].lstrip("/")) == "test"
+            certain = self.is_sure(found.conditions)
             required = (
                 found.required
                 or (found.how == "catkin" and not found.quiet)
@@ -868,13 +873,13 @@ class TargetView:
                 or self._is_linked(package, found.name)
             )
             yield Need(how, found.name, providers, found.at, "test" if in_tests else role, certain, required)
-            yield from self._parts_asked(found, role, certain)
-        if self.target.version("ros_environment") is not None:
-            yield from self._environment_read(package)
+            yield from self._list_component_needs(found, role, certain)
+        if self.target.find_version("ros_environment") is not None:
+            yield from self._list_environment_needs(package)
         for include in digest.includes:
-            if not self.active(include.conditions):
+            if not self.applies(include.conditions):
                 continue
-            providers = self.header(include.path)
+            providers = self.find_header(include.path)
             if not providers:
                 self.unresolved["include"].add(include.path)
                 continue
@@ -885,21 +890,21 @@ class TargetView:
                 continue
             if len(providers) > 1 and any(p.name == package.name for p in providers):
                 continue  # the package has one of its own
-            yield Need("include", include.path, providers, include.at, include.role, self.certain(include.conditions),
+            yield Need("include", include.path, providers, include.at, include.role, self.is_sure(include.conditions),
                        True, include.public, include.targets)  # fmt: skip
         for item in digest.imports:
-            if not self.active(item.conditions):
+            if not self.applies(item.conditions):
                 continue
             head, _, rest = item.module.partition(".")
-            providers = self.module(item.module) or (
-                self._by_form(head) if rest.partition(".")[0] in ("msg", "srv", "action") else ()
+            providers = self.find_module(item.module) or (
+                self._guess_by_form(head) if rest.partition(".")[0] in ("msg", "srv", "action") else ()
             )
             if not providers:
                 self.unresolved["import"].add(item.module)
                 continue
             if any(not p.name for p in providers):
                 continue
-            certain = self.certain(item.conditions)
+            certain = self.is_sure(item.conditions)
             yield Need("import", item.module, providers, item.at, item.role, certain, certain and not item.lazy)
         for use in digest.references:
             reference = use.reference
@@ -915,11 +920,11 @@ class TargetView:
             certain = not reference.conditional
             yield Need(how, name, (Provider("ros", name),), use.at, use.role, certain, certain)
 
-    def _environment_read(self, package: Package) -> Iterator[Need]:
+    def _list_environment_needs(self, package: Package) -> Iterator[Need]:
         """Environment variables of ROS that CMake tests, or stops without, where nothing that sets them comes along:
         ros_environment, or before that roslib."""
         providers = Provider("ros", "ros_environment"), Provider("ros", "roslib")
-        if self.answered(providers, self.build_environment(package)):
+        if self.is_met(providers, self.build_environment(package)):
             return
         read = [(use.name, use.at, use.conditions) for use in package.build.uses if use.kind == "environment"]
         for at, _, conditions in package.build.stops:
@@ -928,10 +933,10 @@ class TargetView:
                 if asked and test.text.startswith("NOT ") != test.negated:
                     read.append((asked[1], at, tuple(other for other in conditions if other is not test)))
         for name, at, conditions in read:
-            if self.active(conditions):
-                yield Need("environment", name, providers, at, _role_of(conditions), self.certain(conditions))
+            if self.applies(conditions):
+                yield Need("environment", name, providers, at, _find_role(conditions), self.is_sure(conditions))
 
-    def _by_form(self, name: str, sure: bool = False) -> tuple[Provider, ...]:
+    def _guess_by_form(self, name: str, sure: bool = False) -> tuple[Provider, ...]:
         """The package that a name nobody is known to provide stands for: it is called as packages of interfaces are, or
         another manifest of the workspace declares it. sure: its place tells that already."""
         if not _PACKAGE.match(name) or not (sure or INTERFACES.search(name) or name in self._declared_somewhere):
@@ -942,13 +947,13 @@ class TargetView:
     def _declared_somewhere(self) -> frozenset[str]:
         """What manifests of the workspace declare, besides keys."""
         names = {dependency.name for package in self.workspace for dependency in package.manifest.dependencies}
-        return frozenset(name for name in names if not self.target.known_key(name))
+        return frozenset(name for name in names if not self.target.knows_key(name))
 
     def _requires_modules(self, package: Package) -> bool:
         """Whether pkg_check_modules(REQUIRED) is called in any case, which stops where find_package(PkgConfig) has not
         found the program."""
         asked = (f for f in package.build.found if f.how == "pkg_check_modules" and f.required)
-        return any(self.certain(f.conditions) for f in asked)
+        return any(self.is_sure(f.conditions) for f in asked)
 
     def _is_called(self, package: Package, name: str) -> bool:
         """Whether a command that a package defines is called wherever it was looked for, found or not."""
@@ -956,7 +961,7 @@ class TargetView:
         return any(
             name in commands.get(use.name, "").split() and "_FOUND" not in " ".join(c.text for c in use.conditions)
             for use in package.build.uses
-            if use.kind == "command" and self.certain(use.conditions)
+            if use.kind == "command" and self.is_sure(use.conditions)
         )
 
     def _is_linked(self, package: Package, name: str) -> bool:
@@ -966,55 +971,55 @@ class TargetView:
             return False  # it is downloaded, or made here
         return any(
             link.item.startswith(prefix)
-            and self.certain(conditions := (*target.conditions, *link.conditions))
+            and self.is_sure(conditions := (*target.conditions, *link.conditions))
             and not any(name.lower() in condition.text.lower() for condition in conditions)
             for target in targets
             for link in target.links
             if link.how == "link"
         )
 
-    def _modules_asked(self, found: FoundPackage) -> Iterator[Need]:
+    def _list_module_needs(self, found: FoundPackage) -> Iterator[Need]:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
         name = re.split(r"[<>=]", found.name)[0]
-        providers = tuple(self.providers.pkgconfig(name))
+        providers = tuple(self.providers.find_pkgconfig(name))
         if not providers or found.name in self.workspace.packages:
             return
-        if self.target.version(name) is not None and all(p.name != name for p in providers):
+        if self.target.find_version(name) is not None and all(p.name != name for p in providers):
             # A library that is released as a package (fcl, octomap) writes its own.
             providers = (*providers, Provider("ros", name, "", False))
         # Also where its module has more words in its name than the package (orocos-bfl of bfl).
-        words = (word for word in re.split(r"[-_.]", name)[1:] if self.target.version(word) is not None)
+        words = (word for word in re.split(r"[-_.]", name)[1:] if self.target.find_version(word) is not None)
         providers = (*providers, *(Provider("ros", word, "", False) for word in words))
-        certain = self.certain(found.conditions)
-        yield Need("pkg-config", found.name, providers, found.at, _role_of(found.conditions), certain, found.required)
+        certain = self.is_sure(found.conditions)
+        yield Need("pkg-config", found.name, providers, found.at, _find_role(found.conditions), certain, found.required)
 
-    def _parts_asked(self, found: FoundPackage, role: str, certain: bool) -> Iterator[Need]:
+    def _list_component_needs(self, found: FoundPackage, role: str, certain: bool) -> Iterator[Need]:
         """Components of a system library that have a CMake configuration of their own (`boost_filesystem`,
         `Qt5Widgets`), and so maybe a package."""
         for component, at in found.components if found.required else ():
             for name in (f"{found.name.lower()}_{component}", f"{found.name}{component}"):
-                installed = self.providers.installed_cmake(name)
+                installed = self.providers.find_installed_cmake(name)
                 # The component's own package is what to declare, not one that has all of them.
                 providers = tuple(sorted(installed, key=lambda p: component.lower() not in p.name))
                 if providers:
                     yield Need("part", name, providers, at, role, certain)
 
-    def _program_run(self, found: FoundPackage) -> Iterator[Need]:
+    def _list_program_needs(self, found: FoundPackage) -> Iterator[Need]:
         """A program that CMake starts; those that every machine has are left out. What a package builds where a library
         is not found, it builds on some machine."""
-        providers = tuple(self.providers.executable(found.name))
+        providers = tuple(self.providers.find_executable(found.name))
         if providers and providers[0].name and found.name not in self.apt.base:
-            certain = all(self.certain((c,)) or packages_asked(c.text) for c in found.conditions)
-            required = self.certain(found.conditions)
-            yield Need("program", found.name, providers, found.at, _role_of(found.conditions), certain, required)
+            certain = all(self.is_sure((c,)) or list_tested_packages(c.text) for c in found.conditions)
+            required = self.is_sure(found.conditions)
+            yield Need("program", found.name, providers, found.at, _find_role(found.conditions), certain, required)
 
 
-def _role_of(conditions: Iterable[Condition]) -> str:
+def _find_role(conditions: Iterable[Condition]) -> str:
     """What is built under conditions: tests or the rest."""
-    return "test" if for_tests(conditions) else "build"
+    return "test" if is_for_tests(conditions) else "build"
 
 
-def _whole(
+def _collect_reached(
     name: str, leads: Callable[[str], Iterable[str]], known: dict[str, frozenset[str]]
 ) -> frozenset[str]:
     """A name and everything that it leads to. known: of other names, and of this one from now on."""
@@ -1033,20 +1038,20 @@ def _whole(
     return known[name]
 
 
-def _without_broad(found: list[Provider]) -> list[Provider]:
+def _drop_broad(found: list[Provider]) -> list[Provider]:
     """Without packages so broad that they bring half of ROS along, unless nobody else answers."""
     return [p for p in found if p.name not in _BROAD] or found
 
 
 @lru_cache(maxsize=10000)
-def _stems(name: str) -> frozenset[str]:
+def _list_stems(name: str) -> frozenset[str]:
     """What a package that vendors a key may be called after: `libogre-1.9-dev` gives `ogre`, `libyaml-cpp-dev` also
     `yaml_cpp`."""
     plain = name.removeprefix("lib").removesuffix("-dev")
     return frozenset({re.split(r"[-.]", plain)[0], plain.replace("-", "_")})
 
 
-def interface_of(view: TargetView, include: str) -> str | None:
+def find_included_interface(view: TargetView, include: str) -> str | None:
     """The package whose interface an include path names by its form (`p/msg/x.hpp`, `p/X.h`), None for others."""
     head, _, rest = include.partition("/")
     package = view.workspace.packages.get(head)

@@ -20,21 +20,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from ...edges import processes
-from ...edges.limits import limits_stamp
-from ...edges.memory import cached_method
+from ...edges.limits import format_limits
+from ...edges.memory import cache_method
 from ..facts.condition import Condition
 from ..facts.distros import ContainerFile, DistroFile
 from ..facts.extract import ExtractedFacts
-from ..facts.kinds import version_of_all
+from ..facts.kinds import make_overall_version
 from ..facts.manifest import Manifest
 from ..facts.store import Store
-from ..source_keys import source_key
-from ..targets.surface.fields import snake
+from ..source_keys import compute_source_key
+from ..targets.surface.fields import make_snake_case
 from ..tree.paths import Tree, is_vendored
 from .cmake.build import Build
 from .cmake.installed import HEADER_NAME
-from .cmake.interpret import extras_of, interpret
-from .discovery import Discovered, PackagePlace, discover, generation, manifest_at
+from .cmake.interpret import interpret, list_extras
+from .discovery import Discovered, PackagePlace, detect_generation, discover, find_manifest
 from .ignored import holds_ignored, is_ignored
 from .package import LinkedPackage, PackageJoin, Watched, build_type_of
 
@@ -112,8 +112,8 @@ class FilesOutside:
     def __init__(self, discovered: Discovered, gathered: ExtractedFacts):
         self._gathered = gathered
         self.lists_repositories = discovered.lists_repositories
-        self._scripts = [path for path in gathered.paths("shell", "script") if discovered.owner(path) is None]
-        self._containers = [path for path in gathered.paths("dockerfile", "ci") if not is_vendored(path)]
+        self._scripts = [path for path in gathered.list_paths("shell", "script") if discovered.find_owner(path) is None]
+        self._containers = [path for path in gathered.list_paths("dockerfile", "ci") if not is_vendored(path)]
 
     @property
     def identity(self) -> bytes:
@@ -125,14 +125,14 @@ class FilesOutside:
     def distro_scripts(self) -> dict[str, DistroFile]:
         """Shell scripts that name folders of distros."""
         self._gathered.preload(self._scripts)
-        found = ((path, self._gathered.facts(path).distros) for path in self._scripts)
+        found = ((path, self._gathered.get_facts(path).distros) for path in self._scripts)
         return {path: distros for path, distros in found if distros is not None}
 
     @cached_property
     def containers(self) -> dict[str, ContainerFile]:
         """The workspace's own Dockerfiles and CI files."""
         self._gathered.preload(self._containers)
-        return {path: self._gathered.facts(path).facts for path in self._containers}
+        return {path: self._gathered.get_facts(path).facts for path in self._containers}
 
 
 class Workspace:
@@ -159,7 +159,7 @@ class Workspace:
         self.identity = identity
         # False where a package could not be joined, or its digest not be stored: the next run may tell otherwise.
         self.whole = whole
-        # What later joins made of it, see kept_with().
+        # What later joins made of it, see cache_in_derived().
         self.derived: dict[Any, Any] = {}
 
     def __iter__(self):
@@ -197,7 +197,7 @@ class Workspace:
     @cached_property
     def headers(self) -> dict[str, list[str]]:
         """Include path to the packages whose files answer it, for every suffix of every header's path."""
-        return _owners(
+        return _group(
             ("/".join(parts[at:]), package.name)
             for package in self
             for path in package.digest.headers
@@ -210,7 +210,7 @@ class Workspace:
         """Include paths as they follow an `include` folder, and again after a folder named as the package (the layout
         of ROS 2), to the packages that have them."""
 
-        def spelt(package: Package, path: str) -> Iterator[str]:
+        def list_spellings(package: Package, path: str) -> Iterator[str]:
             _, root, rest = f"/{path.removesuffix('.in')}".rpartition("/include/")
             if root:
                 yield rest
@@ -219,7 +219,7 @@ class Workspace:
                     yield tail
 
         headers = ((package, path) for package in self for path in package.digest.headers)
-        return _owners((each, package.name) for package, path in headers for each in spelt(package, path))
+        return _group((each, package.name) for package, path in headers for each in list_spellings(package, path))
 
     @cached_property
     def generated_headers(self) -> dict[str, list[str]]:
@@ -253,7 +253,7 @@ class Workspace:
     @cached_property
     def modules(self) -> dict[str, list[str]]:
         """Python module name to the packages of the workspace that have one of that name."""
-        return _owners((module, package.name) for package in self for module in {package.name, *importable(package)})
+        return _group((module, package.name) for package in self for module in {package.name, *list_modules(package)})
 
     @cached_property
     def cmake_files(self) -> frozenset[str]:
@@ -288,7 +288,7 @@ class Workspace:
                         found.setdefault(match.group(1), package.name)
         return found
 
-    @cached_method
+    @cache_method
     def provides_header(self, include: str) -> list[str]:
         """Packages of the workspace whose files, or whose generated files, answer an include path."""
         owners = self.rooted_headers.get(include) or self.headers.get(include)
@@ -312,11 +312,11 @@ class Workspace:
 
     def is_interface_header(self, package: str, rest: str) -> bool:
         """True when `rest` (an include path after `package/`) is generated from an interface of the package."""
-        return _names_interface(rest, self._interface_stems(package))
+        return _names_interface(rest, self._get_interface_stems(package))
 
-    @cached_method
-    def _interface_stems(self, package: str) -> tuple[frozenset[str], frozenset[str]]:
-        return _stems(self.interface_names.get(package, ()))
+    @cache_method
+    def _get_interface_stems(self, package: str) -> tuple[frozenset[str], frozenset[str]]:
+        return _make_stems(self.interface_names.get(package, ()))
 
     @cached_property
     def broken_headers(self) -> frozenset[str]:
@@ -330,14 +330,14 @@ class Workspace:
                 owner = self.packages.get(head)
                 if owner is None or not rest or "_export." in rest:
                     continue
-                if owner.manifest.metapackage or not self._closed(owner) or self.provides_header(include.path):
+                if owner.manifest.metapackage or not self._is_closed(owner) or self.provides_header(include.path):
                     continue
                 if any(path.endswith(f"/{include.path}") for path in owner.digest.files):
                     continue  # a file that is not called like a header (`types.macro`)
                 found.add(include.path)
         return frozenset(found)
 
-    def _closed(self, package: Package) -> bool:
+    def _is_closed(self, package: Package) -> bool:
         """True when nothing in a package makes headers but its interfaces and dynamic_reconfigure."""
         if (
             any(g.how not in ("rosidl", "catkin", "reconfigure") for g in package.build.generated)
@@ -371,7 +371,7 @@ _OFTEN_MADE = frozenset(("visibility_control.h", "visibility_control.hpp", "vers
 _CONFIGURATION = re.compile(r"(.+?)-?[Cc]onfig\.cmake(?:\.in)?$")
 
 
-def importable(package: Package) -> set[str]:
+def list_modules(package: Package) -> set[str]:
     """Top-level Python modules that others can import once the package is installed: `name/__init__.py` and `name.py`
     in the package's folder or its src/, and what setup.py lists."""
     found = set()
@@ -393,10 +393,10 @@ _ROS1_SUFFIXES = (
 )  # fmt: skip
 
 
-def _stems(names: Iterable[str]) -> tuple[frozenset[str], frozenset[str]]:
+def _make_stems(names: Iterable[str]) -> tuple[frozenset[str], frozenset[str]]:
     """Stems of the headers generated from interfaces: in ROS 2's spelling and in ROS 1's."""
     names = tuple(names)
-    return frozenset(snake(n) for n in names), frozenset(n + s for n in names for s in _ROS1_SUFFIXES)
+    return frozenset(make_snake_case(n) for n in names), frozenset(n + s for n in names for s in _ROS1_SUFFIXES)
 
 
 def _names_interface(rest: str, stems: tuple[frozenset[str], frozenset[str]]) -> bool:
@@ -413,10 +413,10 @@ def _names_interface(rest: str, stems: tuple[frozenset[str], frozenset[str]]) ->
 
 def is_interface_header(rest: str, names: Iterable[str]) -> bool:
     """True when `rest` (an include path after `package/`) is generated from one of the named interfaces."""
-    return _names_interface(rest, _stems(names))
+    return _names_interface(rest, _make_stems(names))
 
 
-def _owners(named: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
+def _group(named: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     """Names to those that have them, each once and in order. named: pairs of the two."""
     found: dict[str, dict[str, None]] = {}
     for name, owner in named:
@@ -439,9 +439,9 @@ def link(
     of the tree, where they are known. asked: the versions of other packages that uses may be wrong in, all when None.
     """
     discovered = discovered or discover(tree, gathered)
-    ros = ros or generation(discovered, gathered)
-    linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.cores(), asked)
-    digests = linker.digests(store)
+    ros = ros or detect_generation(discovered, gathered)
+    linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.count_cores(), asked)
+    digests = linker.link_packages(store)
     outside = FilesOutside(discovered, gathered)
     linker.identity.update(outside.identity)
     identity = linker.identity.digest()
@@ -460,7 +460,7 @@ def _list_conditional(manifest: Manifest) -> dict[str, Condition]:
     }
 
 
-def _named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
+def _list_named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(d.name for d in manifest.dependencies if d.kind in kinds))
 
 
@@ -484,11 +484,11 @@ _INTERFACES = frozenset(("msg", "srv", "action", "idl"))
 def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, LinkedPackage | None]], path: str):
     """What a process of its own does with a folder of tasks: a _Joined, with the digest in one form only."""
     processes.begin_part(0, _JOIN_BYTES + len(linker.paths_of[path]) * _JOIN_BYTES_OF_FILE)
-    digest, packed, head = linker.joined_one(*tasks[path])
+    digest, packed, head = linker.join_one(*tasks[path])
     return None if packed else digest, packed, head
 
 
-def _called(build: Build, declared: str) -> str:
+def _detect_build_type(build: Build, declared: str) -> str:
     """The build type of a package by what its CMake calls, where that is one of the two alone: a manifest often still
     says what the package was ported from."""
     catkin, ament = build.catkin_package is not None, build.ament_package is not None
@@ -511,23 +511,23 @@ class _Linker:
         self.tree, self.gathered, self.discovered, self.ros, self.watched = tree, gathered, discovered, ros, watched
         self.jobs, self.asked = jobs, asked
         self.paths_of: dict[str, list[str]] = {p.path: [] for p in discovered.packages}
-        for entry in tree.entries():
-            owner = discovered.owner(entry.path)
+        for entry in tree.list_entries():
+            owner = discovered.find_owner(entry.path)
             if owner is not None and owner.path in self.paths_of:
                 self.paths_of[owner.path].append(entry.path)
-        self.all_paths = frozenset(e.path for e in tree.entries())
+        self.all_paths = frozenset(e.path for e in tree.list_entries())
         self.by_name = {p.name: p for p in discovered.packages}
         self._extras: dict[str, tuple[str, ...]] = {}
         self.whole = True
-        self.code = f"{source_key(__name__)} {version_of_all()}"
+        self.code = f"{compute_source_key(__name__)} {make_overall_version()}"
         self.unread = frozenset(problem.path for problem in (*gathered.problems, *tree.skipped))
         self.identity = hashlib.sha1(f"{self.code} {ros} {sorted(self.unread)}".encode("utf-8", "backslashreplace"))
 
-    def digests(self, store: Store | None) -> list[LinkedPackage]:
-        places = [p for p in self.discovered.packages if manifest_at(self.gathered, p.manifest_path) is not None]
-        keys = {p.path: self.key(p) for p in places}
+    def link_packages(self, store: Store | None) -> list[LinkedPackage]:
+        places = [p for p in self.discovered.packages if find_manifest(self.gathered, p.manifest_path) is not None]
+        keys = {p.path: self.compute_key(p) for p in places}
         decoder = msgspec.msgpack.Decoder(LinkedPackage)
-        remembered = store.memos("digest", list(keys.values())) if store is not None else {}
+        remembered = store.find_memos("digest", list(keys.values())) if store is not None else {}
         found: dict[str, _Joined] = {}
         stale: dict[str, LinkedPackage] = {}
         for place in places:
@@ -544,7 +544,7 @@ class _Linker:
                     found[place.path] = _Joined(before, packed, None)
                 else:
                     stale[place.path] = before
-        made = dict(self.joined([p for p in places if p.path not in found], stale))
+        made = dict(self.combine([p for p in places if p.path not in found], stale))
         self.whole = all(one.packed and one.head is not None for one in made.values())
         found.update(made)
         fresh: list[tuple[bytes, bytes]] = []
@@ -558,14 +558,14 @@ class _Linker:
             store.remember("digest", fresh)
         return [found[p.path].digest for p in places]
 
-    def joined(self, places: Iterable[PackagePlace], stale: dict[str, LinkedPackage]) -> Iterator[tuple[str, _Joined]]:
+    def combine(self, places: Iterable[PackagePlace], stale: dict[str, LinkedPackage]) -> Iterator[tuple[str, _Joined]]:
         """Folder and join of these packages, several at once where there is much to do. stale: digests of an earlier
         run that may still hold, by folder."""
         tasks = {p.path: (p, stale.get(p.path)) for p in places}
         order = sorted(tasks, key=lambda path: (-len(self.paths_of[path]), path))
         files = sum(len(self.paths_of[path]) for path in order)
         if not order or not processes.may_fork():
-            yield from ((path, self.joined_one(*tasks[path])) for path in order)
+            yield from ((path, self.join_one(*tasks[path])) for path in order)
             return
         jobs = 1 if len(order) < 2 or files < _ALONE_FILES else self.jobs
         self.gathered.store.close()  # every process opens it for itself
@@ -573,27 +573,27 @@ class _Linker:
         if self.watched.surfaces is not None or self.watched.fields is not None:
             import_module(".cpp.uses", __package__)  # once, not in every process
         decoder = msgspec.msgpack.Decoder(LinkedPackage)
-        for path, result in processes.forked(_join, order, jobs, self, tasks):
+        for path, result in processes.run_forked(_join, order, jobs, self, tasks):
             if isinstance(result, processes.Died):
                 place, _ = tasks[path]
-                yield path, self.encoded(self.failed(place, f"its analysis {result.why}"), None)
+                yield path, self.encode_digest(self.make_failed(place, f"its analysis {result.why}"), None)
             else:
                 digest, packed, head = result
                 yield path, _Joined(digest or decoder.decode(packed), packed, head)
 
-    def joined_one(self, place: PackagePlace, before: LinkedPackage | None) -> _Joined:
+    def join_one(self, place: PackagePlace, before: LinkedPackage | None) -> _Joined:
         try:
-            with self.gathered.deferring():
+            with self.gathered.defer_storing():
                 digest, read = self.join(place, before)
         except MemoryError:
             raise  # ends a process, whose package is then tried in a new one
         except Exception as error:
             # One package that nobody foresaw must not take the others with it.
             why = f"{type(error).__name__}: {error}; this is a fault of rosimpact, please report it"
-            digest, read = self.failed(place, why), None
-        return self.encoded(digest, read)
+            digest, read = self.make_failed(place, why), None
+        return self.encode_digest(digest, read)
 
-    def encoded(self, digest: LinkedPackage, read: Any) -> _Joined:
+    def encode_digest(self, digest: LinkedPackage, read: Any) -> _Joined:
         """A digest with what is remembered of it."""
         try:
             head = msgspec.msgpack.encode(read) if read is not None else None
@@ -606,20 +606,20 @@ class _Linker:
         self.identity.update(len(digest).to_bytes(8, "big"))
         self.identity.update(digest)
 
-    def failed(self, place, reason: str) -> LinkedPackage:
+    def make_failed(self, place, reason: str) -> LinkedPackage:
         """What stands for a package whose join failed: its manifest, and a problem that says so."""
-        manifest = manifest_at(self.gathered, place.manifest_path)
+        manifest = find_manifest(self.gathered, place.manifest_path)
         assert manifest is not None
         why = f"the package could not be analysed: {reason}"
         return LinkedPackage(place.name, place.path, place.manifest_path, manifest, build_type_of(manifest, self.ros),
                              Build(), problems=((place.manifest_path, 0, why),),
                              files=tuple(self.paths_of[place.path]))  # fmt: skip
 
-    def key(self, place) -> bytes:
+    def compute_key(self, place) -> bytes:
         """Everything of the package itself that its digest is made from."""
         ids = self.gathered.ids
         asked = self.asked.identity if self.asked is not None else ""
-        versions = f"{self.code}{limits_stamp()} {self.watched.version} {asked}"
+        versions = f"{self.code}{format_limits()} {self.watched.version} {asked}"
         about = f"{versions} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n"
         digest = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
         digest.update(
@@ -635,7 +635,7 @@ class _Linker:
         not count here."""
         stored = self.watched.surfaces.packages if self.watched.surfaces is not None else frozenset()
         kinds = self.gathered.kinds
-        places = (p for p in self.discovered.packages if manifest_at(self.gathered, p.manifest_path))
+        places = (p for p in self.discovered.packages if find_manifest(self.gathered, p.manifest_path))
         return frozenset(
             p.name
             for p in places
@@ -645,55 +645,55 @@ class _Linker:
     @cached_property
     def _extras_key(self) -> str:
         """Which CMake files packages give their dependants; what is in them is told by the digests that read them."""
-        given = [path for place in self.discovered.packages for path in self.extras(place.name)]
+        given = [path for place in self.discovered.packages for path in self.find_extras(place.name)]
         return hashlib.sha1("\n".join(given).encode("utf-8", "surrogateescape")).hexdigest()
 
     def join(self, place, before: LinkedPackage | None) -> tuple[LinkedPackage, dict[str, str]]:
         """The digest of a package, and the CMake files of others that it rests on. before: a digest of the very same
         files of its own; where the others still say the same, it holds."""
         gathered = self.gathered
-        manifest = manifest_at(gathered, place.manifest_path)
+        manifest = find_manifest(gathered, place.manifest_path)
         assert manifest is not None
         files = self.paths_of[place.path]
         gathered.preload(files)
         read: dict[str, str] = {}
 
-        def cmake(path: str):
+        def read_cmake(path: str):
             path = posixpath.normpath(path)
             if gathered.kinds.get(path) != "cmake":
                 return None
             if not (path.startswith(place.path + "/") or not place.path):
                 read[path] = gathered.ids.get(path, "")
-            file = gathered.facts(path)
+            file = gathered.get_facts(path)
             return file.facts if file is not None else None
 
         build = (
             interpret(
                 place.path,
-                cmake,
+                read_cmake,
                 self.all_paths.__contains__,
-                self.glob(place, files),
+                self.make_glob(place, files),
                 package=manifest.name,
-                dependencies=_named(manifest, "build", "buildtool"),
-                test_dependencies=_named(manifest, "test"),
-                exported_dependencies=_named(manifest, "build_export", "buildtool_export", "exec"),
+                dependencies=_list_named(manifest, "build", "buildtool"),
+                test_dependencies=_list_named(manifest, "test"),
+                exported_dependencies=_list_named(manifest, "build_export", "buildtool_export", "exec"),
                 conditional_dependencies=_list_conditional(manifest),
-                extras=self.extras,
+                extras=self.find_extras,
             )
             if build_type_of(manifest, self.ros) != "ament_python"
             and (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
             else Build()
         )
-        ignored = tuple(self.ignored(place, build, read))
+        ignored = tuple(self.list_ignored(place, build, read))
         build = msgspec.structs.replace(build, made=(*build.made, *ignored)) if ignored else build
         if before is not None and build == before.build:
             return before, read
-        build_type = _called(build, build_type_of(manifest, self.ros))
+        build_type = _detect_build_type(build, build_type_of(manifest, self.ros))
         joined = PackageJoin(
             *(place, manifest, build, build_type, files, gathered, self.tree.read),
             *(self.watched, self.home, self.asked, self.changing),
         )
-        return joined.digest(), read
+        return joined.build_digest(), read
 
     @cached_property
     def changing(self) -> Changes | None:
@@ -701,9 +701,9 @@ class _Linker:
         from .api import Changes
 
         surfaces = self.watched.surfaces
-        return Changes(surfaces.lines, self.asked, surfaces.history) if surfaces is not None else None
+        return Changes(surfaces.find_lines, self.asked, surfaces.find_history) if surfaces is not None else None
 
-    def ignored(self, place, build: Build, read: dict[str, str]) -> Iterator[str]:
+    def list_ignored(self, place, build: Build, read: dict[str, str]) -> Iterator[str]:
         """What the package installs and git ignores, so that it is there once it was made. read: as join() returns it,
         completed by the files that tell."""
         for install in build.installs:
@@ -716,12 +716,12 @@ class _Linker:
                     file = f"{folder}/.gitignore" if folder else ".gitignore"
                     if self.gathered.kinds.get(file) == "gitignore":
                         read[file] = self.gathered.ids.get(file, "")
-                        facts = self.gathered.facts(file)
+                        facts = self.gathered.get_facts(file)
                         rules.append((folder, facts.facts.patterns if facts is not None else ()))
                 if rules and (is_ignored(path, rules) or (install.kind == "directory" and holds_ignored(path, rules))):
                     yield path
 
-    def glob(self, place, files: list[str]):
+    def make_glob(self, place, files: list[str]):
         import fnmatch
 
         by_folder: dict[str, list[str]] = {}
@@ -733,12 +733,12 @@ class _Linker:
         def find(pattern: str, recurse: bool = False) -> list[str]:
             found = known.get((pattern, recurse))
             if found is None:
-                found = sorted(matching(pattern, recurse))
+                found = sorted(list_matching(pattern, recurse))
                 if len(known) * len(files) < _REMEMBERED:
                     known[pattern, recurse] = found
             return found
 
-        def matching(pattern: str, recurse: bool) -> Iterator[str]:
+        def list_matching(pattern: str, recurse: bool) -> Iterator[str]:
             folder, _, name = pattern.rpartition("/")
             matches = re.compile(fnmatch.translate(name)).match
             within: Iterable[str] = (folder,)
@@ -755,12 +755,12 @@ class _Linker:
 
         return find
 
-    def extras(self, package: str) -> tuple[str, ...]:
+    def find_extras(self, package: str) -> tuple[str, ...]:
         """CMake files that a package of the workspace gives its dependants."""
         known = self._extras.get(package)
         if known is None:
             place = self.by_name.get(package)
             cmake = [path for path in self.paths_of[place.path] if ".cmake" in path] if place is not None else []
-            known = extras_of(place.path, self.glob(place, cmake)) if place is not None and cmake else ()
+            known = list_extras(place.path, self.make_glob(place, cmake)) if place is not None and cmake else ()
             self._extras[package] = known
         return known

@@ -9,7 +9,7 @@ _MOST_DECLARATIONS = 2
 _MOST_TARGETS = 5
 
 
-def lines(finding: Finding) -> list[tuple[str, str]]:
+def format_lines(finding: Finding) -> list[tuple[str, str]]:
     """(label, text) of what the message does not contain: the declarations `was` and `now`, and `when` each target got
     the change. Empty when nothing more is known."""
     evidence = finding.evidence
@@ -19,12 +19,12 @@ def lines(finding: Finding) -> list[tuple[str, str]]:
     # Overloads that stayed tell nothing, unless they are all that is left.
     old = tuple(one for one in evidence.old if one not in evidence.new)
     new = tuple(one for one in evidence.new if one not in evidence.old) or evidence.new
-    found = [*_declarations("was", old), *_declarations(since, new)]
-    when = _when(evidence)
+    found = [*_format_declarations("was", old), *_format_declarations(since, new)]
+    when = _format_period(evidence)
     return [*found, ("when", when)] if when else found
 
 
-def as_object(evidence: Evidence) -> dict[str, Any]:
+def make_object(evidence: Evidence) -> dict[str, Any]:
     """The evidence as findings.schema.json describes it."""
     data: dict[str, Any] = {"package": evidence.package, "change": evidence.change}
     for key, value in (
@@ -45,13 +45,13 @@ def as_object(evidence: Evidence) -> dict[str, Any]:
     return data
 
 
-def _declarations(label: str, declarations: tuple[str, ...]) -> list[tuple[str, str]]:
+def _format_declarations(label: str, declarations: tuple[str, ...]) -> list[tuple[str, str]]:
     shown = [(label, text) for text in declarations[:_MOST_DECLARATIONS]]
     more = len(declarations) - len(shown)
     return [*shown[:-1], (label, f"{shown[-1][1]} (and {more} more)")] if more else shown
 
 
-def _when(evidence: Evidence) -> str:
+def _format_period(evidence: Evidence) -> str:
     """`removed between rclcpp 28.3.1 and 28.3.2: rolling since 2024-08-21, still on humble (16.0.20)`; empty when
     neither a version nor a date is known, or no target differs from the message."""
     got = [f"{one.target} since {one.since}" for one in evidence.targets if one.holds and one.since]
@@ -68,11 +68,11 @@ def _when(evidence: Evidence) -> str:
     else:
         head = word
     lasting = "still on" if evidence.change == "removed" else "not on"
-    got += [f"{lasting} {_named(one)}" for one in others[:1]] + [_named(one) for one in others[1:]]
+    got += [f"{lasting} {_format_target(one)}" for one in others[:1]] + [_format_target(one) for one in others[1:]]
     more = len(got) - _MOST_TARGETS
     return f"{head}: {', '.join(got[:_MOST_TARGETS])}" + (f" and {more} more" if more > 0 else "") if got else head
 
 
-def _named(one: OnTarget) -> str:
+def _format_target(one: OnTarget) -> str:
     until = f", until {one.since}" if one.since else ""
     return f"{one.target} ({one.version}{until})"

@@ -7,13 +7,13 @@ from typing import Any
 
 import msgspec
 
-from ...edges.console import counted, json_text
+from ...edges.console import format_count, format_json
 from ..analysis.downstream import KINDS, Effect, Hop, Impact, ImpactResult
-from .columns import LinePart, laid_out
-from .graph.text import WIDE, coverage_lines
-from .markdown_text import code, escaped
-from .schemas import SCHEMA, STABLE, generated_schema
-from .style import Style, painted
+from .columns import LinePart, lay_out
+from .graph.text import WIDE, render_coverage
+from .markdown_text import escape_markdown, quote
+from .schemas import SCHEMA, STABLE, generate_schema
+from .style import Style, paint
 
 SHOWN = 8
 """As many reached nodes as are shown of a change, the nearest ones."""
@@ -27,84 +27,84 @@ _HEADS = {
 }  # fmt: skip
 
 
-def text(impact: Impact, everything: bool = False, style: Style = WIDE) -> str:
+def render_text(impact: Impact, everything: bool = False, style: Style = WIDE) -> str:
     """The changes by kind, each with what it reaches as a tree, nearest first. everything: nothing is cut."""
     lines: list[str] = []
-    names = names_of(impact)
-    for kind, same in groupby(grouped(impact.effects), key=lambda group: group[0].kind):
-        lines += [*([""] if lines else []), painted(style, "bold", _HEADS[kind])]
+    names = collect_node_names(impact)
+    for kind, same in groupby(group_effects(impact.effects), key=lambda group: group[0].kind):
+        lines += [*([""] if lines else []), paint(style, "bold", _HEADS[kind])]
         for group in same:
             for one in group:
-                lines += _head(one, names, style)
-            lines += _tree(group[0], names, everything, style)
-    lines += [*([""] if lines else []), *_line([LinePart(summary(impact))], style, 0, 2)]
+                lines += _render_head(one, names, style)
+            lines += _render_tree(group[0], names, everything, style)
+    lines += [*([""] if lines else []), *_render([LinePart(summarize(impact))], style, 0, 2)]
     if impact.of:
         paths = {effect.path for effect in impact.effects}
         paths |= {hop.path for effect in impact.effects for hop in effect.reaches}
         near = [one for one in impact.coverage.unresolved if everything or one.path in paths]
-        lines += coverage_lines(impact.coverage, near, everything, style)
+        lines += render_coverage(impact.coverage, near, everything, style)
     return "\n".join(lines) + "\n"
 
 
-def summary(impact: Impact) -> str:
+def summarize(impact: Impact) -> str:
     """What was found, on one line."""
-    silent = f"; nothing known to be sent because of {counted(impact.silent, 'changed function')}"
+    silent = f"; nothing known to be sent because of {format_count(impact.silent, 'changed function')}"
     silent = silent if impact.silent else ""
     if not impact.effects:
         return f"no change that message flow knows of{silent}"
     counts = Counter(effect.kind for effect in impact.effects)
-    told = ", ".join(counted(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
-    return f"{told} changed; {counted(len(impact.reached), 'node')} of {impact.of:,} reached{silent}"
+    told = ", ".join(format_count(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
+    return f"{told} changed; {format_count(len(impact.reached), 'node')} of {impact.of:,} reached{silent}"
 
 
-def names_of(impact: Impact) -> dict[str, str]:
+def collect_node_names(impact: Impact) -> dict[str, str]:
     """How nodes are called for people, by id: the name in the system where one node alone has it."""
     count = Counter(node.name for node in impact.nodes)
     return {node.id: node.name if node.name and count[node.name] == 1 else node.id for node in impact.nodes}
 
 
-def grouped(effects: Iterable[Effect]) -> list[list[Effect]]:
+def group_effects(effects: Iterable[Effect]) -> list[list[Effect]]:
     """Changes that stand one after the other, of one kind and package, and reach the same."""
     found: list[list[Effect]] = []
     for effect in effects:
         last = found[-1][0] if found else None
-        if last is not None and _alike(last) == _alike(effect):
+        if last is not None and _make_group_key(last) == _make_group_key(effect):
             found[-1].append(effect)
         else:
             found.append([effect])
     return found
 
 
-def _alike(effect: Effect) -> tuple:
+def _make_group_key(effect: Effect) -> tuple:
     return effect.kind, effect.package, effect.reaches, bool(effect.topics)
 
 
-def _line(pieces: Sequence[LinePart], style: Style, indent: int, hang: int) -> Iterator[str]:
-    return laid_out([one for one in pieces if one.text or one.path], style, indent, hang)
+def _render(pieces: Sequence[LinePart], style: Style, indent: int, hang: int) -> Iterator[str]:
+    return lay_out([one for one in pieces if one.text or one.path], style, indent, hang)
 
 
-def _head(effect: Effect, names: dict[str, str], style: Style) -> Iterator[str]:
-    nodes = _some([names.get(node, node) for node in effect.nodes])
+def _render_head(effect: Effect, names: dict[str, str], style: Style) -> Iterator[str]:
+    nodes = _format_names([names.get(node, node) for node in effect.nodes])
     line = [
         LinePart(effect.change, _ROLES.get(effect.change, "warning")), LinePart(effect.subject, "bold"),
         LinePart(f"({nodes})" if nodes else ""), LinePart("", path=f"{effect.path}:{effect.line}"),
     ]  # fmt: skip
-    yield from _line(line, style, 2, 6)
+    yield from _render(line, style, 2, 6)
     if effect.why:
-        yield from _line([LinePart(effect.why)], style, 6, 8)
+        yield from _render([LinePart(effect.why)], style, 6, 8)
 
 
-def _some(names: Sequence[str]) -> str:
+def _format_names(names: Sequence[str]) -> str:
     more = f" and {len(names) - _MOST_NODES} more" if len(names) > _MOST_NODES else ""
     return ", ".join(names[:_MOST_NODES]) + more
 
 
-def _tree(effect: Effect, names: dict[str, str], everything: bool, style: Style) -> Iterator[str]:
+def _render_tree(effect: Effect, names: dict[str, str], everything: bool, style: Style) -> Iterator[str]:
     """The nearest nodes, each below the one it is reached from; those on one line that are one place of the code."""
     hops = effect.reaches
     kept = hops if everything else hops[:SHOWN]
     if not kept:
-        yield f"      {_nowhere(effect)}"
+        yield f"      {_explain_none(effect)}"
         return
     present = {hop.node for hop in kept}
     below: dict[str, dict[tuple[str, str, int], list[Hop]]] = {}
@@ -120,40 +120,40 @@ def _tree(effect: Effect, names: dict[str, str], everything: bool, style: Style)
                 continue
             done.update(hop.node for hop in fresh)
             kind = "" if fresh[0].kind == "topic" else f" ({fresh[0].kind})"
-            told = _some([names.get(hop.node, hop.node) for hop in fresh])
+            told = _format_names([names.get(hop.node, hop.node) for hop in fresh])
             place = LinePart("", path=f"{fresh[0].path}:{fresh[0].line}")
             indent = 6 + 2 * min(depth, 8)
             line = [LinePart(f"{style.symbols[3]} {told}"), LinePart(f"{fresh[0].name}{kind}"), place]
-            yield from _line(line, style, indent, indent + 4)
+            yield from _render(line, style, indent, indent + 4)
             for hop in fresh:
                 yield from walk(hop.node, depth + 1)
 
     yield from walk("", 0)
     if len(kept) < len(hops):
-        yield f"      and {counted(len(hops) - len(kept), 'node')} further downstream"
+        yield f"      and {format_count(len(hops) - len(kept), 'node')} further downstream"
 
 
-def short(impact: Impact, style: Style, base: str = "", most: int = _MOST_EFFECTS) -> list[str]:
+def render_short(impact: Impact, style: Style, base: str = "", most: int = _MOST_EFFECTS) -> list[str]:
     """Lines for the end of another report: each change with the nearest nodes that it reaches. most: as many changes;
     base: what it is compared with."""
-    names = names_of(impact)
+    names = collect_node_names(impact)
     lines: list[str] = []
-    for group in grouped(impact.effects)[:most]:
+    for group in group_effects(impact.effects)[:most]:
         for effect in group[:_MOST_NODES]:
             told = effect if len(group) == 1 else msgspec.structs.replace(effect, why="")
-            lines += _head(told, names, style)
+            lines += _render_head(told, names, style)
         if len(group) > _MOST_NODES:
             lines.append(f"  and {len(group) - _MOST_NODES} more")
         near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in group[0].reaches))
-        lines += _line([LinePart(f"reaches {_some(near)}" if near else _nowhere(group[0]))], style, 6, 8)
-    left = sum(map(len, grouped(impact.effects)[most:]))
+        lines += _render([LinePart(f"reaches {_format_names(near)}" if near else _explain_none(group[0]))], style, 6, 8)
+    left = sum(map(len, group_effects(impact.effects)[most:]))
     if left:
-        said = f"and {counted(left, 'further change')}; `rosimpact impact --base {base}` shows all"
-        lines += _line([LinePart(said)], style, 2, 4)
-    return [*lines, *_line([LinePart(summary(impact))], style, 2, 4)]
+        said = f"and {format_count(left, 'further change')}; `rosimpact impact --base {base}` shows all"
+        lines += _render([LinePart(said)], style, 2, 4)
+    return [*lines, *_render([LinePart(summarize(impact))], style, 2, 4)]
 
 
-def compact(impact: Impact) -> dict[str, Any]:
+def build_compact_data(impact: Impact) -> dict[str, Any]:
     """The same as data, with as many of the nodes that each change reaches, the nearest ones."""
     rows = []
     for effect in impact.effects:
@@ -164,26 +164,26 @@ def compact(impact: Impact) -> dict[str, Any]:
     return {"changes": rows, "reached": len(impact.reached), "nodes": impact.of, "silent": impact.silent}
 
 
-def _nowhere(effect: Effect) -> str:
+def _explain_none(effect: Effect) -> str:
     """What is said of a change that reaches no node."""
     return "reaches nothing in the workspace" if effect.topics else "no topic of it is known"
 
 
-def markdown(impact: Impact) -> str:
+def render_markdown(impact: Impact) -> str:
     """The same in short, for a comment: a line for each change."""
-    names = names_of(impact)
+    names = collect_node_names(impact)
     rows = []
     for effect in impact.effects[:_MOST_EFFECTS]:
         near = [names.get(hop.node, hop.node) for hop in effect.reaches]
-        reaches = f"reaches {escaped(_some(near))}" if near else _nowhere(effect)
-        place = code(f"{effect.path}:{effect.line}")
-        rows.append(f"- {effect.kind} {escaped(effect.change)} {code(effect.subject)} {place}: {reaches}")
+        reaches = f"reaches {escape_markdown(_format_names(near))}" if near else _explain_none(effect)
+        place = quote(f"{effect.path}:{effect.line}")
+        rows.append(f"- {effect.kind} {escape_markdown(effect.change)} {quote(effect.subject)} {place}: {reaches}")
     if len(impact.effects) > _MOST_EFFECTS:
         rows.append(f"- and {len(impact.effects) - _MOST_EFFECTS} more")
-    return "\n".join([*rows, "", f"<sub>{escaped(summary(impact))}</sub>"]) + "\n"
+    return "\n".join([*rows, "", f"<sub>{escape_markdown(summarize(impact))}</sub>"]) + "\n"
 
 
-def as_json(impact: Impact, found: ImpactResult, version: str) -> str:
+def render_json(impact: Impact, found: ImpactResult, version: str) -> str:
     """All of it, or of the part that was chosen, as JSON; docs/impact.schema.json describes it. found: what is
     compared."""
     document: dict[str, Any] = {
@@ -197,11 +197,11 @@ def as_json(impact: Impact, found: ImpactResult, version: str) -> str:
         "silent": impact.silent,
         "coverage": msgspec.to_builtins(impact.coverage),
     }
-    return json_text(document) + "\n"
+    return format_json(document) + "\n"
 
 
-def schema() -> str:
-    """The JSON schema (draft 2020-12) of what as_json() gives; docs/impact.schema.json holds it."""
+def render_schema() -> str:
+    """The JSON schema (draft 2020-12) of what render_json() gives; docs/impact.schema.json holds it."""
     from ..model.flow.graph import Coverage, Node
 
     (effect, node, coverage), parts = msgspec.json.schema_components(
@@ -218,4 +218,4 @@ def schema() -> str:
         "coverage": coverage,
     }
     described = f"What `rosimpact impact --format json` prints. {STABLE}"
-    return generated_schema("impact", described, properties, parts, {})
+    return generate_schema("impact", described, properties, parts, {})

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ...edges.console import json_text
+from ...edges.console import format_json
 from ..analysis.report import Coverage, Report, ReportedTarget
 from ..rules.rule import Finding
 from . import evidence
@@ -18,11 +18,11 @@ def render(report: Report) -> str:
         "schema": SCHEMA,
         "tool": {"name": "rosimpact", "version": report.version, "data": report.data},
         "targets": [
-            target_as_data(target) | ({"reason": target.reason} if target.reason else {}) | notes_of(target)
+            build_target_data(target) | ({"reason": target.reason} if target.reason else {}) | build_notes(target)
             for target in report.targets
         ],
-        "findings": [as_data(finding) for finding in report.findings],
-        "coverage": coverage_as_data(report.coverage),
+        "findings": [build_finding_data(finding) for finding in report.findings],
+        "coverage": build_coverage_data(report.coverage),
     }
     for key, value in (
         ("suppressed", len(report.suppressed)),
@@ -33,46 +33,46 @@ def render(report: Report) -> str:
         if value:
             data[key] = value
     if report.impact is not None and report.impact.effects:
-        from .impact import compact
+        from .impact import build_compact_data
 
-        data["impact"] = compact(report.impact)
-    return dumped(data)
+        data["impact"] = build_compact_data(report.impact)
+    return dump_json(data)
 
 
-def target_as_data(target: ReportedTarget) -> dict[str, Any]:
+def build_target_data(target: ReportedTarget) -> dict[str, Any]:
     """What every report tells of a target."""
     return {"name": target.name, "distro": target.distro, "date": target.date, "platform": target.platform}
 
 
-def notes_of(target: ReportedTarget) -> dict[str, Any]:
+def build_notes(target: ReportedTarget) -> dict[str, Any]:
     """What was adjusted of a target, where anything was."""
     return {"notes": list(target.notes)} if target.notes else {}
 
 
-def coverage_as_data(coverage: Coverage) -> dict[str, Any]:
+def build_coverage_data(coverage: Coverage) -> dict[str, Any]:
     """What was analysed, as the schemas have it."""
     return coverage._asdict() | {"unresolved": dict(sorted(coverage.unresolved.items()))}
 
 
-def dumped(data: dict[str, Any]) -> str:
+def dump_json(data: dict[str, Any]) -> str:
     """Data as JSON text that ends in a line end, whatever bytes its texts hold."""
-    return json_text(data) + "\n"
+    return format_json(data) + "\n"
 
 
-def failure(version: str, data: str, message: str) -> str:
+def render_failure(version: str, data: str, message: str) -> str:
     """Valid JSON for a run that failed before it had anything to report."""
     return render(Report(version, data, (), (), Coverage(), failure=message))
 
 
-def schema() -> str:
+def render_schema() -> str:
     """The published JSON schema as text (draft 2020-12)."""
     return Path(__file__).with_name("findings.schema.json").read_text(encoding="utf-8")
 
 
-def schema_with(name: str) -> str:
+def merge_shared_schema(name: str) -> str:
     """A schema that lies beside this file, with the definitions in it that it shares with this report: of a finding,
     a target, the tool and the coverage."""
-    ours, whole = json.loads(schema()), json.loads(Path(__file__).with_name(name).read_text(encoding="utf-8"))
+    ours, whole = json.loads(render_schema()), json.loads(Path(__file__).with_name(name).read_text(encoding="utf-8"))
     shared = {key: ours["properties"][key] for key in ("tool", "coverage")}
     shared["target"] = ours["properties"]["targets"]["items"]
     whole["$defs"] = {**whole.get("$defs", {}), **shared, **ours["$defs"]}
@@ -80,11 +80,11 @@ def schema_with(name: str) -> str:
     return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
 
-def as_data(finding: Finding) -> dict[str, Any]:
+def build_finding_data(finding: Finding) -> dict[str, Any]:
     """A finding as the schema has it."""
     data = {name: value for name, value in finding._asdict().items() if name not in _NOT_TOLD}
     data["targets"] = list(finding.targets)
-    return data | ({"evidence": evidence.as_object(finding.evidence)} if finding.evidence is not None else {})
+    return data | ({"evidence": evidence.make_object(finding.evidence)} if finding.evidence is not None else {})
 
 
 _NOT_TOLD = frozenset(("fix", "evidence", "repeated"))

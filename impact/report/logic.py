@@ -8,11 +8,11 @@ from typing import Any
 
 import msgspec
 
-from ...edges.console import counted, json_text, visible
+from ...edges.console import escape, format_count, format_json
 from ..logic.changes import KINDS, LogicChange
 from ..logic.history import Commit
 from ..logic.repository import Logic
-from .columns import UNBROKEN, LinePart, laid_out
+from .columns import UNBROKEN, LinePart, lay_out
 from .style import PLAIN, Style
 
 SCHEMA = 1
@@ -26,46 +26,46 @@ _PARTS = re.compile(r"(?<= && )|(?<= \|\| )|(?<= and )|(?<= or )|(?<=[:;] )")
 _WIDE = PLAIN._replace(width=UNBROKEN)
 
 
-def text(logic: Logic, style: Style = _WIDE) -> str:
+def render_text(logic: Logic, style: Style = _WIDE) -> str:
     """The changes by commit, newest first, and what was looked at."""
     lines: list[str] = []
     for commit, changes in groupby(logic.changes, key=lambda pair: pair[0]):
-        title = LinePart(visible(commit.summary), "bold", hang=_TITLE)
-        lines += laid_out([LinePart(f"{commit.id[:10]}  {commit.date[:10]}", "bold"), title], style, 0, _TITLE)
+        title = LinePart(escape(commit.summary), "bold", hang=_TITLE)
+        lines += lay_out([LinePart(f"{commit.id[:10]}  {commit.date[:10]}", "bold"), title], style, 0, _TITLE)
         for _, change in changes:
-            lines += _lines(change, style)
+            lines += _render_change(change, style)
         lines.append("")
-    lines += laid_out([LinePart(summary(logic))], style, 0, 2)
+    lines += lay_out([LinePart(summarize(logic))], style, 0, 2)
     return "\n".join(lines)
 
 
-def _lines(change: LogicChange, style: Style) -> Iterator[str]:
-    node = f" ({visible(change.node)})" if change.node else ""
+def _render_change(change: LogicChange, style: Style) -> Iterator[str]:
+    node = f" ({escape(change.node)})" if change.node else ""
     head = [
         LinePart(f"{change.kind:15s}", _ROLES[change.kind]),
-        LinePart((visible(change.topic) or "?") + node, hang=_TOPIC),
-        LinePart("", path=f"{visible(change.path)}:{change.line}"),
+        LinePart((escape(change.topic) or "?") + node, hang=_TOPIC),
+        LinePart("", path=f"{escape(change.path)}:{change.line}"),
     ]
-    yield from laid_out(head, style, 2, 6)
+    yield from lay_out(head, style, 2, 6)
     if change.why:
-        yield from laid_out([LinePart(visible(change.why))], style, 6, 8)
+        yield from lay_out([LinePart(escape(change.why))], style, 6, 8)
     if change.old is not None and change.new is not None:
-        old, new = apart(change.old, change.new)
+        old, new = trim_common_ends(change.old, change.new)
         said = [f"- {old or 'always'}", f"+ {new or 'always'}"]
     else:
         said = [f"{sign} {text}" for sign, text in (("-", change.old), ("+", change.new)) if text]
     for line in said:
-        yield from laid_out([LinePart(visible(line), "dim")], style, 6, 8)
+        yield from lay_out([LinePart(escape(line), "dim")], style, 6, 8)
     for number, reached in enumerate(change.reaches):
         if number == _MOST_READERS:
-            yield f"      and {counted(len(change.reaches) - number, 'further subscriber')}"
+            yield f"      and {format_count(len(change.reaches) - number, 'further subscriber')}"
             break
         callback = f", {reached.callback}" if reached.callback else ""
-        who = LinePart(f"reaches {visible((reached.node or reached.package) + callback)}")
-        yield from laid_out([who, LinePart("", path=f"{visible(reached.path)}:{reached.line}")], style, 6, 8)
+        who = LinePart(f"reaches {escape((reached.node or reached.package) + callback)}")
+        yield from lay_out([who, LinePart("", path=f"{escape(reached.path)}:{reached.line}")], style, 6, 8)
 
 
-def apart(old: str, new: str) -> tuple[str, str]:
+def trim_common_ends(old: str, new: str) -> tuple[str, str]:
     """Two long conditions without most of what they begin and end with alike, for people to see where they differ."""
     if max(len(old), len(new)) <= _LONG:
         return old, new
@@ -75,13 +75,13 @@ def apart(old: str, new: str) -> tuple[str, str]:
     last = next((n for n in range(least - first) if before[-1 - n] != after[-1 - n]), least - first)
     first, last = max(0, first - 1), max(0, last - 1)
 
-    def middle(parts: list[str]) -> str:
+    def cut_middle(parts: list[str]) -> str:
         return "… " * (first > 0) + "".join(parts[first : len(parts) - last]) + "…" * (last > 0)
 
-    return middle(before), middle(after)
+    return cut_middle(before), cut_middle(after)
 
 
-def missed(logic: Logic, chosen: Logic, packages: Sequence[str], topics: Sequence[str]) -> str:
+def describe_missed(logic: Logic, chosen: Logic, packages: Sequence[str], topics: Sequence[str]) -> str:
     """Where nothing of what was asked for changed, and something else did: what that is of, for a name written wrongly
     to be seen. Empty otherwise."""
     if chosen.changes or not logic.changes:
@@ -93,17 +93,17 @@ def missed(logic: Logic, chosen: Logic, packages: Sequence[str], topics: Sequenc
         names = sorted({name_of(change) or "?" for _, change in logic.changes})
         rest = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
         clauses.append(f"{option}: nothing of it changed; what did is of {', '.join(names[:_MOST_NAMES])}{rest}")
-    return "; ".join(map(visible, clauses))
+    return "; ".join(map(escape, clauses))
 
 
-def summary(logic: Logic) -> str:
+def summarize(logic: Logic) -> str:
     """What was found and what was looked at, on one line."""
     counts = Counter(change.kind for _, change in logic.changes)
     told = [f"{counts[kind]} {kind}" for kind in KINDS if counts[kind]]
     found = ", ".join(told) or "no change of the logic of publishing"
     coverage = logic.coverage
     parts = [
-        f"{counted(coverage.commits, 'commit')} of {visible(logic.repository)} ({visible(logic.range)})",
+        f"{format_count(coverage.commits, 'commit')} of {escape(logic.repository)} ({escape(logic.range)})",
         f"{coverage.compared:,} compared",
     ]
     if coverage.cut_off:
@@ -111,13 +111,13 @@ def summary(logic: Logic) -> str:
     if coverage.packages:
         known = coverage.statements - coverage.unresolved
         parts.append(
-            f"at the newest {counted(coverage.packages, 'package')} with "
-            f"{counted(coverage.statements, 'publish statement')}, topics of {known:,} known"
+            f"at the newest {format_count(coverage.packages, 'package')} with "
+            f"{format_count(coverage.statements, 'publish statement')}, topics of {known:,} known"
         )
     return f"{found}; {'; '.join(parts)}"
 
 
-def as_json(logic: Logic, version: str) -> str:
+def render_json(logic: Logic, version: str) -> str:
     """The changes as JSON; docs/logic.md describes it."""
     document: dict[str, Any] = {
         "schema": SCHEMA,
@@ -125,13 +125,13 @@ def as_json(logic: Logic, version: str) -> str:
         "repository": logic.repository,
         "range": logic.range,
         "commits": logic.coverage.commits,
-        "changes": [_entry(commit, change) for commit, change in logic.changes],
+        "changes": [_build_entry(commit, change) for commit, change in logic.changes],
         "coverage": msgspec.to_builtins(logic.coverage),
     }
-    return json_text(document)
+    return format_json(document)
 
 
-def _entry(commit: Commit, change: LogicChange) -> dict[str, Any]:
+def _build_entry(commit: Commit, change: LogicChange) -> dict[str, Any]:
     entry = {"commit": commit.id, "date": commit.date, "summary": commit.summary, **msgspec.to_builtins(change)}
     entry["reaches"] = entry.pop("reaches")  # comes last
     return entry

@@ -3,48 +3,48 @@
 import re
 from collections.abc import Callable
 
-from ...edges.console import counted
-from ..analysis.report import Report, count_by_severity, coverage_text, fresh, severities_text
+from ...edges.console import format_count
+from ..analysis.report import Report, count_by_severity, format_coverage, format_severities, list_new
 from ..rules.rule import Finding
-from .markdown_text import _LONGEST, code, escaped
+from .markdown_text import _LONGEST, escape_markdown, quote
 
 _LINES = 10
 _SYMBOL = {"error": "❌", "warning": "⚠️", "note": "💡"}
 def render(report: Report) -> str:
     """Markdown of at most ten lines: the verdict by target, the worst findings, what they rest on."""
-    findings = fresh(report)
-    head = [f"**rosimpact** {verdict(report)}", ""]
-    tail = ["", f"<sub>{_tail(report, findings)}</sub>"]
+    findings = list_new(report)
+    head = [f"**rosimpact** {format_verdict(report)}", ""]
+    tail = ["", f"<sub>{_render_tail(report, findings)}</sub>"]
     order = {"error": 0, "warning": 1}
     told = sorted((each for each in findings if each.severity in order), key=lambda each: order[each.severity])
     if report.impact is not None and report.impact.effects:
-        from .impact import summary
+        from .impact import summarize
 
-        tail.insert(0, f"\nMessage flow: {escaped(summary(report.impact))}")
+        tail.insert(0, f"\nMessage flow: {escape_markdown(summarize(report.impact))}")
     room = _LINES - len(head) - len("\n".join(tail).split("\n"))
     alike: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
     for finding in told:
         alike.setdefault((finding.rule, finding.severity, finding.message, finding.targets), []).append(finding)
     groups = list(alike.values())
     left = groups[room - 1 :] if len(groups) > room else []
-    rows = [_row(report, group) for group in groups[: len(groups) - len(left)]]
+    rows = [_render_row(report, group) for group in groups[: len(groups) - len(left)]]
     if left:
-        rows.append(f"- and {severities_text(finding for group in left for finding in group)} more")
+        rows.append(f"- and {format_severities(finding for group in left for finding in group)} more")
     return "\n".join([*head, *rows, *tail] if rows else [head[0], *tail]) + "\n"
 
 
-def verdict(report: Report, written: Callable[[str], str] | None = None, strong: str = "**") -> str:
+def format_verdict(report: Report, written: Callable[[str], str] | None = None, strong: str = "**") -> str:
     """`breaks on robot: 2; may break on rolling: 1; safe on: humble, jazzy`.
 
     written: how names and the failure are written, as in Markdown by default. strong: what stands around what breaks.
     """
-    written = written or escaped
+    written = written or escape_markdown
     if report.failure:
         return f"failed: {written(report.failure)}"
     if not report.coverage.parsed:
         return "analysed nothing"
     by_target = {
-        target.name: count_by_severity(f for f in fresh(report) if not f.targets or target.name in f.targets)
+        target.name: count_by_severity(f for f in list_new(report) if not f.targets or target.name in f.targets)
         for target in report.targets
     }
     bad = [f"{strong}{written(name)}{strong}: {cell['error']}" for name, cell in by_target.items() if cell["error"]]
@@ -60,30 +60,30 @@ def verdict(report: Report, written: Callable[[str], str] | None = None, strong:
     return "; ".join(parts) or "found no target to check"
 
 
-def _row(report: Report, alike: list[Finding]) -> str:
+def _render_row(report: Report, alike: list[Finding]) -> str:
     """One line for findings that say the same, with the first place of them."""
     finding = alike[0]
     place = finding.path + (f":{finding.line}" if finding.line else "")
-    others = f" and {counted(len(alike) - 1, 'more place')}:" if len(alike) > 1 else ""
+    others = f" and {format_count(len(alike) - 1, 'more place')}:" if len(alike) > 1 else ""
     told = set(re.split(r"[\s,;()]+", finding.message)).issuperset(finding.targets)
     everywhere = len(finding.targets) == len(report.targets)
-    names = "" if told or everywhere else f" ({escaped(', '.join(finding.targets))})"
-    text = f"- {_SYMBOL[finding.severity]} {code(place)}{others} {escaped(_short(finding.message))}{names}"
-    return text + (f"; {escaped(_short(finding.help))}" if finding.help else "")
+    names = "" if told or everywhere else f" ({escape_markdown(', '.join(finding.targets))})"
+    text = f"- {_SYMBOL[finding.severity]} {quote(place)}{others} {escape_markdown(_shorten(finding.message))}{names}"
+    return text + (f"; {escape_markdown(_shorten(finding.help))}" if finding.help else "")
 
 
-def _short(text: str) -> str:
+def _shorten(text: str) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 1] + "…"
 
 
-def _tail(report: Report, findings: list[Finding]) -> str:
-    parts = [coverage_text(report.coverage)]
+def _render_tail(report: Report, findings: list[Finding]) -> str:
+    parts = [format_coverage(report.coverage)]
     notes = count_by_severity(findings)["note"]
-    parts += [counted(notes, "note")] if notes else []
-    parts += [f"new against {code(report.base)}"] if report.base else []
+    parts += [format_count(notes, "note")] if notes else []
+    parts += [f"new against {quote(report.base)}"] if report.base else []
     parts += [f"{len(report.suppressed):,} suppressed"] if report.suppressed else []
     parts += [f"{len(report.known):,} in the baseline"] if report.known else []
-    parts.append(f"rosimpact {escaped(report.version)}, data of {escaped(report.data)}")
+    parts.append(f"rosimpact {escape_markdown(report.version)}, data of {escape_markdown(report.data)}")
     return " · ".join(parts)
 
 

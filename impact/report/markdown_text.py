@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from ...edges.console import visible
+from ...edges.console import escape
 
 _LONGEST = 300
 _SPAN = re.compile(r"(`[^`]+`)")
@@ -12,33 +12,33 @@ _LINKED = re.compile(r"@(?=\w)|#(?=\d)|\$|://|\bwww\.|\b(?:mailto|xmpp):|\bGH-(?
 _COMMIT = re.compile(r"\b[0-9a-f]{7,40}\b", re.IGNORECASE)
 
 
-def escaped(text: str) -> str:
+def escape_markdown(text: str) -> str:
     """Text that Markdown shows as it is on one line: what stands in single backticks is code, all else is inert.
 
     Words that GitHub makes a link of (mentions, issues, commits, addresses) are code too: nothing else stops it.
     """
     parts: list[str] = []
-    for index, part in enumerate(_SPAN.split(visible(text))):
-        shown = code(part[1:-1]) if index % 2 else _without_links(part)
+    for index, part in enumerate(_SPAN.split(escape(text))):
+        shown = quote(part[1:-1]) if index % 2 else _disable_links(part)
         # Two spans that touch would be one with other ends.
         touches = parts and parts[-1].endswith("`") and shown.startswith("`")
         parts += [f" {shown}" if touches else shown] if shown else []
     return "".join(parts)
 
 
-def _without_links(text: str) -> str:
+def _disable_links(text: str) -> str:
     parts: list[str] = []
     last = 0
-    for match in _links(text):
+    for match in _find_links(text):
         word = match[0].rstrip(_BEHIND)
         inner = word.lstrip(_BEFORE)
         start = match.start() + len(word) - len(inner)
-        parts += [_inert(text[last:start]), code(inner) if inner else ""]
+        parts += [_escape_markup(text[last:start]), quote(inner) if inner else ""]
         last = start + len(inner)
-    return "".join([*parts, _inert(text[last:])])
+    return "".join([*parts, _escape_markup(text[last:])])
 
 
-def _links(text: str) -> Iterator[re.Match[str]]:
+def _find_links(text: str) -> Iterator[re.Match[str]]:
     """Words, or commits in them, that GitHub makes a link of."""
     for word in _WORD.finditer(text):
         if _LINKED.search(word[0]):
@@ -47,20 +47,20 @@ def _links(text: str) -> Iterator[re.Match[str]]:
             yield from _COMMIT.finditer(text, *word.span())
 
 
-def _inert(text: str) -> str:
+def _escape_markup(text: str) -> str:
     return re.sub(r"[\\`*_~\[\]<>&|$]", r"\\\g<0>", text)
 
 
-def code(text: str) -> str:
+def quote(text: str) -> str:
     """Text as inline code on one line, whatever backticks it holds."""
-    text = visible(text)
+    text = escape(text)
     longest = max((len(run) for run in re.findall("`+", text)), default=0)
     fence = "`" * (longest + 1)
     pad = " " if not text or text.startswith("`") or text.endswith("`") else ""
     return f"{fence}{pad}{text}{pad}{fence}"
 
 
-def cell(markdown: str) -> str:
+def format_cell(markdown: str) -> str:
     """Markdown of one line as a table's cell holds it: a bar is escaped there even in code."""
     return re.sub(r"\\(?=\|)", r"\\ ", markdown.replace("\\|", "|")).replace("|", "\\|")
 

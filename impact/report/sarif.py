@@ -5,11 +5,11 @@ import re
 from typing import Any
 from urllib.parse import quote
 
-from ...edges.console import escape_json, visible, visible_bytes_in_json
-from ..analysis.report import Report, focus
+from ...edges.console import escape, escape_bytes_in_json, escape_json
+from ..analysis.report import Report, locate_in_excerpt
 from ..rules.rule import Edit, Finding, Rule
 from . import evidence
-from .json import target_as_data
+from .json import build_target_data
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _ROOT = "%SRCROOT%"
@@ -23,7 +23,7 @@ def render(report: Report) -> str:
         *((finding, [{"kind": "external", "justification": "in the baseline"}]) for finding in report.known),
     ]
     known = {rule.name: rule for rule in report.rules()}
-    rules = [_rule(name, known.get(name)) for name in sorted({finding.rule for finding, _ in results})]
+    rules = [_build_rule(name, known.get(name)) for name in sorted({finding.rule for finding, _ in results})]
     index = {rule["id"]: position for position, rule in enumerate(rules)}
     run = {
         "tool": {
@@ -34,12 +34,12 @@ def render(report: Report) -> str:
                 "rules": rules,
             }
         },
-        "invocations": [_invocation(report)],
+        "invocations": [_build_invocation(report)],
         "originalUriBaseIds": {_ROOT: {"description": {"text": "the root of the workspace"}}},
         "columnKind": "unicodeCodePoints",
-        "results": [_result(report, finding, silent, index) for finding, silent in results],
+        "results": [_render(report, finding, silent, index) for finding, silent in results],
         "properties": {
-            "targets": list(map(target_as_data, report.targets)),
+            "targets": list(map(build_target_data, report.targets)),
             "data": report.data,
             "coverage": report.coverage._asdict() | {"unresolved": dict(report.coverage.unresolved)},
         }
@@ -48,10 +48,10 @@ def render(report: Report) -> str:
     if not re.fullmatch(r"\d+\.\d+\.\d+(?:[-+].*)?", report.version):
         del run["tool"]["driver"]["semanticVersion"]
     log = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
-    return escape_json(visible_bytes_in_json(json.dumps(log, ensure_ascii=False, indent=1))) + "\n"
+    return escape_json(escape_bytes_in_json(json.dumps(log, ensure_ascii=False, indent=1))) + "\n"
 
 
-def _invocation(report: Report) -> dict[str, Any]:
+def _build_invocation(report: Report) -> dict[str, Any]:
     covered = report.coverage
     notices = [{"level": "error", "message": {"text": report.failure}}] if report.failure else []
     if covered.parsed < covered.files:
@@ -61,7 +61,7 @@ def _invocation(report: Report) -> dict[str, Any]:
     return invocation | ({"toolExecutionNotifications": notices} if notices else {})
 
 
-def _rule(name: str, rule: Rule | None) -> dict[str, Any]:
+def _build_rule(name: str, rule: Rule | None) -> dict[str, Any]:
     """The descriptor of a rule that has results, with its documentation as help."""
     if rule is None or not rule.documentation.strip():
         return {"id": name}
@@ -74,13 +74,13 @@ def _rule(name: str, rule: Rule | None) -> dict[str, Any]:
         "name": "".join(part.title() for part in name.split("-")),
         "shortDescription": {"text": short},
         "fullDescription": {"text": full},
-        "help": {"text": rule.documentation.strip(), "markdown": _help(body) or short},
+        "help": {"text": rule.documentation.strip(), "markdown": _render_help(body) or short},
         "defaultConfiguration": {"level": rule.severity},
         "properties": {"tags": ["ros", rule.family], "precision": "medium" if rule.preview else "high"},
     }
 
 
-def _help(body: str) -> str:
+def _render_help(body: str) -> str:
     """A rule's documentation as Markdown: its sections become headings, examples code blocks."""
     lines: list[str] = []
     code = False
@@ -96,33 +96,33 @@ def _help(body: str) -> str:
     return "\n".join(lines + (["```"] if code else []))
 
 
-def _result(report: Report, finding: Finding, silent: list[dict[str, str]], index: dict[str, int]) -> dict[str, Any]:
-    shown = "".join(f"\n{label}: {line}" for label, line in evidence.lines(finding))
-    text = _without_links(finding.message + shown + (f"\nhelp: {finding.help}" if finding.help else ""))
+def _render(report: Report, finding: Finding, silent: list[dict[str, str]], index: dict[str, int]) -> dict[str, Any]:
+    shown = "".join(f"\n{label}: {line}" for label, line in evidence.format_lines(finding))
+    text = _escape_links(finding.message + shown + (f"\nhelp: {finding.help}" if finding.help else ""))
     result: dict[str, Any] = {
         "ruleId": finding.rule,
         "ruleIndex": index[finding.rule],
         "level": finding.severity,
         "message": {"text": text},
-        "locations": [_location(report, finding)],
+        "locations": [_build_location(report, finding)],
         "partialFingerprints": {"rosimpact/v1": finding.fingerprint},
         "properties": {
             "targets": list(finding.targets),
             "package": finding.package,
             "subject": finding.subject,
         }
-        | ({"evidence": evidence.as_object(finding.evidence)} if finding.evidence is not None else {}),
+        | ({"evidence": evidence.make_object(finding.evidence)} if finding.evidence is not None else {}),
     }
     if report.base:
         result["baselineState"] = "new" if finding.new else "unchanged"
     if silent:
         result["suppressions"] = silent
     if any(isinstance(part, Edit) for part in finding.fix):
-        result["fixes"] = [_fix(finding)]
+        result["fixes"] = [_build_fix(finding)]
     return result
 
 
-def _without_links(text: str) -> str:
+def _escape_links(text: str) -> str:
     """A message in which `[text](target)` is no link (SARIF 3.11.6): names and declarations may look like one."""
     return re.sub(r"\[(?=[^\[\]]*\]\()", r"\\[", text)
 
@@ -131,12 +131,12 @@ def _without_links(text: str) -> str:
 _LONGEST_SNIPPET = 10_000
 
 
-def _location(report: Report, finding: Finding) -> dict[str, Any]:
-    place: dict[str, Any] = {"artifactLocation": _artifact(finding.path)}
+def _build_location(report: Report, finding: Finding) -> dict[str, Any]:
+    place: dict[str, Any] = {"artifactLocation": _build_artifact(finding.path)}
     if finding.line:
         region: dict[str, Any] = {"startLine": finding.line}
         lines = report.excerpt(finding.path, finding.line)
-        first, shown = focus(finding, lines)
+        first, shown = locate_in_excerpt(finding, lines)
         brief = sum(map(len, lines)) <= _LONGEST_SNIPPET
         if shown is not None:
             if brief:
@@ -161,17 +161,17 @@ def _location(report: Report, finding: Finding) -> dict[str, Any]:
     return location
 
 
-def _artifact(path: str) -> dict[str, str]:
+def _build_artifact(path: str) -> dict[str, str]:
     """A path as a relative URI; one that is empty stands for the root itself."""
     # A first segment with a colon would read as a scheme (RFC 3986, 4.2); quote escapes colons, so that it cannot.
     try:
         data = path.encode("utf-8", "surrogateescape")
     except UnicodeEncodeError:
-        data = visible(path).encode()
+        data = escape(path).encode()
     return {"uri": quote(data, safe="/") or "./", "uriBaseId": _ROOT}
 
 
-def _fix(finding: Finding) -> dict[str, Any]:
+def _build_fix(finding: Finding) -> dict[str, Any]:
     by_path: dict[str, list[Edit]] = {}
     for edit in finding.fix:
         if isinstance(edit, Edit):
@@ -180,7 +180,7 @@ def _fix(finding: Finding) -> dict[str, Any]:
         "description": {"text": finding.help or "apply the fix"},
         "artifactChanges": [
             {
-                "artifactLocation": _artifact(path),
+                "artifactLocation": _build_artifact(path),
                 "replacements": [
                     {
                         "deletedRegion": {"byteOffset": edit.start, "byteLength": edit.end - edit.start},

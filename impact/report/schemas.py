@@ -9,7 +9,7 @@ STABLE = "Fields may be added without a new schema number; none is removed, rena
 """What every schema promises."""
 
 
-def generated_schema(
+def generate_schema(
     title: str, description: str, properties: Mapping[str, Any], parts: dict[str, Any], further: Mapping[str, Any]
 ) -> str:
     """A JSON schema (draft 2020-12) as text, of which msgspec made the parts. further: what need not be there."""

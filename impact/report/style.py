@@ -24,7 +24,7 @@ ASCII_SYMBOLS = ("x", "!", ".", "->", "-")
 PLAIN = Style()
 
 
-def style_for(stream: TextIO, *, severities: tuple[str, ...] = PLAIN.severities) -> Style:
+def choose_style(stream: TextIO, *, severities: tuple[str, ...] = PLAIN.severities) -> Style:
     """The style that suits a stream: colours on a terminal unless NO_COLOR is set or TERM is dumb (FORCE_COLOR asks for
     them elsewhere), ASCII where the encoding is not Unicode, the terminal's width."""
     encoding = (getattr(stream, "encoding", None) or "ascii").lower().replace("-", "")
@@ -42,6 +42,6 @@ def style_for(stream: TextIO, *, severities: tuple[str, ...] = PLAIN.severities)
     )
 
 
-def painted(style: Style, role: str, text: str) -> str:
+def paint(style: Style, role: str, text: str) -> str:
     code = style.colours.get(role)
     return f"\x1b[{code}m{text}\x1b[0m" if code else text

@@ -6,14 +6,14 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from ...edges.console import json_text, visible
-from ..facts.surface import FUNCTIONS, declared
+from ...edges.console import escape, format_json
+from ..facts.surface import FUNCTIONS, format_declaration
 from ..targets.surface.changes import VersionChange
-from ..targets.surface.python import SurfaceNames, signature
+from ..targets.surface.python import SurfaceNames, write_signature
 from ..targets.surface.surface import Surface
-from .columns import LinePart, laid_out
-from .markdown_text import cell, code, escaped
-from .style import Style, painted
+from .columns import LinePart, lay_out
+from .markdown_text import escape_markdown, format_cell, quote
+from .style import Style, paint
 
 
 class VersionSource(NamedTuple):
@@ -46,7 +46,7 @@ _TITLES = {
 _ROLES = {"breaks": "error", "may break": "warning", "deprecated": "warning", "changed": "note", "added": "good"}
 
 
-def group_of(change: VersionChange) -> str:
+def select_group(change: VersionChange) -> str:
     """Which part of the report a change belongs to."""
     if change.breaks:
         return "breaks" if change.sure >= 0.6 else "may break"
@@ -55,84 +55,84 @@ def group_of(change: VersionChange) -> str:
     return "added" if change.kind == "added" else "changed"
 
 
-def diff_text(found: SurfaceDifference, style: Style, everything: bool) -> str:
+def render_diff_text(found: SurfaceDifference, style: Style, everything: bool) -> str:
     """The report for people. everything: what is new and what changed harmlessly one by one too, else as numbers."""
     lines: list[str] = []
     for package, changes in found.changes.items():
-        lines += _heading(package, found, style)
-        groups = {name: [c for c in changes if group_of(c) == name] for name in _GROUPS}
+        lines += _render_heading(package, found, style)
+        groups = {name: [c for c in changes if select_group(c) == name] for name in _GROUPS}
         for name in _GROUPS:
             if not groups[name]:
                 continue
             title = f"{_TITLES[name]}: {len(groups[name])}"
             if name in ("changed", "added") and not everything:
                 counts = Counter(c.what for c in groups[name])
-                told = ", ".join(f"{number} {_plural(what, number)}" for what, number in counts.most_common())
-                lines += ["", *laid_out([LinePart(f"{title} ({told})", "dim")], style, 0, 2)]
+                told = ", ".join(f"{number} {_pluralize(what, number)}" for what, number in counts.most_common())
+                lines += ["", *lay_out([LinePart(f"{title} ({told})", "dim")], style, 0, 2)]
                 continue
-            lines += ["", painted(style, _ROLES[name], title)]
+            lines += ["", paint(style, _ROLES[name], title)]
             at = ""
             for change in sorted(groups[name], key=lambda c: (c.side, c.where)):
                 if change.where != at and change.where not in ("", change.name):
-                    lines += laid_out([LinePart("in ", "dim", change.where)], style, 2, 4)
+                    lines += lay_out([LinePart("in ", "dim", change.where)], style, 2, 4)
                 at = change.where
-                lines += _change(change, style)
+                lines += _render_change(change, style)
         if not changes:
             lines += ["", "nothing changed"]
         lines.append("")
-    if not everything and any(group_of(c) in ("changed", "added") for each in found.changes.values() for c in each):
-        lines += [painted(style, "dim", "--all lists what is new and what still builds"), ""]
+    if not everything and any(select_group(c) in ("changed", "added") for each in found.changes.values() for c in each):
+        lines += [paint(style, "dim", "--all lists what is new and what still builds"), ""]
     return "\n".join(lines[:-1]) + "\n"
 
 
-def _heading(package: str, found: SurfaceDifference, style: Style) -> list[str]:
+def _render_heading(package: str, found: SurfaceDifference, style: Style) -> list[str]:
     arrow = style.symbols[3]
-    lines = [painted(style, "bold", visible(f"package {package} {_short(found.old)} {arrow} {_short(found.new)}"))]
+    lines = [paint(style, "bold", escape(f"package {package} {_shorten(found.old)} {arrow} {_shorten(found.new)}"))]
     for source in (found.old, found.new):
-        lines += _source(source, style)
+        lines += _render(source, style)
     return lines
 
 
-def _short(source: VersionSource) -> str:
+def _shorten(source: VersionSource) -> str:
     return f"{source.version} ({source.asked})" if source.version not in ("", source.asked) else source.asked
 
 
-def _lacking(source: VersionSource) -> str:
+def _explain_approximation(source: VersionSource) -> str:
     if source.revision == source.version:
         return "it was read at a branch"
     return f"{source.version} is not there"
 
 
-def _source(source: VersionSource, style: Style) -> Iterator[str]:
+def _render(source: VersionSource, style: Style) -> Iterator[str]:
     text = f"{source.asked}: {source.revision} of {source.repository}"
     if source.approximate:
-        text += f"; {_lacking(source)}, so this is approximate"
-    yield from laid_out([LinePart(text, "warning" if source.approximate else "dim")], style, 2, 4)
+        text += f"; {_explain_approximation(source)}, so this is approximate"
+    yield from lay_out([LinePart(text, "warning" if source.approximate else "dim")], style, 2, 4)
 
 
-def _change(change: VersionChange, style: Style) -> Iterator[str]:
+def _render_change(change: VersionChange, style: Style) -> Iterator[str]:
     aspects = f" ({', '.join(change.aspects)})" if change.aspects and change.kind != "removed" else ""
     word = "overload removed" if change.kind == "removed" and "overload" in change.aspects else change.kind
     pieces = [LinePart(f"{word} {change.what}{aspects}"), LinePart(change.name, "bold")]
     if change.sure < 0.6:
         pieces.append(LinePart("not sure", "dim"))
-    yield from laid_out(pieces, style, 2, 4)
+    yield from lay_out(pieces, style, 2, 4)
     for mark, text in (("- ", change.old), ("+ ", change.now)):
         if text:
-            yield from laid_out([LinePart(mark + text)], style, 4, 8)
-    help_ = instead_of(change)
+            yield from lay_out([LinePart(mark + text)], style, 4, 8)
+    help_ = describe_remedy(change)
     if help_:
-        yield from laid_out([LinePart(help_, "help")], style, 4, 6)
+        yield from lay_out([LinePart(help_, "help")], style, 4, 6)
 
 
-def with_hashes(change: VersionChange, old: Mapping[str, str], new: Mapping[str, str]) -> VersionChange:
+def add_hashes(change: VersionChange, old: Mapping[str, str], new: Mapping[str, str]) -> VersionChange:
     """A change of what goes over the wire, with the hashes of the interface where both are known. old, new: by
     `msg/Name`."""
     name = change.name.partition("/")[2]
     return msgspec.structs.replace(change, old=old[name], now=new[name]) if name in old and name in new else change
 
 
-def instead_of(change: VersionChange) -> str:
+def describe_remedy(change: VersionChange) -> str:
     """What to do now, in a clause; empty where that is not known."""
     told = []
     if change.instead:
@@ -142,28 +142,36 @@ def instead_of(change: VersionChange) -> str:
     return f"help: {', '.join(told)}" if told else ""
 
 
-def _plural(what: str, number: int) -> str:
+def _pluralize(what: str, number: int) -> str:
     if number == 1:
         return what
     return f"{what[:-1]}ies" if what.endswith("y") else f"{what}es" if what.endswith(("s", "sh")) else f"{what}s"
 
 
-def diff_markdown(found: SurfaceDifference) -> str:
+def render_diff_markdown(found: SurfaceDifference) -> str:
     """The report as Markdown, for a pull request or a wiki."""
     lines: list[str] = []
     for package, changes in found.changes.items():
-        lines += [f"## {escaped(package)} {escaped(_short(found.old))} → {escaped(_short(found.new))}", ""]
+        lines += [
+            f"## {escape_markdown(package)} {escape_markdown(_shorten(found.old))}"
+            f" → {escape_markdown(_shorten(found.new))}",
+            "",
+        ]
         for source in (found.old, found.new):
             if source.approximate:
-                lines += [f"{code(source.revision)} of {escaped(source.repository)}: {escaped(_lacking(source))}.", ""]
+                lines += [
+                    f"{quote(source.revision)} of {escape_markdown(source.repository)}: "
+                    f"{escape_markdown(_explain_approximation(source))}.",
+                    "",
+                ]
         for name in _GROUPS:
-            these = [c for c in changes if group_of(c) == name]
+            these = [c for c in changes if select_group(c) == name]
             if not these:
                 continue
             lines += [f"### {_TITLES[name]}: {len(these)}", "", "| what | name | old | new |", "|---|---|---|---|"]
             for change in these:
-                now = change.now or instead_of(change).removeprefix("help: ")
-                cells = (f"{change.kind} {change.what}", _code(change.name), _code(change.old), _code(now))
+                now = change.now or describe_remedy(change).removeprefix("help: ")
+                cells = (f"{change.kind} {change.what}", _quote(change.name), _quote(change.old), _quote(now))
                 lines.append(f"| {' | '.join(cells)} |")
             lines.append("")
         if not changes:
@@ -171,18 +179,18 @@ def diff_markdown(found: SurfaceDifference) -> str:
     return "\n".join(lines)
 
 
-def _code(text: str) -> str:
-    return cell(code(text)) if text else ""
+def _quote(text: str) -> str:
+    return format_cell(quote(text)) if text else ""
 
 
-def diff_json(found: SurfaceDifference, tool: str) -> str:
+def render_diff_json(found: SurfaceDifference, tool: str) -> str:
     """The report as JSON: `tool`, `old` and `new` (see Source), `changes` (see Change)."""
     changes = [change for each in found.changes.values() for change in each]
-    return _json({"tool": tool, "old": found.old._asdict(), "new": found.new._asdict(), "changes": changes})
+    return _dump_json({"tool": tool, "old": found.old._asdict(), "new": found.new._asdict(), "changes": changes})
 
 
-def _json(value: Any) -> str:
-    return json_text(msgspec.to_builtins(value)) + "\n"
+def _dump_json(value: Any) -> str:
+    return format_json(msgspec.to_builtins(value)) + "\n"
 
 
 _NONE: Mapping[str, str] = {}
@@ -200,7 +208,7 @@ class OfferedItem(NamedTuple):
     deprecated: str | None = None
 
 
-def items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[OfferedItem]:
+def iterate_items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[OfferedItem]:
     """All that a package offers, part by part. hashes: of its interfaces, by `msg/Name`, as far as they are known."""
     for name, definition in surface.interfaces:
         full = f"{surface.package}/{name}"
@@ -225,16 +233,16 @@ def items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[OfferedItem]:
         yield OfferedItem("C++", "header", path, deprecated=header.deprecated)
         for one in header.entities:
             if one.kind != "using namespace" and not one.internal and one.access != "private":
-                yield OfferedItem("C++", one.kind, one.name, declared(one), path, one.deprecated)
+                yield OfferedItem("C++", one.kind, one.name, format_declaration(one), path, one.deprecated)
     names = SurfaceNames(surface.python)
     for module in surface.python.modules:
         yield OfferedItem("Python", "module", module.name, where=module.path)
     for name, entry in sorted(names.offered.items()):
-        shown = signature(entry.bound.parameters) if entry.bound and entry.kind in ("function", "method") else ""
+        shown = write_signature(entry.bound.parameters) if entry.bound and entry.kind in ("function", "method") else ""
         deprecated = (entry.bound.deprecated or None) if entry.bound else None
         yield OfferedItem("Python", entry.kind, name, shown, deprecated=deprecated)
-        for member, inner in names.members(entry).items() if entry.kind == "class" and entry.where == name else ():
-            shown = signature(inner.bound.parameters) if inner.bound and "method" in inner.kind else ""
+        for member, inner in names.list_members(entry).items() if entry.kind == "class" and entry.where == name else ():
+            shown = write_signature(inner.bound.parameters) if inner.bound and "method" in inner.kind else ""
             yield OfferedItem("Python", inner.kind, f"{name}.{member}", shown)
     build = surface.build
     yield from (OfferedItem("CMake", "cmake package", name) for name in build.cmake_names)
@@ -255,22 +263,22 @@ def show_text(
     """What a package offers, for people. everything: members of classes, constants and macros too. hashes: see
     items()."""
     build = surface.build
-    lines = [painted(style, "bold", visible(f"package {surface.package} {_short(source)}")), *_source(source, style)]
+    lines = [paint(style, "bold", escape(f"package {surface.package} {_shorten(source)}")), *_render(source, style)]
     facts = [f"build type {build.build_type}"]
     if build.standard:
         facts.append(f"C++{build.standard}")
     if build.dependencies:
         facts.append(f"passes on {', '.join(build.dependencies)}")
-    lines += laid_out([LinePart("; ".join(facts))], style, 2, 4)
+    lines += lay_out([LinePart("; ".join(facts))], style, 2, 4)
     if surface.guessed:
-        lines += laid_out([LinePart("the build does not tell which headers are installed; those of include/ are listed",
+        lines += lay_out([LinePart("the build does not tell which headers are installed; those of include/ are listed",
                                  "warning")], style, 2, 4)  # fmt: skip
     last = ""
-    for item in items(surface, hashes):
+    for item in iterate_items(surface, hashes):
         if not everything and item.part != "Interfaces" and item.what in _DETAILS:
             continue
         if item.part != last:
-            lines += ["", painted(style, "bold", item.part)]
+            lines += ["", paint(style, "bold", item.part)]
             last = item.part
         inner = item.part == "C++" and item.what != "header"
         written = item.part == "C++" and item.what in _WRITTEN
@@ -279,11 +287,11 @@ def show_text(
             pieces.append(LinePart(item.declaration, "dim"))
         if item.deprecated is not None:
             pieces.append(LinePart(f"deprecated: {item.deprecated}" if item.deprecated else "deprecated", "warning"))
-        lines += laid_out(pieces, style, 4 if inner else 2, 8)
+        lines += lay_out(pieces, style, 4 if inner else 2, 8)
     if surface.build.unknown:
-        lines += ["", painted(style, "bold", "Not known")]
+        lines += ["", paint(style, "bold", "Not known")]
         for part, why in surface.build.unknown:
-            lines += laid_out([LinePart(f"{part}: {why}")], style, 2, 4)
+            lines += lay_out([LinePart(f"{part}: {why}")], style, 2, 4)
     return "\n".join(lines) + "\n"
 
 
@@ -294,21 +302,21 @@ _WRITTEN = FUNCTIONS | {"class", "struct", "union", "enum", "alias", "variable",
 
 def show_json(surface: Surface, source: VersionSource, tool: str, hashes: Mapping[str, str] = _NONE) -> str:
     """What a package offers as JSON: `tool`, `source` (see Source), `package`, `items` (see Item), `unknown`."""
-    return _json({
+    return _dump_json({
         "tool": tool,
         "source": source._asdict(),
         "package": surface.package,
         "build_type": surface.build.build_type,
         "standard": surface.build.standard,
         "passes_on": surface.build.dependencies,
-        "items": [item._asdict() for item in items(surface, hashes)],
+        "items": [item._asdict() for item in iterate_items(surface, hashes)],
         "unknown": [{"part": part, "why": why} for part, why in surface.build.unknown],
     })  # fmt: skip
 
 
 def show_markdown(surface: Surface, source: VersionSource, hashes: Mapping[str, str] = _NONE) -> str:
     """What a package offers as a table."""
-    lines = [f"## {escaped(surface.package)} {escaped(_short(source))}", ""]
+    lines = [f"## {escape_markdown(surface.package)} {escape_markdown(_shorten(source))}", ""]
     lines += ["| what | name | declaration |", "|---|---|---|"]
-    lines += [f"| {i.what} | {_code(i.name)} | {_code(i.declaration)} |" for i in items(surface, hashes)]
+    lines += [f"| {i.what} | {_quote(i.name)} | {_quote(i.declaration)} |" for i in iterate_items(surface, hashes)]
     return "\n".join(lines) + "\n"

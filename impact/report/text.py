@@ -2,41 +2,41 @@
 
 from collections import Counter, defaultdict
 
-from ...edges.console import counted, cut_visibly, visible
+from ...edges.console import cut_visibly, escape, format_count
 from ..analysis.report import (
     Report,
     ReportedTarget,
     Shown,
-    cells,
     count_by_severity,
-    coverage_text,
-    focus,
-    fresh,
-    matrix,
+    count_by_target,
+    format_coverage,
+    list_new,
+    locate_in_excerpt,
+    measure,
 )
 from ..rules.rule import Finding
 from . import evidence
-from .style import PLAIN, Style, painted
+from .style import PLAIN, Style, paint
 
 _TAB = "    "
 def render(report: Report, style: Style = PLAIN) -> str:
     """The report as text that ends in a line end."""
-    lines = _targets(report, style)
-    shown = [finding for finding in fresh(report) if finding.severity in style.severities]
-    lines += _packages(report, shown, style)
+    lines = _render_targets(report, style)
+    shown = [finding for finding in list_new(report) if finding.severity in style.severities]
+    lines += _render_packages(report, shown, style)
     if report.impact is not None and report.impact.effects:
-        from .impact import short
+        from .impact import render_short
 
-        lines += ["", painted(style, "bold", "affected by this change")]
-        lines += short(report.impact, style, visible(report.base))
-    table = _matrix(report, style)
+        lines += ["", paint(style, "bold", "affected by this change")]
+        lines += render_short(report.impact, style, escape(report.base))
+    table = _render_matrix(report, style)
     if table:
         lines += ["", *table]
-    lines += ["", _summary(report, style)]
+    lines += ["", _format_summary(report, style)]
     return "\n".join(lines) + "\n"
 
 
-def _targets(report: Report, style: Style) -> list[str]:
+def _render_targets(report: Report, style: Style) -> list[str]:
     """The first line: which targets, and why these; then what was adjusted."""
     if not report.targets:
         return ["targets: none"]
@@ -45,23 +45,23 @@ def _targets(report: Report, style: Style) -> list[str]:
         by_reason.setdefault(target.reason, []).append(target)
     groups = []
     for reason, targets in by_reason.items():
-        names = ", ".join(described(target) for target in targets)
-        groups.append(f"{names}: {visible(reason)}" if reason else names)
-    base = f" (new against {visible(report.base)})" if report.base else ""
-    lines = [painted(style, "bold", "targets ") + "; ".join(groups) + base]
+        names = ", ".join(describe_target(target) for target in targets)
+        groups.append(f"{names}: {escape(reason)}" if reason else names)
+    base = f" (new against {escape(report.base)})" if report.base else ""
+    lines = [paint(style, "bold", "targets ") + "; ".join(groups) + base]
     for target in report.targets:
-        lines += [f"  {visible(target.name)}: {visible(note)}" for note in target.notes]
+        lines += [f"  {escape(target.name)}: {escape(note)}" for note in target.notes]
     return lines
 
 
-def described(target: ReportedTarget) -> str:
+def describe_target(target: ReportedTarget) -> str:
     """A target's name, with what is behind it."""
     parts = [target.distro if target.distro != target.name else "", target.date, target.platform]
     detail = ", ".join(part for part in parts if part)
-    return visible(f"{target.name} ({detail})" if detail else target.name)
+    return escape(f"{target.name} ({detail})" if detail else target.name)
 
 
-def _packages(report: Report, findings: list[Finding], style: Style) -> list[str]:
+def _render_packages(report: Report, findings: list[Finding], style: Style) -> list[str]:
     """Findings grouped by package, packages in their first finding's order, errors before warnings in each."""
     folders = {package.name: package.path for package in report.packages}
     by_package: dict[str, list[Finding]] = defaultdict(list)
@@ -71,7 +71,7 @@ def _packages(report: Report, findings: list[Finding], style: Style) -> list[str
     lines: list[str] = []
     shown: Counter[tuple[str, str]] = Counter()
     for name, group in by_package.items():
-        lines += ["", heading(name, folders.get(name, ""), style)]
+        lines += ["", render_heading(name, folders.get(name, ""), style)]
         # What is said too often is listed where it first was: errors stay before warnings.
         more: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
         parts: list[Finding | list[Finding]] = []
@@ -87,95 +87,95 @@ def _packages(report: Report, findings: list[Finding], style: Style) -> list[str
             alike.append(finding)
         for part in parts:
             several = isinstance(part, list)
-            lines += ["", *(_repeated(report, part, style) if several else finding_lines(report, part, style))]
+            lines += ["", *(_render_repeated(report, part, style) if several else render_finding(report, part, style))]
     return lines
 
 
-def heading(package: str, folder: str, style: Style, word: str = "package ") -> str:
+def render_heading(package: str, folder: str, style: Style, word: str = "package ") -> str:
     """The line above what concerns a package. word: before its name: CI systems read what a line begins with."""
-    title = painted(style, "bold", f"{word}{visible(package)}" if package else "workspace")
+    title = paint(style, "bold", f"{word}{escape(package)}" if package else "workspace")
     shown = folder not in ("", ".", package)
-    return title + (painted(style, "dim", f" {style.symbols[4]} {visible(folder)}") if shown else "")
+    return title + (paint(style, "dim", f" {style.symbols[4]} {escape(folder)}") if shown else "")
 
 
-def _head(report: Report, finding: Finding, style: Style) -> str:
+def _render_head(report: Report, finding: Finding, style: Style) -> str:
     names = [target.name for target in report.targets]
     where = f" {', '.join(finding.targets)}" if len(names) > 1 and finding.targets else ""
     if where and len(finding.targets) == len(names):
         where = " all targets"
-    label = painted(style, finding.severity, f"{finding.severity}[{finding.rule}]")
-    return f"{label}{visible(where)}: {visible(finding.message)}"
+    label = paint(style, finding.severity, f"{finding.severity}[{finding.rule}]")
+    return f"{label}{escape(where)}: {escape(finding.message)}"
 
 
-def place_of(finding: Finding) -> str:
+def format_place(finding: Finding) -> str:
     """Path, line and column, as far as they are known."""
     numbers = (finding.line, finding.column) if finding.line else ()
-    return ":".join((visible(finding.path), *(str(number) for number in numbers if number)))
+    return ":".join((escape(finding.path), *(str(number) for number in numbers if number)))
 
 
-def finding_lines(report: Report, finding: Finding, style: Style) -> list[str]:
+def render_finding(report: Report, finding: Finding, style: Style) -> list[str]:
     """A finding with its place, its code and its help."""
-    lines = [_head(report, finding, style), f"  {painted(style, 'dim', style.symbols[3])} {place_of(finding)}"]
+    lines = [_render_head(report, finding, style), f"  {paint(style, 'dim', style.symbols[3])} {format_place(finding)}"]
     excerpt = report.excerpt(finding.path, finding.line) if finding.line else []
-    _, shown = focus(finding, excerpt)
+    _, shown = locate_in_excerpt(finding, excerpt)
     margin = len(str(finding.line))
-    if shown is not None and (near := _around_caret(shown, style.width)).text.strip():
-        text, offset, width = _clipped(near, style.width - margin - 5)
-        lines.append(f"  {painted(style, 'dim', f'{finding.line} |')} {text}")
+    if shown is not None and (near := _cut_around_caret(shown, style.width)).text.strip():
+        text, offset, width = _clip_line(near, style.width - margin - 5)
+        lines.append(f"  {paint(style, 'dim', f'{finding.line} |')} {text}")
         if width:
-            caret = painted(style, finding.severity, "^" * width)
-            lines.append(f"  {' ' * margin} {painted(style, 'dim', '|')} {' ' * offset}{caret}")
-    for label, text in evidence.lines(finding):
-        shown, room = visible(text), style.width - len(label) - 4
+            caret = paint(style, finding.severity, "^" * width)
+            lines.append(f"  {' ' * margin} {paint(style, 'dim', '|')} {' ' * offset}{caret}")
+    for label, text in evidence.format_lines(finding):
+        shown, room = escape(text), style.width - len(label) - 4
         # Declarations can be long; what they were called comes first.
-        cut = label != "when" and cells(shown) > room
-        lines.append(f"  {painted(style, 'dim', f'{label}:')} {shown[: room - 3] + '...' if cut else shown}")
+        cut = label != "when" and measure(shown) > room
+        lines.append(f"  {paint(style, 'dim', f'{label}:')} {shown[: room - 3] + '...' if cut else shown}")
     if finding.help:
-        lines.append(f"  {painted(style, 'help', 'help:')} {visible(finding.help)}")
+        lines.append(f"  {paint(style, 'help', 'help:')} {escape(finding.help)}")
     return lines
 
 
-def _around_caret(shown: Shown, width: int) -> Shown:
+def _cut_around_caret(shown: Shown, width: int) -> Shown:
     """The part of a very long line that may be shown."""
     far = max(1000, width)
     begins = max(0, shown.start - far)
     return shown._replace(text=shown.text[begins : shown.start + shown.width + far], start=shown.start - begins)
 
 
-def _clipped(shown: Shown, room: int) -> tuple[str, int, int]:
+def _clip_line(shown: Shown, room: int) -> tuple[str, int, int]:
     """(text that fits into room columns, caret offset and width in columns). Leading space goes first, then the far
     ends of the line."""
     pieces = cut_visibly(shown.text, shown.start, shown.start + shown.width)
     before, under, after = (piece.replace("\t", _TAB) for piece in pieces)
     after = after.rstrip()
-    if cells(before) + cells(under) + cells(after) > room:
+    if measure(before) + measure(under) + measure(after) > room:
         before = before.lstrip()
         under = under[:room]
-        left = max(0, room - cells(under))
-        if cells(before) > left // 2 and cells(before) + cells(after) > left:
-            keep = max(left // 2, left - cells(after)) - 3
+        left = max(0, room - measure(under))
+        if measure(before) > left // 2 and measure(before) + measure(after) > left:
+            keep = max(left // 2, left - measure(after)) - 3
             before = "..." + (before[-keep:] if keep > 0 else "")
-        left = max(0, left - cells(before))
-        if cells(after) > left:
+        left = max(0, left - measure(before))
+        if measure(after) > left:
             after = (after[: left - 3] + "...") if left > 3 else ""
-    return before + under + after, cells(before), cells(under)
+    return before + under + after, measure(before), measure(under)
 
 
-def _repeated(report: Report, findings: list[Finding], style: Style) -> list[str]:
+def _render_repeated(report: Report, findings: list[Finding], style: Style) -> list[str]:
     """Findings whose message was shown often enough already: their places only."""
-    places = [f"{visible(finding.path)}:{finding.line}" for finding in findings]
+    places = [f"{escape(finding.path)}:{finding.line}" for finding in findings]
     limit = max(3, style.excerpts)
-    lines = [_head(report, findings[0], style), *(f"  {style.symbols[3]} {place}" for place in places[:limit])]
+    lines = [_render_head(report, findings[0], style), *(f"  {style.symbols[3]} {place}" for place in places[:limit])]
     if len(places) > limit:
-        lines.append(f"  and {counted(len(places) - limit, 'more place')}")
+        lines.append(f"  and {format_count(len(places) - limit, 'more place')}")
     return lines
 
 
-def _matrix(report: Report, style: Style) -> list[str]:
+def _render_matrix(report: Report, style: Style) -> list[str]:
     """Packages by targets: how many errors and warnings. Packages without either share the last row."""
     bad, doubtful, fine = style.symbols[:3]
     names = [target.name for target in report.targets]
-    table = matrix(report)
+    table = count_by_target(report)
     rows: list[tuple[str, list[tuple[str, str]]]] = []
     good = 0
     for package, row in table.items():
@@ -190,7 +190,7 @@ def _matrix(report: Report, style: Style) -> list[str]:
             else:
                 row_cells.append((fine, "good"))
         if any(role != "good" for _, role in row_cells):
-            rows.append((f"  {visible(package or 'workspace')}", row_cells))
+            rows.append((f"  {escape(package or 'workspace')}", row_cells))
         elif package:
             good += 1
     if not rows or not names:
@@ -198,37 +198,37 @@ def _matrix(report: Report, style: Style) -> list[str]:
     if good:
         others = "other package" if good == 1 else "other packages"
         rows.append((f"  {good:,} {others}", [(fine, "good")] * len(names)))
-    first = max(cells(label) for label, _ in rows)
-    heads = [visible(name) for name in names]
+    first = max(measure(label) for label, _ in rows)
+    heads = [escape(name) for name in names]
     lines = [" " * first + "".join(f"  {head}" for head in heads)]
     for label, row_cells in rows:
-        line = label + " " * (first - cells(label))
+        line = label + " " * (first - measure(label))
         for head, (text, role) in zip(heads, row_cells, strict=True):
-            line += "  " + painted(style, role, text) + " " * max(0, cells(head) - cells(text))
+            line += "  " + paint(style, role, text) + " " * max(0, measure(head) - measure(text))
         lines.append(line.rstrip())
     return lines
 
 
-def _summary(report: Report, style: Style) -> str:
+def _format_summary(report: Report, style: Style) -> str:
     """One line: what was found, what is hidden, what was covered, how long it took."""
-    findings = fresh(report)
+    findings = list_new(report)
     counts = count_by_severity(findings)
     found = [
-        painted(style, severity, counted(number, severity))
+        paint(style, severity, format_count(number, severity))
         + ("" if severity in style.severities else f" (shown with --{severity}s)")
         for severity, number in counts.items()
         if number
     ]
     if report.failure:
-        text = painted(style, "error", "failed") + f": {visible(report.failure)}"
+        text = paint(style, "error", "failed") + f": {escape(report.failure)}"
     elif not report.coverage.parsed and not findings:
-        text = painted(style, "error", "nothing was analysed")
+        text = paint(style, "error", "nothing was analysed")
     else:
-        text = ", ".join(found) if found else painted(style, "good", "nothing found")
+        text = ", ".join(found) if found else paint(style, "good", "nothing found")
     if report.base:
         old = len(report.findings) - len(findings)
         text += f", {old:,} older" if old else ""
     hidden = [f"{len(report.suppressed):,} suppressed"] if report.suppressed else []
     hidden += [f"{len(report.known):,} in the baseline"] if report.known else []
-    parts = [text, *hidden, coverage_text(report.coverage), f"{report.seconds:.2f} s"]
+    parts = [text, *hidden, format_coverage(report.coverage), f"{report.seconds:.2f} s"]
     return f" {style.symbols[4]} ".join(parts)

@@ -5,18 +5,18 @@ from typing import Any
 
 from ..logic.changes import KINDS
 from ..logic.repository import Logic
-from .logic import apart, summary
-from .page import page
+from .logic import summarize, trim_common_ends
+from .page import render_page
 
 
 def render(logic: Logic, version: str) -> str:
     """The page as text."""
-    return page(
-        Path(__file__).with_name("timeline.html"), f"rosimpact logic: {logic.repository}", _data(logic, version)
+    return render_page(
+        Path(__file__).with_name("timeline.html"), f"rosimpact logic: {logic.repository}", _build_data(logic, version)
     )
 
 
-def _data(logic: Logic, version: str) -> dict[str, Any]:
+def _build_data(logic: Logic, version: str) -> dict[str, Any]:
     commits: dict[str, int] = {}
     heads: list[list[str]] = []
     rows: list[list] = []
@@ -27,7 +27,7 @@ def _data(logic: Logic, version: str) -> dict[str, Any]:
         reached = [[one.package, one.node, one.callback, one.path, one.line] for one in change.reaches]
         old, new = change.old, change.new
         if old is not None and new is not None:
-            old, new = apart(old, new)
+            old, new = trim_common_ends(old, new)
         rows.append(
             [commits[commit.id], change.kind, change.package, change.path, change.line, change.node, change.topic,
              old, new, change.why, reached]
@@ -35,7 +35,7 @@ def _data(logic: Logic, version: str) -> dict[str, Any]:
     return {
         "version": version,
         "repository": logic.repository,
-        "summary": summary(logic),
+        "summary": summarize(logic),
         "kinds": list(KINDS),
         "commits": heads,
         "changes": rows,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from .rule import Rule, groups
+from .rule import Rule, group_rules
 
 PRECISION = Path(__file__).with_name("precision.json")
 
@@ -49,7 +49,7 @@ def list_rules(rules: Mapping[str, Rule]) -> str:
     for family, members in groupby(ordered, key=lambda rule: rule.family):
         lines.append(f"{family}:")
         lines += [f"  {rule.name:26s} {rule.severity:8s} {rule.summary}" for rule in members]
-    found = groups(rules)
+    found = group_rules(rules)
     if found:
         lines.append("groups (one name for several rules):")
         lines += [f"  {name:26s} {', '.join(rule.name for rule in members)}" for name, members in found.items()]
@@ -58,7 +58,7 @@ def list_rules(rules: Mapping[str, Rule]) -> str:
 
 def explain(name: str, rules: Mapping[str, Rule]) -> str:
     """The documentation of a rule or a group. Raises KeyError for a name that is neither; its text says what is."""
-    members = groups(rules).get(name, [])
+    members = group_rules(rules).get(name, [])
     others = [rule for rule in members if rule.name != name]
     listed = "\n".join(f"    {rule.name}: {rule.summary}" for rule in others)
     if name in rules:
@@ -67,6 +67,6 @@ def explain(name: str, rules: Mapping[str, Rule]) -> str:
         return f"{documentation}\n\nThe name also stands for\n{listed}" if others else documentation
     if others:
         return f"{name}: a group of rules.\n\nThe name stands for\n{listed}"
-    close = get_close_matches(name, [*rules, *groups(rules)], 1)
+    close = get_close_matches(name, [*rules, *group_rules(rules)], 1)
     hint = f"did you mean `{close[0]}`?" if close else "`rosimpact explain` lists them"
     raise KeyError(f"no rule is called `{name}`; {hint}")

@@ -8,7 +8,7 @@ from ..model.package import ImportUse, SyntaxUse
 from ..model.view import TargetView
 from ..model.workspace import Package
 from ..targets.distro.distro import DistroTarget
-from .rule import Diagnostic, Doubt, Upcoming, doubts_of_place, rate_upcoming
+from .rule import Diagnostic, Doubt, Upcoming, list_place_doubts, rate_upcoming
 
 
 class Refused(NamedTuple):
@@ -41,13 +41,13 @@ def report_refused(
         found: list[Diagnostic | Upcoming] = []
         for refused in find(package, target):
             use = refused.use
-            doubts = (*doubts_of_place(view, use.role), *refused.doubts, use.role != "test" or Doubt.TEST)
+            doubts = (*list_place_doubts(view, use.role), *refused.doubts, use.role != "test" or Doubt.TEST)
             data = {"version": f"3.{target.python}", "needs": f"3.{refused.needs}", "replacement": refused.replacement}
             data["horizon"] = ahead.name if ahead is not None else ""
             one = Diagnostic(use.at, refused.subject, package.name, data, refused.kind, doubts)
             if ahead is None:
                 found.append(one)
-            elif view.active_on(ahead, refused.conditions):
+            elif view.is_active_on(ahead, refused.conditions):
                 found.append(Upcoming(one, "python", ahead, (use.at.path, use.at.line)))
         yield from rate_upcoming(found)
 

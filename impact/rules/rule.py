@@ -45,14 +45,14 @@ from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence_record import Evidence
 from .fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
-from .severity import SEVERITIES, Doubt, Together, doubts_of_place, severity
+from .severity import SEVERITIES, Doubt, Together, limit_severity, list_place_doubts
 from .text import Text, Value
 from .upcoming import Upcoming, rate_upcoming
 
 __all__ = [
-    "SEVERITIES", "Declare", "Diagnostic", "Doubt", "Edit", "Finding", "FixAction", "Insert",
-    "Remove", "Replace", "Rule", "Scope", "Text", "Together", "Upcoming", "Value", "all_rules", "doubts_of_place",
-    "groups", "rate_upcoming", "rule", "severity",
+    "SEVERITIES", "Declare", "Diagnostic", "Doubt", "Edit", "Finding", "FixAction", "Insert", "Remove", "Replace",
+    "Rule", "Scope", "Text", "Together", "Upcoming", "Value", "group_rules", "limit_severity", "list_place_doubts",
+    "load_rules", "rate_upcoming", "rule",
 ]  # fmt: skip
 
 Scope = Literal["package", "target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
@@ -151,9 +151,9 @@ class Rule(NamedTuple):
         """Whether it rests on the message flow."""
         return self.scope in ("flow", "flow_change")
 
-    def severity_of(self, diagnostic: Diagnostic) -> str:
+    def compute_severity(self, diagnostic: Diagnostic) -> str:
         """How severe a diagnostic is: the usual severity, lowered by its doubts."""
-        return min(self.severity, severity(*diagnostic.doubts), key=SEVERITIES.index)
+        return min(self.severity, limit_severity(*diagnostic.doubts), key=SEVERITIES.index)
 
     def verify(self, diagnostic: Diagnostic) -> None:
         """Raises ValueError when the rule has no text for a diagnostic, or the text cannot be rendered from its data: a
@@ -165,7 +165,7 @@ class Rule(NamedTuple):
         if lacking:
             raise ValueError(f"{self.name}: the data of `{diagnostic.subject}` lacks {', '.join(sorted(lacking))}")
         try:
-            severity(*diagnostic.doubts)
+            limit_severity(*diagnostic.doubts)
             text.render([("", diagnostic.values)])
         except (ValueError, TypeError) as error:
             raise ValueError(f"{self.name}: the data of `{diagnostic.subject}`: {error}") from None
@@ -196,7 +196,7 @@ def rule(
         parts = function.__module__.split(".")
         module = importlib.import_module(function.__module__)
         name = parts[-1].replace("_", "-")
-        usual = _lowest(severity, doubts)
+        usual = _lower_severity(severity, doubts)
         run, called = (_run_on_packages(function), "target") if scope == "package" else (function, scope)
         documentation = _tell_severity(module.__doc__ or "", usual)
         by_kind = {"": texts} if isinstance(texts, Text) else texts
@@ -226,18 +226,18 @@ def _tell_severity(documentation: str, usual: str) -> str:
 _AFTER_SEVERITY = re.compile(r"\n\n(?:Example|Not reported)\n")
 
 
-def _lowest(most: str, doubts: tuple[Doubt, ...]) -> str:
-    return min(most, severity(*doubts), key=SEVERITIES.index)
+def _lower_severity(most: str, doubts: tuple[Doubt, ...]) -> str:
+    return min(most, limit_severity(*doubts), key=SEVERITIES.index)
 
 
-def all_rules() -> dict[str, Rule]:
+def load_rules() -> dict[str, Rule]:
     """Every rule by name, importing the families on first use."""
     for _ in import_rules():
         pass
     return dict(sorted(_RULES.items()))
 
 
-def groups(rules: Mapping[str, Rule]) -> dict[str, list[Rule]]:
+def group_rules(rules: Mapping[str, Rule]) -> dict[str, list[Rule]]:
     """The rules that every group stands for, by the group's name. A rule of that very name comes first: it is what
     is left of the rule that the others were a part of."""
     found: dict[str, list[Rule]] = {}

@@ -61,7 +61,7 @@ class Doubt(enum.Enum):
 SEVERITIES = ("note", "warning", "error")
 
 
-def severity(*doubts: Doubt | bool | None) -> str:
+def limit_severity(*doubts: Doubt | bool | None) -> str:
     """`error` where there is no doubt, else the highest severity that all doubts allow. True and None count for
     nothing, so that `known or Doubt.INCOMPLETE` can be written. Raises TypeError for False, which is a slip."""
     if any(doubt is False for doubt in doubts):
@@ -74,18 +74,18 @@ def severity(*doubts: Doubt | bool | None) -> str:
 _IN_CODE = frozenset(("cpp", "macro", "python"))
 
 
-def doubts_of_place(view: TargetView, role: str, conditions: Iterable[Condition] = ()) -> tuple[Doubt, ...]:
+def list_place_doubts(view: TargetView, role: str, conditions: Iterable[Condition] = ()) -> tuple[Doubt, ...]:
     """What speaks against an error at a place. role: build, run, test or aside, as the model has it. conditions: those
     that it stands under; that they can hold at all, a rule has asked before."""
     doubts = []
     if role == "aside":
         doubts.append(Doubt.EXAMPLE)
-    elif not view.built(role):
+    elif not view.is_built(role):
         doubts.append(Doubt.TEST)
     conditions = tuple(conditions)
-    if not view.certain(conditions):
+    if not view.is_sure(conditions):
         own = tuple(condition for condition in conditions if condition.language in _IN_CODE)
-        doubts.append(Doubt.CONDITIONAL if view.certain(own) else Doubt.GUARDED)
+        doubts.append(Doubt.CONDITIONAL if view.is_sure(own) else Doubt.GUARDED)
     return tuple(doubts)
 
 

@@ -33,14 +33,14 @@ class Text:
 
     def __init__(self, message: str, help: str = "") -> None:
         self.message, self.help = message, help
-        self.fields = frozenset((*_fields_of(message), *_fields_of(help)))
+        self.fields = frozenset((*_list_fields(message), *_list_fields(help)))
 
     def render(self, data: ByTarget) -> tuple[str, str]:
         """Message and help for what is said of one or several targets. Raises KeyError for a field without a value."""
         return render_template(self.message, data), render_template(self.help, data)
 
 
-def _fields_of(template: str) -> list[str]:
+def _list_fields(template: str) -> list[str]:
     return [name for _, name, _, _ in Formatter().parse(template) if name]
 
 
@@ -49,11 +49,11 @@ def render_template(template: str, data: ByTarget) -> str:
     # A field as code is put in backticks value by value, so that the names of targets stay outside of them.
     template = _CODE_FIELD.sub(rf"{{\1:{_CODE}}}", template)
     fields = {
-        name: [(target, values[name]) for target, values in data if name in values] for name in _fields_of(template)
+        name: [(target, values[name]) for target, values in data if name in values] for name in _list_fields(template)
     }
 
     def keep(part: re.Match[str]) -> str:
-        known = all(value != "" and value != () for name in _fields_of(part[1]) for _, value in fields[name])
+        known = all(value != "" and value != () for name in _list_fields(part[1]) for _, value in fields[name])
         return part[1] if known else ""
 
     template = _OPTIONAL.sub(keep, template)
@@ -69,7 +69,7 @@ class _Renderer(Formatter):
             by_text.setdefault(_format_value(each, format_spec), []).append(target)
         if len(by_text) == 1:
             return next(iter(by_text))
-        return ", ".join(attributed(text, targets) for text, targets in by_text.items())
+        return ", ".join(append_targets(text, targets) for text, targets in by_text.items())
 
 
 def _format_value(value: Value, spec: str) -> str:
@@ -87,7 +87,7 @@ def list_names(names: Sequence[str]) -> str:
     return " and ".join(filter(None, (", ".join(shown[:-1]), *shown[-1:])))
 
 
-def attributed(text: str, targets: Iterable[str]) -> str:
+def append_targets(text: str, targets: Iterable[str]) -> str:
     """A text with the targets it holds for behind it, unless it names them itself."""
     words = set(re.split(r"[\s`,;:()]+", text))
     named = [name for name in targets if name and name not in words and not (" " in name and name in text)]

@@ -1,16 +1,16 @@
 """The vocabulary of rules: the workspace as they see it, and what they yield, to be imported from one place."""
 
 from ..model.cmake.build import At
-from ..model.view import Need, TargetView, weight
+from ..model.view import Need, TargetView, make_sort_key
 from ..model.workspace import Package, Workspace
 from .fix_actions import Declare, FixAction, Insert, Remove, Replace
 from .rule import SEVERITIES, Diagnostic, Finding, rule
-from .severity import Doubt, Together, doubts_of_place, severity
+from .severity import Doubt, Together, limit_severity, list_place_doubts
 from .text import Text, Value
 from .upcoming import Upcoming, rate_upcoming
 
 __all__ = [
-    "SEVERITIES", "At", "Declare", "Diagnostic", "Doubt", "Finding", "FixAction", "Insert", "Need", "Package",
-    "Remove", "Replace", "TargetView", "Text", "Together", "Upcoming", "Value", "Workspace", "doubts_of_place",
-    "rate_upcoming", "rule", "severity", "weight",
+    "SEVERITIES", "At", "Declare", "Diagnostic", "Doubt", "Finding", "FixAction", "Insert", "Need", "Package", "Remove",
+    "Replace", "TargetView", "Text", "Together", "Upcoming", "Value", "Workspace", "limit_severity",
+    "list_place_doubts", "make_sort_key", "rate_upcoming", "rule",
 ]  # fmt: skip

@@ -14,15 +14,15 @@ from collections.abc import Callable, Iterable
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
-from ...edges.memory import cached_method
-from .changes import DISTROS, ChangeRow, all_rows, reached, removed_in, version_of
-from .distro.known import known_distros, release_day
-from .evidence import evidence_of, of_offered
+from ...edges.memory import cache_method
+from .changes import DISTROS, ChangeRow, find_removal_version, find_version, has_reached, load_rows
+from .distro.known import list_known_distros, release_day
+from .evidence import make_evidence, make_offer_evidence
 from .evidence_record import Evidence
-from .providers.libraries import system_libraries
-from .providers.providers import Providers, default_providers
+from .providers.libraries import load_libraries
+from .providers.providers import Providers, load_providers
 from .surface.changes import PARAMETER
-from .surface.fields import before, default_fields, there
+from .surface.fields import covers, load_fields, was_there_before
 from .surface.offers import Offered, Offers, PackageOffer
 from .surface.surface import BuildSurface
 from .symbol import Availability, Horizon, State, Symbol
@@ -66,30 +66,30 @@ _ROWS = {
 """Kinds of reviewed rows by what they are about."""
 
 
-def horizons(target: DistroTarget, asked: Iterable[str] = ()) -> tuple[Horizon, ...]:
+def list_horizons(target: DistroTarget, asked: Iterable[str] = ()) -> tuple[Horizon, ...]:
     """What is to come for a target, soonest first: the next sync of its distro, the distro as of the data's newest day,
     and the newest long-term distro of its generation. asked: distros that are judged anyway, and are left out."""
     found = []
-    if (testing := target.in_testing()) is not None:
+    if (testing := target.find_testing()) is not None:
         found.append(Horizon(testing, f"the next sync of {target.distro}", soon=True))
-    if (updated := target.updated()) is not None:
+    if (updated := target.find_updated()) is not None:
         found.append(Horizon(updated, f"{target.distro} of {updated.date}"))
-    newest = target.newest()
+    newest = target.find_newest()
     if newest is not None and newest.distro not in asked:
-        found.append(Horizon(newest, newest.distro, platform=True, far=_steps(target) > _NEAR))
+        found.append(Horizon(newest, newest.distro, platform=True, far=_count_newer_lts(target) > _NEAR))
     return tuple(found)
 
 
 _NEAR = 2
 
 
-def _steps(target: DistroTarget) -> int:
+def _count_newer_lts(target: DistroTarget) -> int:
     """How many long-term distros of a target's generation are newer than it."""
     here = release_day(target.distro)
-    return sum(one.lts and one.ros == target.ros and one.released > here for one in known_distros())
+    return sum(one.lts and one.ros == target.ros and one.released > here for one in list_known_distros())
 
 
-def coming_changes(target: DistroTarget, ahead: Horizon) -> tuple[ChangeInForce, ...]:
+def find_coming_changes(target: DistroTarget, ahead: Horizon) -> tuple[ChangeInForce, ...]:
     """Reviewed changes that remove something on a horizon which a target has: of packages and libraries that are
     there in another version."""
 
@@ -100,7 +100,7 @@ def coming_changes(target: DistroTarget, ahead: Horizon) -> tuple[ChangeInForce,
     def moves(package: str, library: bool) -> bool:
         if ahead.platform and not library:
             return False
-        return version_of(package, library, target) != version_of(package, library, ahead.target)
+        return find_version(package, library, target) != find_version(package, library, ahead.target)
 
     return tuple(
         change
@@ -123,91 +123,91 @@ class Availabilities:
     ):
         self.target = target
         self.offers = offers or Offers(target)
-        self.providers = providers or default_providers()
+        self.providers = providers or load_providers()
         self._given = ahead
 
-    @cached_method
-    def of(self, symbol: Symbol) -> Availability:
+    @cache_method
+    def find_availability(self, symbol: Symbol) -> Availability:
         """How the target stands to a symbol, what is to come left out."""
         if symbol.kind == "package":
-            return self._package(symbol)
+            return self._find_package(symbol)
         if symbol.kind in ("field", "interface"):
-            return self._interface(symbol)
+            return self._find_interface(symbol)
         missing = None
         for package in symbol.packages:
-            found = self._header(symbol, package) if symbol.kind == "header" else self._offered(symbol, package)
+            found = self._find_header(symbol, package) if symbol.kind == "header" else self._find_other(symbol, package)
             if found.state not in ("unknown", "removed", "not yet"):
                 return found
             if found.state != "unknown":
                 missing = missing or found
-        return missing or self._reviewed(symbol) or self._of_library(symbol) or Availability(symbol, "unknown")
+        return missing or self._find_reviewed(symbol) or self._find_library(symbol) or Availability(symbol, "unknown")
 
-    def _of_library(self, symbol: Symbol) -> Availability | None:
+    def _find_library(self, symbol: Symbol) -> Availability | None:
         """What Debian's releases of a system library tell of a target that some of them export."""
         target = self.target
         if symbol.kind != "target" or not target.platform:
             return None
-        found = system_libraries().target(symbol.name, target.platform, target.library)
+        found = load_libraries().find_target(symbol.name, target.platform, target.find_library)
         if found is None or found.here is None:
             return None
         state: State = "present" if found.here else "removed" if found.lost else "not yet"
-        version = target.library(found.library) or found.version
+        version = target.find_library(found.library) or found.version
         return Availability(symbol, state, found.library, version, library=True)
 
-    def on_horizon(self, symbol: Symbol) -> Availability:
+    def find_on_horizon(self, symbol: Symbol) -> Availability:
         """The same, and `upcoming` for what is there and is removed on the nearest horizon. A newer distro counts for
         platform libraries, and for names of CMake that are deprecated here already."""
-        here = self.of(symbol)
+        here = self.find_availability(symbol)
         if here.state not in ("present", "deprecated"):
             return here
         for horizon, then in self._ahead:
-            found = then.of(symbol)
+            found = then.find_availability(symbol)
             if found.state == "removed" and (found.library or not horizon.platform or self._is_deprecated(here)):
-                return found.on(horizon)
+                return found.apply_horizon(horizon)
         return here
 
     def _is_deprecated(self, here: Availability) -> bool:
         """Whether a reviewed row says that CMake warns of a name on the target."""
-        row = self._reviewed(here.symbol) if here.symbol.kind in ("command", "target", "variable") else None
+        row = self._find_reviewed(here.symbol) if here.symbol.kind in ("command", "target", "variable") else None
         return row is not None and row.state == "deprecated"
 
     @cached_property
     def _ahead(self) -> list[tuple[Horizon, Availabilities]]:
-        ahead = horizons(self.target) if self._given is None else self._given
+        ahead = list_horizons(self.target) if self._given is None else self._given
         return [(one, Availabilities(one.target, providers=self.providers, ahead=())) for one in ahead]
 
-    def _package(self, symbol: Symbol) -> Availability:
+    def _find_package(self, symbol: Symbol) -> Availability:
         target, name = self.target, symbol.name
-        version = target.version(name)
-        row = self._reviewed(symbol)
+        version = target.find_version(name)
+        row = self._find_reviewed(symbol)
         if version is not None:
             late = row is not None and row.state == "deprecated"
             return Availability(symbol, "deprecated" if late else "present", name, version,
                                 replacement=row.replacement if row is not None and late else "")  # fmt: skip
         if row is not None:
             return row
-        last = target.last_distro(name)
+        last = target.find_last_distro(name)
         if not last or last not in DISTROS or target.distro not in DISTROS:
             return Availability(symbol, "unknown", name)
         return Availability(symbol, "removed" if DISTROS[last] < DISTROS[target.distro] else "not yet", name)
 
-    def _header(self, symbol: Symbol, package: str) -> Availability:
-        version = self.target.version(package)
+    def _find_header(self, symbol: Symbol, package: str) -> Availability:
+        version = self.target.find_version(package)
         if version is None:
             return Availability(symbol, "unknown", package)
-        found = self._header_of(symbol, package, version)
-        offer = self.offers.package(package)
+        found = self._find_header_in(symbol, package, version)
+        offer = self.offers.find_package(package)
         if offer is None or not (found.is_missing or found.state == "unknown"):
             return found
-        if symbol.name in self._made(offer):
+        if symbol.name in self._list_made_headers(offer):
             return Availability(symbol, "present", package, version)
         # `include/PACKAGE` is exported where headers are installed a folder deeper, so that the path stays as it was.
-        nested = f"{package}/{symbol.name}" in self._made(offer)
+        nested = f"{package}/{symbol.name}" in self._list_made_headers(offer)
         closed = not nested and all(part != "headers" for part, _ in offer.build.unknown)
         return found if closed else Availability(symbol, "unknown", package, version)
 
-    def _header_of(self, symbol: Symbol, package: str, version: str) -> Availability:
-        by_surface = self._offered(symbol, package)
+    def _find_header_in(self, symbol: Symbol, package: str, version: str) -> Availability:
+        by_surface = self._find_other(symbol, package)
         has = self.providers.has_header(package, symbol.name, self.target.distro, version)
         if has is None or has == (by_surface.state in ("present", "deprecated")):
             return by_surface
@@ -215,7 +215,7 @@ class Availabilities:
             return Availability(symbol, "present", package, version)
         if by_surface.state != "unknown":
             return by_surface if by_surface.is_missing else Availability(symbol, "unknown", package, version)
-        spans = self.providers.header_history(package, symbol.name)
+        spans = self.providers.list_header_spans(package, symbol.name)
         place = DISTROS.get(self.target.distro, len(DISTROS))
         mine = [span for span in spans if span.distro in DISTROS
                 and (DISTROS[span.distro] >= DISTROS["ardent"]) == (self.target.ros == 2)]  # fmt: skip
@@ -225,21 +225,21 @@ class Availabilities:
         evidence = Evidence(package, "removed" if early else "added", symbol.name, side="header", header=symbol.name)
         return Availability(symbol, "removed" if early else "not yet", package, version, evidence=evidence)
 
-    @cached_method
-    def _made(self, offer: PackageOffer) -> frozenset[str]:
+    @cache_method
+    def _list_made_headers(self, offer: PackageOffer) -> frozenset[str]:
         """Headers of the stored version that its tree does not have: those that its build makes, and whatever its own
         headers include."""
         found = {header.include for header in offer.build.headers}
-        included = self.offers.surfaces.included(offer.package, self.target.ros)
+        included = self.offers.surfaces.find_included(offer.package, self.target.ros)
         if included is not None:
             for header in included.headers:
-                found.update(one.path for one in included.written(header, offer.stored) or ())
+                found.update(one.path for one in included.list_includes(header, offer.stored) or ())
         return frozenset(found)
 
-    def _offered(self, symbol: Symbol, package: str) -> Availability:
-        offer = self.offers.package(package)
+    def _find_other(self, symbol: Symbol, package: str) -> Availability:
+        offer = self.offers.find_package(package)
         if offer is None:
-            return Availability(symbol, "unknown", package, self.target.version(package) or "")
+            return Availability(symbol, "unknown", package, self.target.find_version(package) or "")
         side = PARAMETER if symbol.kind == "parameter" else symbol.kind
         # CMake minds no case in names of commands, and neither do surfaces.
         name = symbol.name.lower() if side == "command" else symbol.name
@@ -247,7 +247,7 @@ class Availabilities:
         if offered is None:
             if self._has(offer, side, name):
                 return Availability(symbol, "present", package, offer.version)
-            if alike := _meant(offer, side, name):
+            if alike := _find_misspelled_name(offer, side, name):
                 return Availability(symbol, "not yet", package, offer.version, alike=alike, sure=False, form="never")
         if offered is None or not decides(offer, offered):
             return Availability(symbol, "unknown", package, offer.version)
@@ -259,10 +259,10 @@ class Availabilities:
                 return Availability(symbol, "present", package, offer.version)
             sure = sure and all(one != part for one, _ in offer.build.unknown)
         return Availability(
-            symbol, state, package, offer.version, offered.first, offered.instead or _older(offer, offered),
+            symbol, state, package, offer.version, offered.first, offered.instead or _find_older_name(offer, offered),
             offered.moved_to,
-            _alike(offer, side, name) if state in ("removed", "not yet") and side in _WITH_ALIKE else "",
-            sure=sure, evidence=_with_other(offer, offered),
+            _find_similar_name(offer, side, name) if state in ("removed", "not yet") and side in _WITH_ALIKE else "",
+            sure=sure, evidence=_merge_evidence(offer, offered),
         )  # fmt: skip
 
     def _has(self, offer: PackageOffer, side: str, name: str) -> bool:
@@ -270,42 +270,42 @@ class Availabilities:
             return name in _BUILT[side][1](offer.build)
         if side == PARAMETER:
             return name in offer.parameters
-        return self.offers.there(side, name, offer.package)
+        return self.offers.has_name(side, name, offer.package)
 
-    def _interface(self, symbol: Symbol) -> Availability:
+    def _find_interface(self, symbol: Symbol) -> Availability:
         name, *parts = symbol.name.split(".")
         member = parts[-1] if parts else ""
         for package in symbol.packages:
-            version = self.target.version(package)
-            history = default_fields().history(package, self.target.ros) if version else None
-            state = history.state(version) if history is not None and version else None
+            version = self.target.find_version(package)
+            history = load_fields().find_history(package, self.target.ros) if version else None
+            state = history.find_state(version) if history is not None and version else None
             if history is None or state is None or not version:
                 continue
             instead = ""
             if member:
-                definition = history.definition(name)
-                if definition is None or not there(definition.spans, state):
+                definition = history.find_definition(name)
+                if definition is None or not covers(definition.spans, state):
                     continue
                 sections = [".".join(parts[:-1])] if parts[:-1] else [s for s in definition.sections if "." not in s]
-                rows = [row for section in sections for row in definition.members(section, member)]
+                rows = [row for section in sections for row in definition.list_members(section, member)]
                 spans = tuple(span for row in rows for span in row.spans)
                 successor = next((row.successor for row in rows if row.successor), "")
                 # The comparison of versions only guesses what came for a field.
-                if any(there(row.spans, state) for one in sections for row in definition.members(one, successor)):
+                if any(covers(row.spans, state) for one in sections for row in definition.list_members(one, successor)):
                     instead = successor
             else:
-                spans = history.spans(name) or ()
+                spans = history.find_spans(name) or ()
             if not spans:
                 continue
-            if there(spans, state):
+            if covers(spans, state):
                 return Availability(symbol, "present", package, version)
             if history.may_be_back(spans, version):
                 continue
-            if before(spans, state):
+            if was_there_before(spans, state):
                 ends = [last for _, last in spans if 0 <= last < state]
                 since = history.starts[max(ends) + 1] if ends else ""
                 evidence = Evidence(package, "removed", member or name, first=since)
-                reviewed = self._reviewed_field(package, name, parts) if member else ""
+                reviewed = self._find_reviewed_field(package, name, parts) if member else ""
                 return Availability(symbol, "removed", package, version, since, reviewed,
                                     alike="" if reviewed else instead, evidence=evidence)  # fmt: skip
             if history.read_up_to(version):
@@ -314,7 +314,7 @@ class Availabilities:
                 return Availability(symbol, "not yet", package, version, since, evidence=evidence)
         return Availability(symbol, "unknown")
 
-    def _reviewed_field(self, package: str, interface: str, parts: list[str]) -> str:
+    def _find_reviewed_field(self, package: str, interface: str, parts: list[str]) -> str:
         """What a reviewed row says stands for a field; rows call it `Name.field` or `Name_Part.field`."""
         section = "" if parts[:-1] in ([], ["message"]) else f"_{parts[0].capitalize()}"
         name = f"{interface.rpartition('/')[2]}{section}.{parts[-1]}"
@@ -323,35 +323,35 @@ class Availabilities:
                 return change.new.rpartition(".")[2]
         return ""
 
-    def _reviewed(self, symbol: Symbol) -> Availability | None:
+    def _find_reviewed(self, symbol: Symbol) -> Availability | None:
         name = symbol.name.lower() if symbol.kind == "command" else symbol.name
         for kind in _ROWS.get(symbol.kind, ()):
             for change in self.target.changes().by_name.get((kind, name), ()):
                 if not symbol.packages or change.library or change.package in symbol.packages:
-                    return of_row(symbol, change)
-        for row in _removals().get(name, ()):
+                    return convert_row(symbol, change)
+        for row in _load_removals().get(name, ()):
             if not row.library or row.kind not in _ROWS[symbol.kind]:
                 continue
-            version = version_of(row.package, True, self.target)
-            if version and not reached(row.removed_in, version, self.target):
+            version = find_version(row.package, True, self.target)
+            if version and not has_reached(row.removed_in, version, self.target):
                 return Availability(symbol, "present", row.package, version, library=True)
         return None
 
 
 @cache
-def _removals() -> dict[str, list[ChangeRow]]:
+def _load_removals() -> dict[str, list[ChangeRow]]:
     """Reviewed rows by the name that they say is removed."""
     found: dict[str, list[ChangeRow]] = {}
-    for row in all_rows():
+    for row in load_rows():
         if row.removed_in and not row.new_since and not row.back_in:
             found.setdefault(row.old, []).append(row)
     return found
 
 
-def of_row(symbol: Symbol, change: ChangeInForce) -> Availability:
+def convert_row(symbol: Symbol, change: ChangeInForce) -> Availability:
     """What a reviewed row says of a symbol."""
     state: State = "changed" if change.kind in ("api-changed", "call-changed") else "removed"
-    since, earlier = removed_in(change), True
+    since, earlier = find_removal_version(change), True
     if change.state == "absent":
         since, earlier = change.since, False
         state = state if change.kind == "call-changed" else "not yet"
@@ -359,7 +359,7 @@ def of_row(symbol: Symbol, change: ChangeInForce) -> Availability:
         state, since = "deprecated", ""
     other = change.old if state == "not yet" else change.new
     return Availability(symbol, state, change.package, change.version, since, other, library=change.library,
-                        evidence=evidence_of(change), replacement_since=change.since if earlier else "",
+                        evidence=make_evidence(change), replacement_since=change.since if earlier else "",
                         earlier=earlier)  # fmt: skip
 
 
@@ -382,7 +382,7 @@ def decides(offer: PackageOffer, offered: Offered) -> bool:
     return offer.exact or all(e.place != offer.place + 1 for e in line.events[offered.side][offered.name])
 
 
-def _older(offer: PackageOffer, offered: Offered) -> str:
+def _find_older_name(offer: PackageOffer, offered: Offered) -> str:
     """The name that one which is not there yet is going to replace."""
     if offered.state != "absent":
         return ""
@@ -390,10 +390,10 @@ def _older(offer: PackageOffer, offered: Offered) -> str:
     return next((old for old, events in every.items() for e in events for t in e.told if t.instead == offered.name), "")
 
 
-def _with_other(offer: PackageOffer, offered: Offered) -> Evidence:
+def _merge_evidence(offer: PackageOffer, offered: Offered) -> Evidence:
     """The evidence for what surfaces say of a name, with that for what stands for it."""
-    evidence = of_offered(offered)
-    if (old := _older(offer, offered)) and (gone := offer.get(offered.side, old)) is not None:
+    evidence = make_offer_evidence(offered)
+    if (old := _find_older_name(offer, offered)) and (gone := offer.get(offered.side, old)) is not None:
         first = gone.gone_in or gone.first
         other = Evidence(offered.package, "removed", old, offered.name, offered.side, first=first, stored=True)
         return evidence._replace(instead=old, other=other)
@@ -409,18 +409,18 @@ _ALIKE, _MISSPELT = 0.75, 0.85
 """How much of two names has to agree, as difflib measures it."""
 
 
-def _alike(offer: PackageOffer, side: str, name: str) -> str:
+def _find_similar_name(offer: PackageOffer, side: str, name: str) -> str:
     """What the target's version has that is called most alike; empty where nothing is."""
     close = difflib.get_close_matches(name, list(dict.fromkeys(_BUILT[side][1](offer.build))), 1, _ALIKE)
     return close[0] if close else ""
 
 
-def _meant(offer: PackageOffer, side: str, name: str) -> str:
+def _find_misspelled_name(offer: PackageOffer, side: str, name: str) -> str:
     """What the target's version has and a name is a misspelling of: only the last part of it differs, by little. Empty
     where not all that the version has is known."""
     if not offer.exact or side not in _STARTED or any(one == _BUILT[side][0] for one, _ in offer.build.unknown):
         return ""
-    alike = _alike(offer, side, name)
+    alike = _find_similar_name(offer, side, name)
     (head, tail), (other_head, other) = _split(name), _split(alike)
     near = head == other_head and difflib.SequenceMatcher(None, tail, other).ratio() >= _MISSPELT
     return alike if near else ""

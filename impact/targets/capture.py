@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 from ...edges import files
 from ...edges.documents import DocumentError, load_json
-from ...edges.limits import limits
+from ...edges.limits import get_limits
 from .distro.distro import DistroTarget, TargetError
-from .distro.known import known_distros
+from .distro.known import list_known_distros
 from .providers.library import DEBIAN_PACKAGES
 from .version import compare
 
@@ -40,31 +40,31 @@ class CapturedMachine(NamedTuple):
     tools: dict[str, str]
 
 
-def plain(version: str) -> str:
+def strip_version(version: str) -> str:
     """A Debian version without epoch, revision and packaging suffixes: `1:4.5.4+dfsg-9` gives `4.5.4`."""
     return re.split(r"[-+~]", version.split(":", 1)[-1], maxsplit=1)[0]
 
 
-def from_dpkg(rows: Iterable[tuple[str, str]]) -> tuple[str, dict[str, str], dict[str, str], dict[str, str]]:
+def read_dpkg_rows(rows: Iterable[tuple[str, str]]) -> tuple[str, dict[str, str], dict[str, str], dict[str, str]]:
     """(distro, ROS packages, libraries, system packages that matter) from (Debian name, version) pairs.
 
     Where packages of several distros are installed, the one with most packages is taken. Debian's own packages of ROS
     (`ros-image-proc`) are of no distro.
     """
-    known = {one.name for one in known_distros()}
+    known = {one.name for one in list_known_distros()}
     installed = {name.split(":", 1)[0]: version for name, version in rows}
     by_distro: dict[str, dict[str, str]] = {}
     for name, version in installed.items():
         match = _ROS_DEBIAN.match(name)
         if match and match[1] in known and not name.endswith(("-dbgsym", "-dbg")):
-            by_distro.setdefault(match[1], {})[match[2].replace("-", "_")] = plain(version)
+            by_distro.setdefault(match[1], {})[match[2].replace("-", "_")] = strip_version(version)
     distro = max(by_distro, key=lambda d: (len(by_distro[d]), d), default="")
     libraries = {}
     matter = {}
     for library, names in DEBIAN_PACKAGES.items():
         for name in names:
             if name in installed:
-                libraries[library] = plain(installed[name])
+                libraries[library] = strip_version(installed[name])
                 matter[name] = installed[name]
                 break
     return distro, by_distro.get(distro, {}), libraries, matter
@@ -74,14 +74,14 @@ def capture(
     run: Callable[[list[str]], str] | None = None, root: Path = Path("/"), environment: dict[str, str] | None = None
 ) -> CapturedMachine:
     """Reads this machine. run: a command to its output (empty when it fails); root and environment are for tests."""
-    run = run or output_of
+    run = run or run_command
     environment = dict(os.environ) if environment is None else environment
     listing = run(["dpkg-query", "-W", "-f", "${db:Status-Abbrev}\t${Package}\t${Version}\n"])
     rows = [line.split("\t")[1:3] for line in listing.splitlines() if line.startswith("ii") and line.count("\t") == 2]
-    distro, packages, libraries, debian = from_dpkg((name, version) for name, version in rows)
-    for prefix in prefixes(root, environment):
+    distro, packages, libraries, debian = read_dpkg_rows((name, version) for name, version in rows)
+    for prefix in list_prefixes(root, environment):
         for manifest in sorted(prefix.glob("share/*/package.xml")):
-            name, version = name_and_version(manifest)
+            name, version = read_name_and_version(manifest)
             if name:
                 packages[name] = version  # an overlay comes after what it covers
     tools = {}
@@ -97,14 +97,14 @@ def capture(
     # The system's Python where it is known; this one may be of a virtual environment.
     libraries.setdefault("python3", machine.python_version())
     return CapturedMachine(
-        environment.get("ROS_DISTRO") or distro or _only_distro(root),
+        environment.get("ROS_DISTRO") or distro or _find_only_distro(root),
         datetime.date.today().isoformat(),
-        platform_of(root),
-        *(dict(sorted(each.items())) for each in (packages, libraries, debian, _pip(), tools)),
+        read_platform(root),
+        *(dict(sorted(each.items())) for each in (packages, libraries, debian, _list_pip_packages(), tools)),
     )
 
 
-def to_json(captured: CapturedMachine) -> str:
+def dump_capture(captured: CapturedMachine) -> str:
     """The captured file: small, sorted, the same bytes for the same machine on the same day."""
     return json.dumps({"rosimpact_target": SCHEMA, **captured._asdict()}, indent=1, sort_keys=True) + "\n"
 
@@ -112,7 +112,7 @@ def to_json(captured: CapturedMachine) -> str:
 def read(path: Path) -> CapturedMachine:
     """Reads a captured file. Raises TargetError with what is wrong and what to do."""
     try:
-        data = load_json(files.read_file(path, limits().capture))
+        data = load_json(files.read_file(path, get_limits().capture))
         # Half a pair of surrogates (`\\ud800`) is valid JSON, and no text that can be written again.
         json.dumps(data, ensure_ascii=False).encode()
     except (OSError, DocumentError, UnicodeEncodeError, RecursionError) as error:
@@ -123,23 +123,23 @@ def read(path: Path) -> CapturedMachine:
     if not isinstance(data, dict) or data.get("rosimpact_target") != SCHEMA:
         raise TargetError(f"{path}: is no captured machine of this version; write it anew with `rosimpact env capture`")
 
-    def versions(key: str) -> dict[str, str]:
+    def get_versions(key: str) -> dict[str, str]:
         value = data.get(key, {})
         return {str(k): str(v) for k, v in value.items()} if isinstance(value, dict) else {}
 
     return CapturedMachine(
-        str(data.get("distro", "")), str(data.get("date", "")), str(data.get("platform", "")), versions("packages"),
-        versions("libraries"), versions("debian"), versions("pip"), versions("tools"),
+        str(data.get("distro", "")), str(data.get("date", "")), str(data.get("platform", "")), get_versions("packages"),
+        get_versions("libraries"), get_versions("debian"), get_versions("pip"), get_versions("tools"),
     )  # fmt: skip
 
 
 def load_capture(path: Path) -> DistroTarget:
     """A captured file as a target. Packages that are not installed there can still be installed: they have the version
     of the distro on the day of the capture. Raises TargetError."""
-    return as_target(read(path), path.name.removesuffix(".json"), str(path))
+    return make_target(read(path), path.name.removesuffix(".json"), str(path))
 
 
-def as_target(captured: CapturedMachine, name: str, where: str) -> DistroTarget:
+def make_target(captured: CapturedMachine, name: str, where: str) -> DistroTarget:
     """A machine as a target. where: the file it came from, for messages."""
     if not captured.distro:
         raise TargetError(f"{where}: names no ROS distro; set `distro` in it, or capture with ROS sourced")
@@ -159,25 +159,25 @@ class MachineDifference(NamedTuple):
     second: str
 
 
-def differences(first: DistroTarget, second: DistroTarget) -> list[MachineDifference]:
+def find_differences(first: DistroTarget, second: DistroTarget) -> list[MachineDifference]:
     """What differs between two targets: distro, platform, libraries, released packages."""
     found = []
     for kind, a, b in (("distro", first.distro, second.distro), ("platform", first.platform, second.platform),
                        ("date", first.date, second.date)):  # fmt: skip
         if a != b:
             found.append(MachineDifference(kind, kind, a, b))
-    for name in sorted(first.library_names() | second.library_names()):
-        a, b = first.library(name) or "", second.library(name) or ""
+    for name in sorted(first.list_library_names() | second.list_library_names()):
+        a, b = first.find_library(name) or "", second.find_library(name) or ""
         if a and b and compare(a, b):
             found.append(MachineDifference("library", name, a, b))
-    for name in sorted(first.released_names() | second.released_names()):
-        a, b = first.version(name) or "", second.version(name) or ""
+    for name in sorted(first.list_released() | second.list_released()):
+        a, b = first.find_version(name) or "", second.find_version(name) or ""
         if a != b:
             found.append(MachineDifference("package", name, a, b))
     return found
 
 
-def output_of(command: list[str]) -> str:
+def run_command(command: list[str]) -> str:
     try:
         found = subprocess.run(
             command, stdin=subprocess.DEVNULL, capture_output=True, encoding="utf-8", errors="replace", timeout=60,
@@ -188,7 +188,7 @@ def output_of(command: list[str]) -> str:
         return ""
 
 
-def prefixes(root: Path, environment: dict[str, str]) -> list[Path]:
+def list_prefixes(root: Path, environment: dict[str, str]) -> list[Path]:
     """Installed prefixes, overlaid ones first, so that what covers them is read last."""
     listed = [
         Path(p)
@@ -201,15 +201,15 @@ def prefixes(root: Path, environment: dict[str, str]) -> list[Path]:
     return [p for p in [*found, *reversed(listed)] if p.is_dir()]
 
 
-def _only_distro(root: Path) -> str:
+def _find_only_distro(root: Path) -> str:
     names = [p.name for p in (root / "opt" / "ros").glob("*") if p.is_dir()]
     return names[0] if len(names) == 1 else ""
 
 
-def name_and_version(manifest: Path) -> tuple[str, str]:
+def read_name_and_version(manifest: Path) -> tuple[str, str]:
     """Name and version that a package.xml gives, two empty texts where it cannot be read."""
     try:
-        text = files.read_text(manifest, limits().manifest, errors="replace")
+        text = files.read_text(manifest, get_limits().manifest, errors="replace")
     except OSError:
         return "", ""
     name, version = (
@@ -219,9 +219,9 @@ def name_and_version(manifest: Path) -> tuple[str, str]:
     return (name[1], version[1]) if name and version else ("", "")
 
 
-def platform_of(root: Path) -> str:
+def read_platform(root: Path) -> str:
     try:
-        text = files.read_text(root / "etc" / "os-release", limits().settings, "replace")
+        text = files.read_text(root / "etc" / "os-release", get_limits().settings, "replace")
     except OSError:
         return ""
     fields = dict(re.findall(r'^(\w+)="?([^"\n]*)"?$', text, re.M))
@@ -229,7 +229,7 @@ def platform_of(root: Path) -> str:
     return f"{fields.get('ID', '')} {release}".strip()
 
 
-def _pip() -> dict[str, str]:
+def _list_pip_packages() -> dict[str, str]:
     """Python distributions that pip put there for the user or the machine, not the system's packages nor a virtual
     environment's (rosimpact itself often runs in one)."""
     from importlib import metadata

@@ -18,11 +18,11 @@ import msgspec
 
 from ..facts.usage import Pattern
 from .distro.known import release_day
-from .providers.libraries import system_libraries
-from .providers.providers import Providers, default_providers
+from .providers.libraries import load_libraries
+from .providers.providers import Providers, load_providers
 from .snapshot import DATA, SnapshotError, read_table
 from .target import ChangeInForce
-from .version import at_least
+from .version import is_at_least
 
 if TYPE_CHECKING:
     from .distro.distro import DistroTarget
@@ -132,23 +132,23 @@ def _read(pattern: str, *last: str) -> list[_File]:
 
 
 @cache
-def _files() -> list[_File]:
+def _load_files() -> list[_File]:
     """All data/changes*.json. A name that two files treat counts as in the more special one; what that does not say of
     it is taken from the other. What was read from packages comes last, since nobody reviewed it; before it the general
     table, since the others were compared with headers and tags."""
     return _read("changes*.json", "changes.json", "changes_debian.json", "changes_library_tags.json")
 
 
-def _shared_of(group: _Group) -> dict:
+def _get_shared_fields(group: _Group) -> dict:
     return {name: getattr(group, name) for name in _Shared.__struct_fields__}
 
 
 @cache
-def all_rows() -> tuple[ChangeRow, ...]:
+def load_rows() -> tuple[ChangeRow, ...]:
     """Every known change of names. Raises SnapshotError when the data file cannot be read."""
     known: dict[tuple[str, str, str], ChangeRow] = {}
-    for group in (group for file in _files() for group in file.changes):
-        shared = _shared_of(group)
+    for group in (group for file in _load_files() for group in file.changes):
+        shared = _get_shared_fields(group)
         for old, new in group.names.items():
             row = ChangeRow(old=old, new=new, **shared)
             first = known.setdefault((row.kind, row.package, old), row)
@@ -160,12 +160,12 @@ def all_rows() -> tuple[ChangeRow, ...]:
 
 
 @cache
-def all_uses(kind: str = "call-changed") -> dict[str, ChangeRow]:
+def load_uses(kind: str = "call-changed") -> dict[str, ChangeRow]:
     """Every known change of uses, or of behaviour, by label. Raises SnapshotError when a file cannot be read, or two
     rows have one label."""
     found: dict[str, ChangeRow] = {}
     for group in (g for file in _read(_USES[kind]) for g in (*file.uses, *file.behaviour)):
-        shared = _shared_of(group)
+        shared = _get_shared_fields(group)
         if kind == "behaviour":
             shared |= {"removed_in": group.since, "back_in": group.until}
         for label, use in group.uses.items():
@@ -179,46 +179,46 @@ _USES = {"call-changed": "uses*.json", "behaviour": "behaviour.json"}
 
 
 @cache
-def stamp_of_uses() -> str:
+def compute_uses_stamp() -> str:
     """Differs whenever a table of uses does."""
     paths = (path for pattern in _USES.values() for path in sorted(DATA.glob(pattern)))
     return hashlib.sha1(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
 
 
 @cache
-def looked_for() -> dict[str, list[tuple[str, Pattern]]]:
+def index_uses() -> dict[str, list[tuple[str, Pattern]]]:
     """The uses of C++, and what behaves otherwise, with their labels, by a word that stands in each."""
     found: dict[str, list[tuple[str, Pattern]]] = {}
-    for row in (*all_uses().values(), *all_uses("behaviour").values()):
+    for row in (*load_uses().values(), *load_uses("behaviour").values()):
         if row.pattern is not None and row.pattern.language == "cpp":
             found.setdefault(row.pattern.word, []).append((row.old, row.pattern))
     return found
 
 
-def standards_of(label: str) -> tuple[int, int]:
+def find_standards(label: str) -> tuple[int, int]:
     """refused_from and needs of a use by its label."""
-    row = all_uses().get(label)
+    row = load_uses().get(label)
     return (row.refused_from, row.needs) if row is not None else (0, 0)
 
 
-def function_of(label: str) -> str:
+def find_function(label: str) -> str:
     """The function that a use calls, by its label; empty for other uses."""
-    row = all_uses().get(label)
+    row = load_uses().get(label)
     return row.pattern.word if row is not None and row.pattern is not None and row.pattern.calls else ""
 
 
 def shows_no_type(label: str) -> bool:
     """Whether a use is a member of something whose type nothing shows, by its label."""
-    row = all_uses().get(label)
+    row = load_uses().get(label)
     return row is not None and row.pattern is not None and row.pattern.shows_no_type
 
 
 @cache
-def transitive_includes() -> tuple[TransitiveInclude, ...]:
+def load_transitive() -> tuple[TransitiveInclude, ...]:
     """Every header that is known to have stopped coming along. Raises SnapshotError when the data cannot be read."""
     return tuple(
         TransitiveInclude(name, g.headers, g.library, g.since, g.sure, g.source)
-        for file in _files()
+        for file in _load_files()
         for g in file.transitive
         for name in g.names
     )
@@ -245,33 +245,33 @@ def changes_in_force(target: DistroTarget, providers: Providers | None = None) -
     A row whose package or library the target does not have, or has in an unknown version, is left out, except for
     packages that are themselves gone.
     """
-    table = providers or default_providers()
+    table = providers or load_providers()
     found = []
     versions: dict[tuple[str, bool, bool], str | None] = {}
-    for row in (*all_rows(), *all_uses().values()):
+    for row in (*load_rows(), *load_uses().values()):
         if row.ros and row.ros != target.ros:
             continue
         owner = row.package, row.library, bool(row.last_in)
         if owner not in versions:
-            versions[owner] = version_of(row.package, row.library, target, bool(row.last_in))
+            versions[owner] = find_version(row.package, row.library, target, bool(row.last_in))
         version = versions[owner]
         if not version:
-            if row.kind in ("package-removed", "package-renamed") and reached(row.removed_in, "", target):
-                found.append(_change(row, "removed", ""))
+            if row.kind in ("package-removed", "package-renamed") and has_reached(row.removed_in, "", target):
+                found.append(_make_change(row, "removed", ""))
             continue
-        state = _state(row, version, target, table)
+        state = _determine_state(row, version, target, table)
         if state:
-            found.append(_change(row, state, version))
+            found.append(_make_change(row, state, version))
     return tuple(found)
 
 
-def _change(row: ChangeRow, state: str, version: str) -> ChangeInForce:
+def _make_change(row: ChangeRow, state: str, version: str) -> ChangeInForce:
     return ChangeInForce(
         row.kind, row.package, row.old, row.new, state, version, row.new_since, row.source, row.library
     )
 
 
-def version_of(package: str, library: bool, target: DistroTarget, derived: bool = False) -> str | None:
+def find_version(package: str, library: bool, target: DistroTarget, derived: bool = False) -> str | None:
     """Version of a released package, or of a platform library, on a target; None when it is not there or not known.
 
     derived: what is asked was read from Debian's packages of the library. ROS releases some of those itself (urdfdom,
@@ -279,86 +279,88 @@ def version_of(package: str, library: bool, target: DistroTarget, derived: bool 
     the oldest which Debian's releases allow.
     """
     if not library:
-        return target.version(package)
-    if derived and (released := target.version(package.replace("-", "_"))):
+        return target.find_version(package)
+    if derived and (released := target.find_version(package.replace("-", "_"))):
         return released
     if package == "python" and getattr(target, "python_major", 3) == 2:
         return "2.7"
-    return target.library(package) or (system_libraries().around(package, target.platform)[0] if derived else None)
+    return target.find_library(package) or (
+        load_libraries().find_range(package, target.platform)[0] if derived else None
+    )
 
 
-def _state(row: ChangeRow, version: str, target: DistroTarget, table: Providers) -> State | None:
+def _determine_state(row: ChangeRow, version: str, target: DistroTarget, table: Providers) -> State | None:
     if row.pattern is not None:
-        if reached(row.removed_in, version, target) and not reached(row.back_in, version, target):
+        if has_reached(row.removed_in, version, target) and not has_reached(row.back_in, version, target):
             return "removed"
-        return "absent" if row.new_since and not reached(row.new_since, version, target) else None
+        return "absent" if row.new_since and not has_reached(row.new_since, version, target) else None
     if row.kind.startswith("package-"):
         # The package is there: at most on its way out.
-        return "deprecated" if reached(row.deprecated_in, version, target) else None
-    if reached(row.back_in, version, target):
+        return "deprecated" if has_reached(row.deprecated_in, version, target) else None
+    if has_reached(row.back_in, version, target):
         return None
-    gone = reached(row.removed_in, version, target)
+    gone = has_reached(row.removed_in, version, target)
     new = None
     if row.kind.startswith("header-") and not row.library:
         old = table.has_header(row.package, row.old, target.distro, version)
-        if old is None and target.distro != "rolling" and _still(table, row.package, row.old, target.distro, version):
+        if old is None and target.distro != "rolling" and _is_kept(table, row.package, row.old, target.distro, version):
             old = True
         if old is not None:
             gone = not old
-            if gone and not _had(row, target, table):
+            if gone and not _has_had_header(row, target, table):
                 return None
         if row.new:
             new = table.has_header(row.package, row.new, target.distro, version)
-            if new is None and _still(table, row.package, row.new, target.distro, version):
+            if new is None and _is_kept(table, row.package, row.new, target.distro, version):
                 new = True
     if gone:
         return "removed"
     if new is None and row.new:
-        new = _new_by_table(row, version, target)
+        new = _is_new_by_table(row, version, target)
     if new is False:
         return "absent"
-    return "deprecated" if reached(row.deprecated_in, version, target) else None
+    return "deprecated" if has_reached(row.deprecated_in, version, target) else None
 
 
 def behaves_differently(row: ChangeRow, target: DistroTarget) -> bool | None:
     """Whether a target has the new behaviour that a row describes; None where it has not the package, or one of another
     generation."""
-    version = version_of(row.package, row.library, target)
-    if not version or (row.removed_in in DISTROS and not _same_generation(row.removed_in, target)):
+    version = find_version(row.package, row.library, target)
+    if not version or (row.removed_in in DISTROS and not _is_same_generation(row.removed_in, target)):
         return None
-    return reached(row.removed_in, version, target) and not reached(row.back_in, version, target)
+    return has_reached(row.removed_in, version, target) and not has_reached(row.back_in, version, target)
 
 
-def _still(table: Providers, package: str, header: str, distro: str, version: str) -> bool:
+def _is_kept(table: Providers, package: str, header: str, distro: str, version: str) -> bool:
     """Whether the distro's newest release that was read has a header: later ones of a distro rarely drop any."""
     return any(
-        span.distro == distro and span.last is None and at_least(version, span.first)
-        for span in table.header_history(package, header)
+        span.distro == distro and span.last is None and is_at_least(version, span.first)
+        for span in table.list_header_spans(package, header)
     )
 
 
-def _had(row: ChangeRow, target: DistroTarget, table: Providers) -> bool:
+def _has_had_header(row: ChangeRow, target: DistroTarget, table: Providers) -> bool:
     """Whether an earlier release of this ROS generation had the header: then it is gone rather than not there yet."""
     here = DISTROS.get(target.distro, len(DISTROS))
     return any(
-        span.distro in DISTROS and DISTROS[span.distro] <= here and _same_generation(span.distro, target)
-        for span in table.header_history(row.package, row.old)
+        span.distro in DISTROS and DISTROS[span.distro] <= here and _is_same_generation(span.distro, target)
+        for span in table.list_header_spans(row.package, row.old)
     )
 
 
-def _same_generation(distro: str, target: DistroTarget) -> bool:
+def _is_same_generation(distro: str, target: DistroTarget) -> bool:
     return (DISTROS[distro] >= DISTROS["ardent"]) == (target.ros == 2)
 
 
-def _new_by_table(row: ChangeRow, version: str, target: DistroTarget) -> bool | None:
+def _is_new_by_table(row: ChangeRow, version: str, target: DistroTarget) -> bool | None:
     if target.distro in row.new_in:
         first = row.new_in[target.distro]
-        return bool(first) and at_least(version, first)
-    return reached(row.new_since, version, target) if row.new_since else None
+        return bool(first) and is_at_least(version, first)
+    return has_reached(row.new_since, version, target) if row.new_since else None
 
 
 @lru_cache(maxsize=10_000)
-def reached(bound: str, version: str, target: DistroTarget) -> bool:
+def has_reached(bound: str, version: str, target: DistroTarget) -> bool:
     """Whether a target is at or past a bound: a version, a distro of its generation, or all of ROS 2."""
     if not bound:
         return False
@@ -366,28 +368,28 @@ def reached(bound: str, version: str, target: DistroTarget) -> bool:
         return target.ros == 2
     if bound in DISTROS:
         place = DISTROS.get(target.distro)
-        if place is None or not _same_generation(bound, target):
+        if place is None or not _is_same_generation(bound, target):
             return False
         # What came with a distro came to rolling at some day before: for sure only from the distro's release on.
         return (release_day(bound) or "9") <= target.date if target.distro == "rolling" else DISTROS[bound] <= place
-    return bool(version) and at_least(version, bound)
+    return bool(version) and is_at_least(version, bound)
 
 
-def excuses(change: ChangeInForce) -> tuple[str, ...]:
+def list_excuses(change: ChangeInForce) -> tuple[str, ...]:
     """Endings of include paths that bring a removed name back (`_c.h` for OpenCV's C constants); empty for most."""
-    return _excuses().get((change.package, change.old), ())
+    return _load_excuses().get((change.package, change.old), ())
 
 
-def removed_in(change: ChangeInForce) -> str:
+def find_removal_version(change: ChangeInForce) -> str:
     """The version from which on an old name is gone; empty when it is not known."""
-    return _bounds().get((change.kind, change.package, change.old), "")
+    return _load_bounds().get((change.kind, change.package, change.old), "")
 
 
 @cache
-def _bounds() -> dict[tuple[str, str, str], str]:
-    return {(row.kind, row.package, row.old): row.removed_in for row in all_rows()}
+def _load_bounds() -> dict[tuple[str, str, str], str]:
+    return {(row.kind, row.package, row.old): row.removed_in for row in load_rows()}
 
 
 @cache
-def _excuses() -> dict[tuple[str, str], tuple[str, ...]]:
-    return {(row.package, row.old): row.unless for row in all_rows() if row.unless}
+def _load_excuses() -> dict[tuple[str, str], tuple[str, ...]]:
+    return {(row.package, row.old): row.unless for row in load_rows() if row.unless}

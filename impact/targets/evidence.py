@@ -10,14 +10,14 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
-from .changes import DISTROS, ChangeRow, all_rows, all_uses, reached, version_of
-from .distro.known import release_day, releases
+from .changes import DISTROS, ChangeRow, find_version, has_reached, load_rows, load_uses
+from .distro.known import list_releases, release_day
 from .evidence_record import Evidence, OnTarget
 from .providers.providers import Providers
-from .surface.offers import declarations, effect, there_at
-from .surface.store import shipped
+from .surface.offers import classify_event, is_there_at, list_declared
+from .surface.store import load_shipped
 from .target import ChangeInForce
-from .version import at_least, parts
+from .version import is_at_least, parse
 
 if TYPE_CHECKING:
     from .distro.distro import DistroTarget
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from .surface.offers import Offered
 
 
-def evidence_of(change: ChangeInForce) -> Evidence:
+def make_evidence(change: ChangeInForce) -> Evidence:
     """The evidence for a known change of changes.py."""
-    row = _rows().get((change.kind, change.package, change.old))
+    row = _load_rows().get((change.kind, change.package, change.old))
     if row is None:
         what = _WHAT.get(change.state, "removed")
         return Evidence(change.package, what, library=change.library, source=change.source)
@@ -35,11 +35,11 @@ def evidence_of(change: ChangeInForce) -> Evidence:
         first = row.new_since if change.state == "absent" else row.removed_in
         side = "python" if row.pattern.language == "python" else "c++"
         return Evidence(row.package, _WHAT.get(change.state, "removed"), row.old, side=side,
-                        last=row.last_in or _before(first, row.library, row.source, row.package), first=first,
+                        last=row.last_in or _find_before(first, row.library, row.source, row.package), first=first,
                         library=row.library, source=row.source)  # fmt: skip
     if change.state == "deprecated":
-        return _gone(row)._replace(change="deprecated", last="", first=row.deprecated_in, header="")
-    here, other = (_new(row), _gone(row)) if change.state == "absent" else (_gone(row), _new(row))
+        return _make_gone(row)._replace(change="deprecated", last="", first=row.deprecated_in, header="")
+    here, other = (_make_new(row), _make_gone(row)) if change.state == "absent" else (_make_gone(row), _make_new(row))
     known = other.name and not row.back_in and (other.first or other.new_in or other.header)
     return here._replace(other=other) if known else here
 
@@ -48,75 +48,75 @@ _WHAT = {"absent": "added", "deprecated": "deprecated"}
 _SIDES = {"header": "header", "python": "python", "cmake": "cmake", "api": "c++"}
 
 
-def _gone(row: ChangeRow) -> Evidence:
+def _make_gone(row: ChangeRow) -> Evidence:
     """That the old name went."""
     side = _SIDES.get(row.kind.partition("-")[0], "")
     # Where an old name came back, no one version tells who has it.
     first = "" if row.back_in else row.removed_in
     return Evidence(row.package, "changed" if row.kind == "api-changed" else "removed", row.old, row.new, side,
-                    last=row.last_in or _before(first, row.library, row.source, row.package), first=first,
+                    last=row.last_in or _find_before(first, row.library, row.source, row.package), first=first,
                     library=row.library,
                     source=row.source, header="" if row.library or side != "header" else row.old)  # fmt: skip
 
 
-def _new(row: ChangeRow) -> Evidence:
+def _make_new(row: ChangeRow) -> Evidence:
     """That the new name came."""
-    gone = _gone(row)
+    gone = _make_gone(row)
     return Evidence(row.package, "added", row.new, row.old, gone.side, first=row.new_since, library=row.library,
                     source=row.source, new_in=tuple(row.new_in.items()),
                     header=row.new if gone.header else "")  # fmt: skip
 
 
-def _before(first: str, library: bool, source: str, package: str) -> str:
+def _find_before(first: str, library: bool, source: str, package: str) -> str:
     """The newest released version before one, for rows that were made by comparing one release with the next."""
     if library or not first[:1].isdigit() or not source.startswith("release tags of"):
         return ""
-    return released_before(package, first)
+    return find_release_before(package, first)
 
 
 @cache
-def released_before(package: str, version: str) -> str:
+def find_release_before(package: str, version: str) -> str:
     """The highest version of a ROS package below this one that a distro of the same generation ever had. Empty when
     none had one, or none this version, so that the generation is not known."""
-    released = releases(package)
+    released = list_releases(package)
     generations = {ros for ros, other in released if other == version}
     best = ""
     for ros, other in released if len(generations) == 1 else ():
-        if ros in generations and not at_least(other, version) and (not best or at_least(other, best)):
+        if ros in generations and not is_at_least(other, version) and (not best or is_at_least(other, best)):
             best = other
     return best
 
 
 @cache
-def _rows() -> dict[tuple[str, str, str], ChangeRow]:
+def _load_rows() -> dict[tuple[str, str, str], ChangeRow]:
     # An absent name is known by its new spelling too, and the change keeps the old one.
-    return {(row.kind, row.package, row.old): row for row in (*all_rows(), *all_uses().values())}
+    return {(row.kind, row.package, row.old): row for row in (*load_rows(), *load_uses().values())}
 
 
-def of_offered(offered: Offered) -> Evidence:
+def make_offer_evidence(offered: Offered) -> Evidence:
     """The evidence for what the offers of a target say of a name."""
     change = {"moved": "removed", "absent": "added"}.get(offered.state, offered.state)
     return Evidence(offered.package, change, offered.name, offered.instead, offered.side,
                     last=offered.last, first=offered.first, stored=True)  # fmt: skip
 
 
-def from_surfaces(evidence: Evidence, target: DistroTarget) -> Evidence:
+def add_surfaces(evidence: Evidence, target: DistroTarget) -> Evidence:
     """The evidence with what the stored surfaces tell of the name: declarations, and the versions between which it
     changed as a target sees it. As it was where they know nothing of such a change."""
-    version = None if evidence.library or evidence.ahead else target.version(evidence.package)
-    line = shipped().line(evidence.package, target.ros) if version and evidence.side else None
-    place = line.place(version) if line is not None and version else None
+    version = None if evidence.library or evidence.ahead else target.find_version(evidence.package)
+    line = load_shipped().find_line(evidence.package, target.ros) if version and evidence.side else None
+    place = line.find_place(version) if line is not None and version else None
     if line is None or place is None:
         return evidence
     sides = ("command", "target", "variable") if evidence.side == "cmake" else (evidence.side,)
     for side in sides:
         events = line.events.get(side, {}).get(evidence.name, ())
         event = next((one for one in events if evidence.stored and line.versions[one.place] == evidence.first), None)
-        event = event or _deciding(evidence.change, side, events, place)
+        event = event or _find_deciding_event(evidence.change, side, events, place)
         if event is not None and event.place:
             last, first = line.versions[event.place - 1], line.versions[event.place]
             found = evidence._replace(side=side, last=last, first=first, new_in=(), stored=True)
-            found = found if evidence.change == "deprecated" else _declared(found, target.ros)
+            found = found if evidence.change == "deprecated" else _add_declarations(found, target.ros)
             guessed = not evidence.stored and (last in line.approximate or first in line.approximate)
             if guessed or evidence.new_in or evidence.first[:1].isdigit():
                 # A branch stood for one of them; or a person found out the very version, and not all are stored.
@@ -127,30 +127,30 @@ def from_surfaces(evidence: Evidence, target: DistroTarget) -> Evidence:
     return evidence
 
 
-def _declared(evidence: Evidence, ros: int) -> Evidence:
+def _add_declarations(evidence: Evidence, ros: int) -> Evidence:
     """The evidence with the declarations before and since."""
-    history = shipped().history(evidence.package, ros)
+    history = load_shipped().find_history(evidence.package, ros)
     old, new = (
-        declarations(history, evidence.side, evidence.name, version) for version in (evidence.last, evidence.first)
+        list_declared(history, evidence.side, evidence.name, version) for version in (evidence.last, evidence.first)
     )
     # What only changed beneath, such as a base, is declared as before.
     return evidence._replace(old=old, new=new) if old != new else evidence
 
 
-def _deciding(change: str, side: str, events: Sequence[ChangeEvent], place: int) -> ChangeEvent | None:
+def _find_deciding_event(change: str, side: str, events: Sequence[ChangeEvent], place: int) -> ChangeEvent | None:
     """The event of a name that made it what it is on a target; None when none did."""
     if change == "added":
         found = next((event for event in events if event.place > place), None)
-        return found if found is not None and effect(side, found) == "come" else None
+        return found if found is not None and classify_event(side, found) == "come" else None
     past = [event for event in events if event.place <= place]
     if change == "deprecated":
         return next((e for e in reversed(past) if any(told.kind == "deprecated" for told in e.told)), None)
-    if not past or (effect(side, past[-1]) == "gone") != (change == "removed"):
+    if not past or (classify_event(side, past[-1]) == "gone") != (change == "removed"):
         return None
     return past[-1]
 
 
-def seen_on(
+def add_target_states(
     evidence: Evidence, targets: Sequence[DistroTarget], spoken_of: Iterable[str], providers: Providers
 ) -> Evidence | None:
     """The evidence with how each target stands to it, in the order given; targets that lack the package or library, or
@@ -161,8 +161,8 @@ def seen_on(
     """
     spoken = frozenset(spoken_of)
     told = next((target for target in targets if target.name in spoken), None)
-    evidence = from_surfaces(evidence, told) if told is not None else evidence
-    found = tuple(one for target in targets if (one := _on(evidence, target, providers)) is not None)
+    evidence = add_surfaces(evidence, told) if told is not None else evidence
+    found = tuple(one for target in targets if (one := _make_target_state(evidence, target, providers)) is not None)
     expected = (evidence.change != "added") != evidence.ahead
     if any(one.holds != expected for one in found if one.target in spoken):
         evidence = evidence._replace(first="", last="")
@@ -174,25 +174,25 @@ def seen_on(
 
 def holds_on(evidence: Evidence, target: DistroTarget, providers: Providers) -> bool | None:
     """Whether a change is in force on a target; None when that is not known."""
-    found = _on(evidence, target, providers)
+    found = _make_target_state(evidence, target, providers)
     return None if found is None else found.holds
 
 
-def _on(evidence: Evidence, target: DistroTarget, providers: Providers) -> OnTarget | None:
+def _make_target_state(evidence: Evidence, target: DistroTarget, providers: Providers) -> OnTarget | None:
     # Of a library, only rows that were read from packages tell the last version before.
-    version = version_of(evidence.package, evidence.library, target, bool(evidence.last))
+    version = find_version(evidence.package, evidence.library, target, bool(evidence.last))
     if not version or not (evidence.first or evidence.new_in or evidence.header):
         return None
     holds = _holds(evidence, version, target, providers)
     if holds is None:
         return None
-    return OnTarget(target.name, version, holds, _since(evidence, target, holds, providers))
+    return OnTarget(target.name, version, holds, _find_first_day(evidence, target, holds, providers))
 
 
 def _holds(evidence: Evidence, version: str, target: DistroTarget, providers: Providers) -> bool | None:
     """Whether a change is in force in a version that a target has, or had; None when that is not known."""
     if evidence.stored:
-        line = shipped().line(evidence.package, target.ros)
+        line = load_shipped().find_line(evidence.package, target.ros)
         return _holds_by(line, evidence, version) if line is not None else None
     if evidence.header:
         there = providers.has_header(evidence.package, evidence.header, target.distro, version)
@@ -201,21 +201,21 @@ def _holds(evidence: Evidence, version: str, target: DistroTarget, providers: Pr
     distros = dict(evidence.new_in)
     if target.distro in distros:
         first = distros[target.distro]
-        return bool(first) and at_least(version, first)
-    if evidence.library and evidence.last and parts(evidence.last) < parts(version) < parts(evidence.first):
+        return bool(first) and is_at_least(version, first)
+    if evidence.library and evidence.last and parse(evidence.last) < parse(version) < parse(evidence.first):
         return None  # between two packaged versions
-    return reached(evidence.first, version, target) if evidence.first else None
+    return has_reached(evidence.first, version, target) if evidence.first else None
 
 
 def _holds_by(line: Line, evidence: Evidence, version: str) -> bool | None:
     """The same by the stored versions. One that is not stored is taken to be like the stored one that shares its first
     two numbers; else it is known where its stored neighbours agree."""
-    place = line.place(version)
+    place = line.find_place(version)
     events = line.events.get(evidence.side, {}).get(evidence.name)
     if place is None or not events:
         return None
     near = [at for at in (place, place + 1) if at < len(line.versions)]
-    alike = [at for at in near if parts(line.versions[at])[:2] == parts(version)[:2]]
+    alike = [at for at in near if parse(line.versions[at])[:2] == parse(version)[:2]]
     asked = alike[:1] or near
     held = {_holds_at(evidence, events, line, at) for at in asked}
     return held.pop() if len(held) == 1 else None
@@ -223,15 +223,15 @@ def _holds_by(line: Line, evidence: Evidence, version: str) -> bool | None:
 
 def _holds_at(evidence: Evidence, events: tuple[ChangeEvent, ...], line: Line, place: int) -> bool:
     if evidence.change in ("changed", "deprecated"):
-        return at_least(line.versions[place], evidence.first)
-    return there_at(evidence.side, events, place) == (evidence.change == "added")
+        return is_at_least(line.versions[place], evidence.first)
+    return is_there_at(evidence.side, events, place) == (evidence.change == "added")
 
 
-def _since(evidence: Evidence, target: DistroTarget, holds: bool, providers: Providers) -> str:
+def _find_first_day(evidence: Evidence, target: DistroTarget, holds: bool, providers: Providers) -> str:
     released = release_day(target.distro)
     if evidence.library:
         return released if holds and target.came_with_release(evidence.package) else ""
-    if target.overridden(evidence.package):
+    if target.is_overridden(evidence.package):
         return ""
 
     if holds and target.distro == "rolling" and evidence.first in DISTROS:
@@ -239,7 +239,7 @@ def _since(evidence: Evidence, target: DistroTarget, holds: bool, providers: Pro
     # Before its announced release a distro is being made.
     begin = released if target.distro != "rolling" else ""
     since, unknown, met = "", False, False
-    for day, version in target.arrivals(evidence.package):
+    for day, version in target.list_arrivals(evidence.package):
         there = _holds(evidence, version, target, providers) if version is not None else None
         # Rolling has no day on which it began: what its first version had, nobody there has seen otherwise.
         always, met = there and not met and target.distro == "rolling", met or version is not None

@@ -32,7 +32,7 @@ class Evidence(NamedTuple):
     the first version with the change (empty: never there). header: an include path whose presence in a release of the
     package decides instead, where that is known. ahead: the finding is about what is to come on its targets. stored:
     the stored surfaces tell which versions have the change. other: the same about `instead`, where it is known.
-    targets: see seen_on().
+    targets: see add_target_states().
     """
 
     package: str

@@ -11,7 +11,7 @@ import msgspec
 from .snapshot import DATA, read_table
 
 
-def last_part(name: str) -> str:
+def find_last_part(name: str) -> str:
     """The last part of a parameter's name, in either generation of ROS."""
     return name.replace("/", ".").rpartition(".")[2].lstrip("~")
 
@@ -31,11 +31,11 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @cache
-def renamed_parameters(package: str) -> dict[str, tuple[str, ...]]:
+def find_renamed_parameters(package: str) -> dict[str, tuple[str, ...]]:
     """The other names, old or new, of a package's parameters, all by their last parts. Raises SnapshotError when the
     data file cannot be read."""
     found: dict[str, tuple[str, ...]] = {}
-    for row in all_renamed():
+    for row in load_renamed_parameters():
         for old, new in row.names.items() if package in row.packages else ():
             found[old] = (*found.get(old, ()), new)
             found[new] = (*found.get(new, ()), old)
@@ -43,6 +43,6 @@ def renamed_parameters(package: str) -> dict[str, tuple[str, ...]]:
 
 
 @cache
-def all_renamed() -> list[RenamedParameters]:
+def load_renamed_parameters() -> list[RenamedParameters]:
     """Every row. Raises SnapshotError."""
     return read_table(DATA / "parameters.json", _File).renamed

@@ -6,7 +6,7 @@ from collections.abc import Collection
 import msgspec
 
 from .snapshot import DATA, read_table
-from .version import number_of
+from .version import parse_number
 
 
 class _Platforms(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -28,7 +28,7 @@ OTHER_SYSTEMS, OTHER_RELEASES = frozenset(_SHIPPED.other_systems.split()), froze
 _KNOWN = {name.split()[1]: name for name in CODENAMES.values()}
 
 
-def neighbours(platform: str, known: Collection[str]) -> tuple[str, str]:
+def find_neighbours(platform: str, known: Collection[str]) -> tuple[str, str]:
     """The platforms among those known that were frozen last before one and first after it, itself for one of them;
     empty where there is none. Ubuntu takes what Debian has at the time, so that what both have and lack it does too."""
     if platform not in _FROZEN:
@@ -39,7 +39,7 @@ def neighbours(platform: str, known: Collection[str]) -> tuple[str, str]:
     return before[-1] if before else "", after[0] if after else ""
 
 
-def normal_platform(text: str) -> str:
+def normalize_platform(text: str) -> str:
     """One spelling for a platform: `Ubuntu 22.04`, `jammy`, `ubuntu-jammy`, `ubuntu:jammy` → `ubuntu jammy`.
 
     Unknown names are only lowered and spaced.
@@ -57,13 +57,13 @@ def normal_platform(text: str) -> str:
     return words
 
 
-def python_minor(version: str | None) -> int | None:
+def parse_python_minor(version: str | None) -> int | None:
     """`3.10.4` → 10, None when it cannot be read."""
     match = re.match(r"\d+\.(\d+)", version or "")
-    return number_of(match.group(1)) if match else None
+    return parse_number(match.group(1)) if match else None
 
 
-def library_name(name: str) -> str:
+def normalize_library_name(name: str) -> str:
     """The name a platform library has in platform_versions.yaml."""
     lowered = name.lower()
     return _SHIPPED.library_aliases.get(lowered, lowered)

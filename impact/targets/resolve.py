@@ -12,22 +12,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...edges import files
-from ...edges.console import visible
-from ...edges.limits import limits
+from ...edges.console import escape
+from ...edges.limits import get_limits
 from ..config import check_inside, lies_in
-from ..tree.ignore import git_folder
+from ..tree.ignore import find_git_dir
 from ..tree.paths import is_vendored
 from . import snapshot as snapshots
 from .distro.distro import DistroTarget, TargetError
-from .distro.known import KnownDistro, did_you_mean, known_distros, systems_of_rosdep
-from .platform import CODENAMES, OTHER_RELEASES, OTHER_SYSTEMS, library_name, normal_platform
+from .distro.known import KnownDistro, did_you_mean, list_known_distros, list_rosdep_systems
+from .platform import CODENAMES, OTHER_RELEASES, OTHER_SYSTEMS, normalize_library_name, normalize_platform
 from .snapshot import Snapshot
 
 if TYPE_CHECKING:
     from ..config import Config
     from ..tree import Tree
 
-__all__ = ["Chosen", "TargetError", "choose_targets", "default_distros", "distros_named", "parse_target"]
+__all__ = ["Chosen", "TargetError", "choose_default_distros", "choose_targets", "find_named_distros", "parse_target"]
 
 _DPKG = ".dpkg.txt"
 _DOCKER = "docker:"
@@ -54,26 +54,26 @@ def parse_target(
     """
     text = text.strip()
     if text.startswith(_DOCKER):
-        return _docker(text, data)
+        return _parse_docker(text, data)
     if text.endswith((_DPKG, ".json")):
         if "\0" in text:
-            raise TargetError(f"`{visible(text)}` is no path of a file")
-        return _dpkg(folder / text, text, data) if text.endswith(_DPKG) else _captured(folder / text, text)
+            raise TargetError(f"`{escape(text)}` is no path of a file")
+        return _load_dpkg(folder / text, text, data) if text.endswith(_DPKG) else _load_captured(folder / text, text)
     named = config.targets if config else {}
     base, at, date = text.partition("@")
     for name, day in ((text, None), (base, date if at else None)):
         if name in named:
             assert config is not None
-            return _configured(name, named[name], config, day, text, data)
+            return _make_configured(name, named[name], config, day, text, data)
     if at and not _DATE.match(date):
         raise TargetError(f"`{text}`: `{date}` is no date: write it as in `{base}@2024-03-01`")
-    if base not in {known.name for known in known_distros(data)}:
-        raise TargetError(_unknown(text, base, named, folder, data))
+    if base not in {known.name for known in list_known_distros(data)}:
+        raise TargetError(_describe_unknown(text, base, named, folder, data))
     return DistroTarget(base, date if at else None, name=text, data=data)
 
 
-def _unknown(text: str, base: str, named: Mapping[str, Any], folder: Path, data: Snapshot | None) -> str:
-    distros = [known.name for known in known_distros(data)]
+def _describe_unknown(text: str, base: str, named: Mapping[str, Any], folder: Path, data: Snapshot | None) -> str:
+    distros = [known.name for known in list_known_distros(data)]
     hint = did_you_mean(base, [*distros, *named], "; ") or "."
     own = f" Targets of rosimpact.toml: {', '.join(sorted(named))}." if named else ""
     if (folder / text).exists() and (folder == Path() or lies_in(folder / text, folder)):
@@ -81,7 +81,7 @@ def _unknown(text: str, base: str, named: Mapping[str, Any], folder: Path, data:
     return f"unknown target `{text}`{hint} Known distros: {', '.join(distros)}.{own}"
 
 
-def _configured(
+def _make_configured(
     name: str, table: Mapping[str, Any], config: Config, day: str | None, asked: str, data: Snapshot | None
 ) -> DistroTarget:
     """A [targets.NAME] table. Keys: distro or file, date, platform, versions."""
@@ -108,7 +108,7 @@ def _configured(
             check_inside(folder / file, config, f"{where} `file`")
         base = parse_target(file, None, folder, data)
         _check_table(where, platform, versions, data)
-        return base.changed(date=date, platform=platform, versions=versions, name=asked)
+        return base.copy_with_changes(date=date, platform=platform, versions=versions, name=asked)
     distro = table.get("distro", "")
     if "@" in distro:
         distro, _, written = distro.partition("@")
@@ -122,16 +122,16 @@ def _configured(
 
 def _check_table(where: str, platform: str | None, versions: Mapping[str, str], data: Snapshot | None) -> None:
     """Raises TargetError for a platform, or a name in `versions`, that nobody knows."""
-    data = data or snapshots.default()
-    known = data.names("package") | data.names("library")
+    data = data or snapshots.load_snapshot()
+    known = data.list_values("package") | data.list_values("library")
     for name in versions:
-        if name not in known and library_name(name) not in known:
+        if name not in known and normalize_library_name(name) not in known:
             hint = did_you_mean(name, sorted(known)) or "a ROS package or a platform library is meant"
-            raise TargetError(f"{where}: `versions` has an unknown name `{visible(name)}`; {hint}")
-    words = normal_platform(platform or "").split()
+            raise TargetError(f"{where}: `versions` has an unknown name `{escape(name)}`; {hint}")
+    words = normalize_platform(platform or "").split()
     if not words:
         return
-    systems = systems_of_rosdep(data) | OTHER_SYSTEMS
+    systems = list_rosdep_systems(data) | OTHER_SYSTEMS
     releases = {name.split()[1] for name in CODENAMES.values()} | OTHER_RELEASES
     if words[0] not in systems:
         hint = did_you_mean(words[0], sorted(systems | releases)) or f"known systems: {', '.join(sorted(systems))}"
@@ -139,10 +139,10 @@ def _check_table(where: str, platform: str | None, versions: Mapping[str, str], 
         hint = did_you_mean(words[1], sorted(releases)) or f"known releases: {', '.join(sorted(releases))}"
     else:
         return
-    raise TargetError(f"{where}: unknown platform `{visible(str(platform))}`; {hint}")
+    raise TargetError(f"{where}: unknown platform `{escape(str(platform))}`; {hint}")
 
 
-def _captured(path: Path, text: str) -> DistroTarget:
+def _load_captured(path: Path, text: str) -> DistroTarget:
     from .capture import load_capture
 
     if not os.path.exists(path):
@@ -174,24 +174,24 @@ def parse_dpkg(text: str) -> list[DpkgRow]:
     return rows
 
 
-def _dpkg(path: Path, text: str, data: Snapshot | None) -> DistroTarget:
+def _load_dpkg(path: Path, text: str, data: Snapshot | None) -> DistroTarget:
     """A machine from a listing of its packages. Its day is that of its newest ROS package, told by the build stamp."""
-    from .capture import from_dpkg
+    from .capture import read_dpkg_rows
 
     try:
-        listing = files.read_text(path, limits().listing, errors="replace")
+        listing = files.read_text(path, get_limits().listing, errors="replace")
     except OSError as error:
         raise TargetError(f"{text}: cannot be read ({error.strerror}); write it with `dpkg -l > {text}`") from None
     rows = parse_dpkg(listing)
     if not rows:
         raise TargetError(f"{text}: lists no installed package; write it with `dpkg -l > {text}`")
-    distro, packages, libraries, _ = from_dpkg(rows)
+    distro, packages, libraries, _ = read_dpkg_rows(rows)
     if not distro:
         raise TargetError(f"{text}: lists no package of a ROS distro (ros-<distro>-...)")
     stamps = [match for row in rows if row.name.startswith(f"ros-{distro}-") and (match := _STAMP.search(row.version))]
     date = max(filter(_is_day, ("-".join(match.groups()[1:]) for match in stamps)), default=None)
     codename = Counter(match[1] for match in stamps).most_common(1)
-    platform = normal_platform(codename[0][0]) if codename else None
+    platform = normalize_platform(codename[0][0]) if codename else None
     name = posixpath.basename(text).removesuffix(_DPKG)
     return DistroTarget(distro, date, platform, {**libraries, **packages}, name, data)
 
@@ -224,7 +224,7 @@ def parse_image(image: str, distros: Sequence[KnownDistro]) -> tuple[str, str | 
         last = repository.rpartition("/")[2]
         distro = next((word for word in _WORD.findall(last) if word in names), None)
     if distro is None and tag == "latest" and repository in ("ros", "library/ros", "docker.io/library/ros"):
-        distro = _newest_lts(distros, 2)
+        distro = _find_newest_lts(distros, 2)
     if distro is None:
         return None
     # `jammy` and `22.04` both name Ubuntu's release; `12` alone names nothing.
@@ -233,8 +233,8 @@ def parse_image(image: str, distros: Sequence[KnownDistro]) -> tuple[str, str | 
     return distro, release
 
 
-def _docker(text: str, data: Snapshot | None) -> DistroTarget:
-    distros = known_distros(data)
+def _parse_docker(text: str, data: Snapshot | None) -> DistroTarget:
+    distros = list_known_distros(data)
     image = text[len(_DOCKER) :]
     found = parse_image(image, distros)
     if found is None:
@@ -259,7 +259,7 @@ _SAYS_ROS = re.compile(r"(?i)ros|distro|robostack")
 _ITEM = re.compile(r"^\s*-\s*[\"']?([a-z]+)[\"']?\s*,?\s*$")
 
 
-def distros_named(text: str, distros: Iterable[str]) -> list[str]:
+def find_named_distros(text: str, distros: Iterable[str]) -> list[str]:
     """Distros that a CI file or Dockerfile names, in order of first mention; comments do not count.
 
     Many names are ordinary words (iron, rolling, crystal), so a line must speak of ROS or a distro, or, in a file that
@@ -280,7 +280,7 @@ def distros_named(text: str, distros: Iterable[str]) -> list[str]:
     return list(found)
 
 
-def default_distros(
+def choose_default_distros(
     ros: int,
     texts: Iterable[tuple[str, str, str]],
     branches: Iterable[tuple[str, str]],
@@ -310,9 +310,9 @@ def default_distros(
             for distro in _list_distros(" ".join(_BRANCH.findall(text)), fitting):
                 by_branch.setdefault(repository, {}).setdefault(distro, path)
             continue
-        for distro in distros_named(text, fitting):
+        for distro in find_named_distros(text, fitting):
             named.setdefault(repository, {}).setdefault(distro, path)
-    named = _without_inner(named)
+    named = _drop_inner(named)
 
     def lives(distro: str) -> bool:
         return not fitting[distro].end_of_life or fitting[distro].end_of_life > today
@@ -323,7 +323,7 @@ def default_distros(
             own = {distro: f"branch {branch}" for distro in _list_distros(branch, fitting)}
             if own:  # says more than the branches of what it depends on
                 by_branch[repository] = own
-        by_branch = _without_inner(by_branch)
+        by_branch = _drop_inner(by_branch)
         if not named or any(lives(distro) for found in by_branch.values() for distro in found):
             named = by_branch
     old: list[str] = []
@@ -345,15 +345,15 @@ def default_distros(
         return tuple(chosen), f"named by the workspace ({where})"
     if old:
         why = f"since {', '.join(old)} ended long ago"
-        return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, {why}"
-    return (_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, since nothing names another"
+        return (_find_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, {why}"
+    return (_find_newest_lts(distros, ros),), f"the newest long-term distro of ROS {ros}, since nothing names another"
 
 
 def _list_distros(text: str, distros: Container[str]) -> list[str]:
     return [word for word in re.findall(r"[a-z]+", text.lower()) if word in distros]
 
 
-def _without_inner(named: dict[str, dict[str, str]]) -> dict[str, dict[str, str]]:
+def _drop_inner(named: dict[str, dict[str, str]]) -> dict[str, dict[str, str]]:
     """What repositories name without those that lie inside another of them."""
     return {
         folder: found
@@ -362,7 +362,7 @@ def _without_inner(named: dict[str, dict[str, str]]) -> dict[str, dict[str, str]
     }
 
 
-def _newest_lts(distros: Sequence[KnownDistro], ros: int) -> str:
+def _find_newest_lts(distros: Sequence[KnownDistro], ros: int) -> str:
     return [known.name for known in distros if known.ros == ros and known.lts][-1]
 
 
@@ -374,15 +374,17 @@ def choose_targets(
     asked: texts given after `--target`. config: rosimpact.toml. ros: the generation of the workspace, 1 or 2.
     tree: where CI files are read. Raises TargetError, and ConfigError for surroundings that cannot be read.
     """
-    chosen = _chosen(asked, config, ros, tree, data)
+    chosen = _choose_targets(asked, config, ros, tree, data)
     if not (config.underlays or config.rosdep_sources or config.index):
         return chosen
-    from .distro.surroundings import surroundings
+    from .distro.surroundings import load_surroundings
 
-    return tuple(Chosen(target.surrounded(*surroundings(config, target.distro)), reason) for target, reason in chosen)
+    return tuple(
+        Chosen(target.add_surroundings(*load_surroundings(config, target.distro)), reason) for target, reason in chosen
+    )
 
 
-def _chosen(
+def _choose_targets(
     asked: Sequence[str], config: Config, ros: int, tree: Tree, data: Snapshot | None
 ) -> tuple[Chosen, ...]:
     if asked:
@@ -394,26 +396,26 @@ def _chosen(
             if config.path and text.strip().endswith((_DPKG, ".json")):
                 check_inside(folder / text.strip(), config, f"{config.path}: [check] targets: {text}")
         return tuple(Chosen(parse_target(text, config, folder, data), reason) for text in config.default_targets)
-    known = known_distros(data)
-    day = (data or snapshots.default()).date
+    known = list_known_distros(data)
+    day = (data or snapshots.load_snapshot()).date
     revision = getattr(tree, "revision", "")
     # What is checked out says nothing of another revision; the name of that one does, if it is a branch or a tag.
     branches = [("", revision)] if revision and not revision.startswith(("HEAD", "@")) else _list_branches(tree)
-    distros, reason = default_distros(ros, _ci_texts(tree), branches, known, today=day)
+    distros, reason = choose_default_distros(ros, _iterate_ci_texts(tree), branches, known, today=day)
     return tuple(Chosen(DistroTarget(distro, data=data), reason) for distro in distros)
 
 
 def _list_branches(tree: Tree) -> list[tuple[str, str]]:
-    found = ((folder, branch_of(Path(path))) for folder, path in tree.repositories.items())
+    found = ((folder, read_branch(Path(path))) for folder, path in tree.repositories.items())
     return [(folder, branch) for folder, branch in found if branch]
 
 
-def _ci_texts(tree: Tree) -> Iterator[tuple[str, str, str]]:
+def _iterate_ci_texts(tree: Tree) -> Iterator[tuple[str, str, str]]:
     """The texts that may name distros, each with the repository that it belongs to. A folder with files that CI
     services read at the root of a repository alone is one, also where its history was left out."""
     paths = [
         entry.path
-        for entry in tree.entries()
+        for entry in tree.list_entries()
         if entry.size <= _LARGEST
         and (_CI_FILE.search(entry.path) or _REPOSITORY_FILE.search(entry.path))
         and not is_vendored(entry.path)
@@ -428,10 +430,10 @@ def _ci_texts(tree: Tree) -> Iterator[tuple[str, str, str]]:
         yield next((folder for folder in owners if not folder or path.startswith(f"{folder}/")), ""), path, text
 
 
-def branch_of(repository: Path) -> str:
+def read_branch(repository: Path) -> str:
     """The branch checked out in a git repository, empty when none is (a detached or bare one without HEAD)."""
     try:
-        place = git_folder(os.fspath(repository)) if os.path.lexists(repository / ".git") else os.fspath(repository)
+        place = find_git_dir(os.fspath(repository)) if os.path.lexists(repository / ".git") else os.fspath(repository)
         head = files.read_text(os.path.join(place, "HEAD"), _LARGEST)
     except (OSError, UnicodeDecodeError):
         return ""

@@ -18,8 +18,8 @@ from typing import Any
 import msgspec
 
 from ...edges.files import read_file
-from ...edges.limits import limits
-from ...edges.memory import cached_method
+from ...edges.limits import get_limits
+from ...edges.memory import cache_method
 from ..cache import cache_folder
 from .unpacked import AddFacts, ShippedDatabase, SnapshotError
 from .unpacked import read_table as read_table
@@ -57,13 +57,13 @@ class SnapshotInfo(msgspec.Struct, frozen=True):
     sources: dict[str, str] = {}
 
 
-def shipped_info(data: Path = DATA) -> SnapshotInfo:
+def read_shipped(data: Path = DATA) -> SnapshotInfo:
     """Date and content hash of the snapshot in a data folder.
 
     Raises SnapshotError when it is missing or damaged.
     """
     try:
-        info = msgspec.json.decode(read_file(data / "snapshot.json", limits().settings), type=SnapshotInfo)
+        info = msgspec.json.decode(read_file(data / "snapshot.json", get_limits().settings), type=SnapshotInfo)
         datetime.date.fromisoformat(info.date)
         int(info.sha256, 16)
         return info
@@ -71,14 +71,14 @@ def shipped_info(data: Path = DATA) -> SnapshotInfo:
         raise SnapshotError(f"{data / 'snapshot.json'}: {error}; install rosimpact again") from None
 
 
-def data_stamp() -> tuple[tuple[str, int, int], ...]:
+def compute_data_stamp() -> tuple[tuple[str, int, int], ...]:
     """Sizes and times of the shipped data files; differs whenever one of them does."""
     with os.scandir(DATA) as entries:
         files = sorted((entry.name, entry.stat()) for entry in entries if entry.is_file())
     return tuple((name, status.st_size, status.st_mtime_ns) for name, status in files)
 
 
-def updated_folder() -> Path:
+def find_updated_folder() -> Path:
     """Where `rosimpact data update` keeps what it made; it is used while it is newer than what is shipped."""
     return cache_folder() / "updated"
 
@@ -121,7 +121,7 @@ class Snapshot(ShippedDatabase):
     @property
     def info(self) -> SnapshotInfo:
         if self._info is None:
-            self._info = shipped_info(self.data)
+            self._info = read_shipped(self.data)
         return self._info
 
     @property
@@ -129,46 +129,46 @@ class Snapshot(ShippedDatabase):
         """Newest day of the data (ISO)."""
         return self.info.date
 
-    def row(self, sql: str, parameters: Iterable[Any] = ()) -> tuple | None:
+    def query_row(self, sql: str, parameters: Iterable[Any] = ()) -> tuple | None:
         """The first row of a query, None when there is none."""
-        found = self.rows(sql, parameters)
+        found = self.fetch(sql, parameters)
         return found[0] if found else None
 
-    @cached_method
-    def names(self, table: str, column: str = "name") -> frozenset[str]:
+    @cache_method
+    def list_values(self, table: str, column: str = "name") -> frozenset[str]:
         """All values of a column; read once, since every target asks the same."""
-        return frozenset(value for (value,) in self.rows(f"SELECT DISTINCT {column} FROM {table}"))
+        return frozenset(value for (value,) in self.fetch(f"SELECT DISTINCT {column} FROM {table}"))
 
-    def _sha256(self) -> str:
+    def _read_sha256(self) -> str:
         return self.info.sha256
 
-    def _contents(self) -> tuple[bytes, AddFacts]:
+    def _read_contents(self) -> tuple[bytes, AddFacts]:
         try:
-            return super()._contents()
+            return super()._read_contents()
         except SnapshotError:
-            if self.data != updated_folder():
+            if self.data != find_updated_folder():
                 raise
             # What an update left broken is passed over; the shipped data is always there.
             self.data, self._info = DATA, None
-            return super()._contents()
+            return super()._read_contents()
 
 
 _default: Snapshot | None = None
 
 
-def default() -> Snapshot:
+def load_snapshot() -> Snapshot:
     """The shipped snapshot, one for each process."""
     global _default
     if _default is None:
-        _default = Snapshot(_newest_folder())
+        _default = Snapshot(_find_newest_folder())
     return _default
 
 
-def _newest_folder() -> Path:
+def _find_newest_folder() -> Path:
     """The shipped data, or what `data update` made where that is newer and whole."""
-    updated = updated_folder()
+    updated = find_updated_folder()
     if os.path.exists(updated / "snapshot.json"):
         with contextlib.suppress(SnapshotError):
-            if shipped_info(updated).date > shipped_info().date and os.path.isfile(updated / "distros.sqlite.zst"):
+            if read_shipped(updated).date > read_shipped().date and os.path.isfile(updated / "distros.sqlite.zst"):
                 return updated
     return DATA

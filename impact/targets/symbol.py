@@ -74,7 +74,7 @@ class Availability(NamedTuple):
         """Whether a use of it fails on the target."""
         return self.state in ("removed", "not yet")
 
-    def on(self, horizon: Horizon) -> Availability:
+    def apply_horizon(self, horizon: Horizon) -> Availability:
         """What this horizon's answer is for the target that has it still."""
         evidence = self.evidence._replace(ahead=True) if self.evidence is not None else None
         return self._replace(state="upcoming", horizon=horizon, evidence=evidence)

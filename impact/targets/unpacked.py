@@ -52,7 +52,7 @@ def read_table(path: Path, kind: type[T]) -> T:
 
 
 @cache
-def decoder_of(kind: Any) -> Callable[[bytes | msgspec.Raw], Any]:
+def make_decoder(kind: Any) -> Callable[[bytes | msgspec.Raw], Any]:
     """What reads MessagePack as a type."""
     return msgspec.msgpack.Decoder(kind).decode
 
@@ -61,7 +61,7 @@ def read_packed(data: bytes, kind: Any) -> Any:
     """What databuild packed into a row, as MessagePack."""
     import zstandard
 
-    return decoder_of(kind)(zstandard.ZstdDecompressor().decompress(data))
+    return make_decoder(kind)(zstandard.ZstdDecompressor().decompress(data))
 
 
 def decompress(packed: Path, sha256: str, described: str) -> bytes:
@@ -114,7 +114,7 @@ class ShippedDatabase:
         self._reader = 0  # the process that opened it
         self._lock = threading.Lock()
 
-    def rows(self, sql: str, parameters: Iterable[Any] = ()) -> list[tuple]:
+    def fetch(self, sql: str, parameters: Iterable[Any] = ()) -> list[tuple]:
         """All rows of a query."""
         arguments = tuple(parameters)
         with self._lock:
@@ -125,26 +125,26 @@ class ShippedDatabase:
                 connection.close()
                 # Later runs compare the file with what was unpacked, however whole it looks.
                 with contextlib.suppress(OSError):
-                    os.unlink(f"{self.path()}{_SUM}")
-                self._connection = _in_memory(*self._contents())
+                    os.unlink(f"{self.get_path()}{_SUM}")
+                self._connection = _open_in_memory(*self._read_contents())
                 return self._connection.execute(sql, arguments).fetchall()
 
-    def path(self) -> Path:
+    def get_path(self) -> Path:
         """Where the unpacked file belongs in the cache."""
         facts = hashlib.sha256(b"\0".join(self._read_facts())).hexdigest()
-        name = f"{self.kind}-{self.form}-{self._sha256()[:16]}-{facts[:16]}.sqlite"
+        name = f"{self.kind}-{self.form}-{self._read_sha256()[:16]}-{facts[:16]}.sqlite"
         return (self._cache or cache_folder()) / name
 
     def unpack(self) -> bytes:
         """The database as bytes, decompressed and checked against its hash, before the reviewed facts are added."""
-        return decompress(self.data / f"{self.kind}.sqlite.zst", self._sha256(), self.info_file)
+        return decompress(self.data / f"{self.kind}.sqlite.zst", self._read_sha256(), self.info_file)
 
-    def _contents(self) -> tuple[bytes, AddFacts]:
+    def _read_contents(self) -> tuple[bytes, AddFacts]:
         """What the file is made of: the database without the reviewed facts, and what adds them."""
         raw, facts = self.unpack(), self._read_facts()
         return raw, lambda connection: self.fill(connection, *facts)
 
-    def _sha256(self) -> str:
+    def _read_sha256(self) -> str:
         return read_table(self.data / self.info_file, _Info).sha256
 
     def _read_facts(self) -> list[bytes]:
@@ -165,7 +165,7 @@ class ShippedDatabase:
 
     def _open_whole(self) -> sqlite3.Connection | None:
         """The finished file; None when there is none or it is not whole."""
-        path = self.path()
+        path = self.get_path()
         try:
             return _connect(path, self.table) if _is_whole(path) else None
         except (OSError, *FAULTS):
@@ -173,13 +173,13 @@ class ShippedDatabase:
 
     def _unpack(self) -> sqlite3.Connection:
         """Makes the file and opens it; in memory where it cannot be written."""
-        raw, add_facts = self._contents()
-        path = self.path()
+        raw, add_facts = self._read_contents()
+        path = self.get_path()
         try:
             _write(raw, add_facts, path)
             return _connect(path, self.table)
         except (OSError, *FAULTS):
-            return _in_memory(raw, add_facts)
+            return _open_in_memory(raw, add_facts)
 
 
 def _is_whole(path: Path) -> bool:
@@ -189,19 +189,19 @@ def _is_whole(path: Path) -> bool:
         return False
     data, noted = read_with_status(f"{path}{_SUM}", _SUM_BYTES)
     digest, _, stamp = data.decode("ascii", "replace").partition(" ")
-    if stamp == _stamp(status) and noted.st_mtime_ns > status.st_ctime_ns + _TICK_NS:
+    if stamp == _format_stamp(status) and noted.st_mtime_ns > status.st_ctime_ns + _TICK_NS:
         return True
-    if _digest(path) != digest:
+    if _compute_digest(path) != digest:
         return False
     _note(path, digest)
     return True
 
 
-def _stamp(status: os.stat_result) -> str:
+def _format_stamp(status: os.stat_result) -> str:
     return f"{status.st_size} {status.st_mtime_ns} {status.st_ctime_ns} {status.st_ino}"
 
 
-def _digest(path: str | os.PathLike[str]) -> str:
+def _compute_digest(path: str | os.PathLike[str]) -> str:
     found = hashlib.blake2b(digest_size=16, usedforsecurity=False)
     for chunk in read_chunks(path):
         found.update(chunk)
@@ -211,7 +211,7 @@ def _digest(path: str | os.PathLike[str]) -> str:
 def _note(path: Path, digest: str) -> None:
     """Writes what is known of a file beside it; where that cannot be, every run compares."""
     with contextlib.suppress(OSError):
-        write_file(f"{path}{_SUM}", f"{digest} {_stamp(os.stat(path))}".encode())
+        write_file(f"{path}{_SUM}", f"{digest} {_format_stamp(os.stat(path))}".encode())
 
 
 def _connect(path: Path, table: str) -> sqlite3.Connection:
@@ -233,7 +233,7 @@ def _write(raw: bytes, add_facts: AddFacts, path: Path) -> None:
     import tempfile
 
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=f".{_kind(path)}-", suffix=".part", dir=path.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{_get_kind(path)}-", suffix=".part", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(raw)
@@ -241,7 +241,7 @@ def _write(raw: bytes, add_facts: AddFacts, path: Path) -> None:
             # A crash leaves only a .part file, so no journal is needed.
             connection.execute("PRAGMA journal_mode=OFF")
             add_facts(connection)
-        digest = _digest(name)
+        digest = _compute_digest(name)
         os.replace(name, path)
     except BaseException:
         with contextlib.suppress(OSError):
@@ -251,7 +251,7 @@ def _write(raw: bytes, add_facts: AddFacts, path: Path) -> None:
     _forget_old(path)
 
 
-def _kind(path: Path) -> str:
+def _get_kind(path: Path) -> str:
     return path.name.partition("-")[0]
 
 
@@ -260,26 +260,26 @@ def _forget_old(path: Path) -> None:
 
     Another run may still read an old database, which Unix allows.
     """
-    for old in path.parent.glob(f"{_kind(path)}-*.sqlite"):
+    for old in path.parent.glob(f"{_get_kind(path)}-*.sqlite"):
         if old.name != path.name:
             for each in (old, f"{old}{_SUM}"):
                 with contextlib.suppress(OSError):
                     os.unlink(each)
-    for part in path.parent.glob(f".{_kind(path)}-*.part"):
+    for part in path.parent.glob(f".{_get_kind(path)}-*.part"):
         with contextlib.suppress(OSError):
             if part.stat().st_mtime < time.time() - _STALE:
                 part.unlink()
 
 
-def _deserializer(connection: sqlite3.Connection) -> Callable[[bytes], None] | None:
+def _find_deserializer(connection: sqlite3.Connection) -> Callable[[bytes], None] | None:
     """What opens bytes as a database; only Python 3.11 and newer have it."""
     return getattr(connection, "deserialize", None)
 
 
-def _in_memory(raw: bytes, add_facts: AddFacts) -> sqlite3.Connection:
+def _open_in_memory(raw: bytes, add_facts: AddFacts) -> sqlite3.Connection:
     """The database in memory alone. Raises SnapshotError."""
     connection = sqlite3.connect(":memory:", check_same_thread=False)
-    deserialize = _deserializer(connection)
+    deserialize = _find_deserializer(connection)
     if deserialize is not None:
         deserialize(raw)
     else:

@@ -17,11 +17,21 @@ many, costs that file or folder alone and is among the tree's problems.
 """
 
 from .git import GitTree
-from .joined import JoinedTree, at_merge_bases
-from .paths import IGNORE_MARKERS, LEAVES, PathProblem, Tree, TreeEntry, TreeError, blob_id, inside, shown
+from .joined import JoinedTree, open_merge_bases
+from .paths import (
+    IGNORE_MARKERS,
+    LEAVES,
+    PathProblem,
+    Tree,
+    TreeEntry,
+    TreeError,
+    compute_blob_id,
+    normalize_path,
+    shown,
+)
 from .working import WorkingTree
 
 __all__ = [
     "IGNORE_MARKERS", "LEAVES", "GitTree", "JoinedTree", "PathProblem", "Tree", "TreeEntry", "TreeError", "WorkingTree",
-    "at_merge_bases", "blob_id", "inside", "shown",
+    "compute_blob_id", "normalize_path", "open_merge_bases", "shown",
 ]  # fmt: skip

@@ -16,11 +16,11 @@ from .paths import (
     TreeEntry,
     TreeError,
     Walked,
-    inside,
+    find_file_size_limit,
+    is_within,
     join,
-    largest_file,
+    normalize_path,
     shown,
-    within,
 )
 from .repository import MODE_FOLDER, MODE_LINK, MODE_SUBMODULE, RepositoryObjects, merge_base, open_repository, resolve
 
@@ -33,7 +33,7 @@ _PLACES_AT_MOST = 2_000
 _REPOSITORY = "it leads out of the repository"
 
 
-def name_of(place: str, folder: str) -> str:
+def find_name(place: str, folder: str) -> str:
     """What a folder of a repository is called, or the repository when it is its root."""
     return posixpath.basename(folder or place.removesuffix("/.git")).removesuffix(".git")
 
@@ -65,8 +65,8 @@ class GitTree(Walked):
         short = self.commit[:10]
         self.label = short if self.commit.startswith(revision) else f"{revision} ({short})"
         self._begin()
-        self.folder = inside(folder) or ""
-        self.name = name_of(self.repositories[""], self.folder)
+        self.folder = normalize_path(folder) or ""
+        self.name = find_name(self.repositories[""], self.folder)
         self._top = tree
         self._blobs: dict[str, Any] = {}
         self._folders: set[str] = set()
@@ -80,7 +80,7 @@ class GitTree(Walked):
         place = self._repo.path if self._repo.is_bare else self._repo.workdir or self._repo.path
         return {"": place.rstrip("/")}
 
-    def at(self, revision: str) -> GitTree:
+    def open_revision(self, revision: str) -> GitTree:
         """Another revision of the same repository and folder; folders they share are read once."""
         other = object.__new__(GitTree)
         other.repository, other.follow_links = self.repository, self.follow_links
@@ -101,19 +101,19 @@ class GitTree(Walked):
                 f"`{shown(revision)}` and {shown(self.label)} share no history here; fetch more of it "
                 "(git fetch --unshallow)"
             )
-        return self.at(base)
+        return self.open_revision(base)
 
     def list(self, oid: Any) -> tuple[tuple[str, int, Any], ...]:
         """(name, mode, id) of everything in a folder of the repository. Raises OSError when it cannot be read."""
-        return self._objects.folder(oid)
+        return self._objects.read_folder(oid)
 
-    def blob(self, oid: Any, limit: int = 0) -> bytes:
+    def read_blob(self, oid: Any, limit: int = 0) -> bytes:
         """The bytes of a file of the repository. Raises OSError when it cannot be read."""
-        return self._objects.blob(oid, limit or largest_file())
+        return self._objects.read_blob(oid, limit or find_file_size_limit())
 
-    def size(self, oid: Any) -> int:
+    def read_size(self, oid: Any) -> int:
         """How many they are. Raises OSError."""
-        return self._objects.size(oid)
+        return self._objects.read_size(oid)
 
     def _walk(self, found: list[TreeEntry]) -> None:
         root = self.folder
@@ -128,9 +128,9 @@ class GitTree(Walked):
         followed: set[str] = set()
         visited: set[str] = set()
         for link, target, parents in links:
-            if not self._follows(link, target, parents, followed):
+            if not self._may_follow(link, target, parents, followed):
                 continue
-            in_tree = within(target, root)
+            in_tree = is_within(target, root)
             self.aliases[link] = posixpath.relpath(target or ".", root or ".") if in_tree else "/" + target
             stack = [(link, target, self._find(target)[2])]
             while stack and self._left > 0:
@@ -150,7 +150,7 @@ class GitTree(Walked):
                 self.problems.append(PathProblem(folder, message))
             return
         try:
-            items = self._objects.folder(oid)
+            items = self._objects.read_folder(oid)
         except OSError as error:
             why = str(error.strerror).replace("its object", "the folder's object")
             self.problems.append(PathProblem(folder or ".", why))
@@ -183,11 +183,11 @@ class GitTree(Walked):
                 self._add(path, item, found)
 
     def _leaves(self, target: str) -> bool:
-        return not self.follow_links and not within(target, self.folder)
+        return not self.follow_links and not is_within(target, self.folder)
 
     def _add(self, path: str, oid, found: list[TreeEntry]) -> None:
         try:
-            size = self._objects.size(oid)
+            size = self._objects.read_size(oid)
         except OSError:
             size = 0  # whoever needs the bytes of one that is missing or damaged is told when reading
         self._blobs[path] = oid
@@ -214,7 +214,7 @@ class GitTree(Walked):
                 oids.pop()
                 continue
             try:
-                match = self._objects.entry(oids[-1], name)
+                match = self._objects.find_entry(oids[-1], name)
             except OSError:
                 match = None
             if match is None:
@@ -245,18 +245,18 @@ class GitTree(Walked):
     def _lookup(self, path: str) -> tuple[int, Any]:
         if path in self._blobs:
             return _FILE, self._blobs[path]
-        clean = inside(path)
+        clean = normalize_path(path)
         if clean is None or len(clean) > LONGEST_PATH:
             return 0, None
         target, kind, oid = self._find(join(self.folder, clean) if clean else self.folder)
         return (0, None) if kind and self._leaves(target) else (kind, oid)
 
-    def known_id(self, path: str) -> str | None:
+    def find_known_id(self, path: str) -> str | None:
         kind, oid = self._lookup(path)
         return str(oid) if kind == _FILE else None
 
-    def content_id(self, path: str) -> str:
-        known = self.known_id(path)
+    def find_content_id(self, path: str) -> str:
+        known = self.find_known_id(path)
         if known is None:
             raise FileNotFoundError(2, f"not in {self.label}", path)
         return known
@@ -269,7 +269,7 @@ class GitTree(Walked):
         if kind != _FILE:
             raise FileNotFoundError(2, f"not in {self.label}", path)
         try:
-            return self._objects.blob(oid, limit or largest_file()), str(oid)
+            return self._objects.read_blob(oid, limit or find_file_size_limit()), str(oid)
         except OSError as error:
             raise OSError(error.errno, error.strerror, path) from None
 
@@ -279,11 +279,11 @@ class GitTree(Walked):
     def is_dir(self, path: str) -> bool:
         return path in self._folders or self._lookup(path)[0] == _FOLDER
 
-    def memory_key(self) -> bytes | None:
+    def make_memory_key(self) -> bytes | None:
         return None
 
     def recall(self, memory: bytes) -> None:
         del memory
 
-    def memory(self) -> bytes | None:
+    def make_memory(self) -> bytes | None:
         return None

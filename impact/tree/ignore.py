@@ -10,7 +10,7 @@ from bisect import bisect_left
 from collections.abc import Iterator
 
 from ...edges import files
-from ...edges.limits import KB, limits
+from ...edges.limits import KB, get_limits
 from .paths import LONGEST_PATH
 
 # So many questions are answered by a search through the index's bytes, before its paths are taken apart.
@@ -20,7 +20,7 @@ _PARTIAL = (b"link\0\0", b"sdir\0\0\0\0")
 _LINK_FILE = 64 * KB
 
 
-def enclosing_repository(folder: str) -> str | None:
+def find_enclosing_repository(folder: str) -> str | None:
     """The nearest folder at or above this one that holds .git."""
     while True:
         if os.path.lexists(os.path.join(folder, ".git")):
@@ -31,7 +31,7 @@ def enclosing_repository(folder: str) -> str | None:
         folder = parent
 
 
-def git_folder(repository: str) -> str:
+def find_git_dir(repository: str) -> str:
     """The folder that holds a repository's HEAD and index: .git, or what the file .git names, as in worktrees and
     submodules. Raises OSError where it names none."""
     place = os.path.join(repository, ".git")
@@ -56,13 +56,13 @@ class Index:
         self._unknown = False
 
     @classmethod
-    def of(cls, repository: str) -> Index | None:
+    def open_index(cls, repository: str) -> Index | None:
         """None when the index cannot be read, and so nothing may be called untracked."""
         try:
-            place = git_folder(repository)
+            place = find_git_dir(repository)
             if not os.path.exists(os.path.join(place, "HEAD")):
                 return None
-            return cls(files.read_file(os.path.join(place, "index"), limits().index))
+            return cls(files.read_file(os.path.join(place, "index"), get_limits().index))
         except FileNotFoundError:
             return cls(b"")
         except OSError:
@@ -79,7 +79,7 @@ class Index:
             if plain and not any(mark in self._data for mark in (prefix, *_PARTIAL)):
                 return False
             try:
-                self._paths = sorted(_paths(self._data))
+                self._paths = sorted(_list_paths(self._data))
             except (ValueError, IndexError):
                 self._unknown = True
         if self._paths is None:
@@ -90,12 +90,12 @@ class Index:
     def tracks(self, path: str) -> bool:
         """True when git tracks a file or link of this path, or when that is not known."""
         try:
-            return os.fsencode(path) in _paths(self._data) if self._data else False
+            return os.fsencode(path) in _list_paths(self._data) if self._data else False
         except (ValueError, IndexError):
             return True
 
 
-def _paths(data: bytes) -> Iterator[bytes]:
+def _list_paths(data: bytes) -> Iterator[bytes]:
     """The paths of an index. Raises ValueError or IndexError where it is damaged, split or sparse."""
     version = int.from_bytes(data[4:8], "big")
     if data[:4] != b"DIRC" or version not in (2, 3, 4):
@@ -105,7 +105,7 @@ def _paths(data: bytes) -> Iterator[bytes]:
         start = at
         at += 64 if version > 2 and data[at + 60] & 0x40 else 62
         if version == 4:
-            cut, at = _varint(data, at)
+            cut, at = _read_varint(data, at)
             end = data.index(b"\0", at)
             path = path[: max(0, len(path) - cut)] + data[at:end]
             if len(path) > LONGEST_PATH:
@@ -121,7 +121,7 @@ def _paths(data: bytes) -> Iterator[bytes]:
         raise ValueError("not every path")
 
 
-def _varint(data: bytes, at: int) -> tuple[int, int]:
+def _read_varint(data: bytes, at: int) -> tuple[int, int]:
     """A number in git's encoding, and where it ends."""
     byte = data[at]
     value = byte & 0x7F

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Mapping
 
 from .git import GitTree
-from .paths import PathProblem, Tree, TreeEntry, TreeError, inside, join, shown, within
+from .paths import PathProblem, Tree, TreeEntry, TreeError, is_within, join, normalize_path, shown
 from .working import WorkingTree
 
 
@@ -31,11 +31,11 @@ class JoinedTree:
         found = {}
         for mount, tree in self.mounts.items():
             for folder, place in tree.repositories.items():
-                if self._mount(join(mount, folder)) == mount:
+                if self._find_mount(join(mount, folder)) == mount:
                     found[join(mount, folder) if folder else mount] = place
         return found
 
-    def _mount(self, path: str) -> str | None:
+    def _find_mount(self, path: str) -> str | None:
         """The innermost folder at or above a path that a tree is mounted at."""
         while path not in self.mounts:
             if not path:
@@ -43,56 +43,56 @@ class JoinedTree:
             path = path.rpartition("/")[0]
         return path
 
-    def _inner(self, path: str) -> tuple[Tree, str]:
-        mount = self._mount(path)
+    def _resolve_mounted(self, path: str) -> tuple[Tree, str]:
+        mount = self._find_mount(path)
         if mount is None:
             raise FileNotFoundError(2, "in none of the trees", path)
         return self.mounts[mount], path[len(mount) + 1 :] if mount else path
 
-    def entries(self) -> list[TreeEntry]:
+    def list_entries(self) -> list[TreeEntry]:
         if self._entries is None:
             found = []
             for mount, tree in self.mounts.items():
                 prefix = mount + "/" if mount else ""
-                plain = not any(other != mount and within(other, mount) for other in self.mounts)
+                plain = not any(other != mount and is_within(other, mount) for other in self.mounts)
 
-                def kept(path: str, mount: str = mount, plain: bool = plain) -> bool:
-                    return plain or self._mount(path) == mount
+                def is_kept(path: str, mount: str = mount, plain: bool = plain) -> bool:
+                    return plain or self._find_mount(path) == mount
 
-                found += [TreeEntry(prefix + e.path, e.size) for e in tree.entries() if kept(prefix + e.path)]
+                found += [TreeEntry(prefix + e.path, e.size) for e in tree.list_entries() if is_kept(prefix + e.path)]
                 for own, theirs in ((self.problems, tree.problems), (self.skipped, tree.skipped)):
-                    own += [PathProblem(prefix + p.path, p.message) for p in theirs if kept(prefix + p.path)]
+                    own += [PathProblem(prefix + p.path, p.message) for p in theirs if is_kept(prefix + p.path)]
                 for link, target in tree.aliases.items():
-                    if kept(prefix + link):
+                    if is_kept(prefix + link):
                         self.aliases[prefix + link] = target if target.startswith("/") else prefix + target
             found.sort(key=lambda entry: entry.path)
             self._entries = found
         return self._entries
 
-    def known_id(self, path: str) -> str | None:
-        tree, inner = self._inner(path)
-        return tree.known_id(inner)
+    def find_known_id(self, path: str) -> str | None:
+        tree, inner = self._resolve_mounted(path)
+        return tree.find_known_id(inner)
 
-    def content_id(self, path: str) -> str:
-        tree, inner = self._inner(path)
-        return tree.content_id(inner)
+    def find_content_id(self, path: str) -> str:
+        tree, inner = self._resolve_mounted(path)
+        return tree.find_content_id(inner)
 
     def read(self, path: str, limit: int = 0) -> bytes:
-        tree, inner = self._inner(path)
+        tree, inner = self._resolve_mounted(path)
         return tree.read(inner, limit)
 
     def read_with_id(self, path: str, limit: int = 0) -> tuple[bytes, str]:
-        tree, inner = self._inner(path)
+        tree, inner = self._resolve_mounted(path)
         return tree.read_with_id(inner, limit)
 
     def _stands(self, path: str, asked: Callable[[Tree, str], bool]) -> bool:
         """Whether a path leads to a tree, or to what a tree says of it when asked."""
-        clean = inside(path)
+        clean = normalize_path(path)
         if clean is None:
             return False
-        if any(within(mount, clean) for mount in self.mounts):
+        if any(is_within(mount, clean) for mount in self.mounts):
             return True
-        return self._mount(clean) is not None and asked(*self._inner(clean))
+        return self._find_mount(clean) is not None and asked(*self._resolve_mounted(clean))
 
     def exists(self, path: str) -> bool:
         return self._stands(path, lambda tree, inner: tree.exists(inner))
@@ -100,18 +100,18 @@ class JoinedTree:
     def is_dir(self, path: str) -> bool:
         return self._stands(path, lambda tree, inner: tree.is_dir(inner))
 
-    def memory_key(self) -> bytes | None:
-        return self.mounts[""].memory_key() if "" in self.mounts else None
+    def make_memory_key(self) -> bytes | None:
+        return self.mounts[""].make_memory_key() if "" in self.mounts else None
 
     def recall(self, memory: bytes) -> None:
         if "" in self.mounts:
             self.mounts[""].recall(memory)
 
-    def memory(self) -> bytes | None:
-        return self.mounts[""].memory() if "" in self.mounts else None
+    def make_memory(self) -> bytes | None:
+        return self.mounts[""].make_memory() if "" in self.mounts else None
 
 
-def at_merge_bases(tree: Tree, revisions: Mapping[str, str], default: str = "") -> Tree:
+def open_merge_bases(tree: Tree, revisions: Mapping[str, str], default: str = "") -> Tree:
     """The tree as it was at the merge base of each repository's commit and a revision.
 
     revisions: by the repository's folder relative to the tree. default: of the repositories not named; they are left as
@@ -120,7 +120,7 @@ def at_merge_bases(tree: Tree, revisions: Mapping[str, str], default: str = "") 
     """
     if isinstance(tree, GitTree):
         return tree.merge_base(revisions.get("", default))
-    named = {inside(folder): revision for folder, revision in revisions.items()}
+    named = {normalize_path(folder): revision for folder, revision in revisions.items()}
     unknown = sorted(shown(folder or ".") for folder in named if folder is None or folder not in tree.repositories)
     known = ", ".join(f"`{shown(folder or '.')}`" for folder in sorted(tree.repositories)) or "none"
     if unknown:

@@ -11,8 +11,8 @@ from typing import Protocol
 
 import msgspec
 
-from ...edges.console import UserError, visible
-from ...edges.limits import limits
+from ...edges.console import UserError, escape
+from ...edges.limits import get_limits
 
 IGNORE_MARKERS = frozenset(
     ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "_setup_util.py", "_order_isolated_packages.py")
@@ -22,7 +22,7 @@ VERSION_CONTROL = frozenset((".git", ".hg", ".svn", ".bzr", ".jj"))
 CHARACTERS = 100
 # What a working copy can hold: Linux opens no longer paths (PATH_MAX).
 LONGEST_PATH = 4096
-shown = visible
+shown = escape
 LEAVES = "the link leads out of the workspace, not followed; --follow-links follows it"
 
 
@@ -78,15 +78,15 @@ class Tree(Protocol):
     @property
     def repositories(self) -> dict[str, str]: ...
 
-    def entries(self) -> list[TreeEntry]:
+    def list_entries(self) -> list[TreeEntry]:
         """Every file, sorted by path."""
         ...
 
-    def content_id(self, path: str) -> str:
+    def find_content_id(self, path: str) -> str:
         """Git's blob id of the file's bytes, 40 hex digits. Raises OSError when it cannot be read."""
         ...
 
-    def known_id(self, path: str) -> str | None:
+    def find_known_id(self, path: str) -> str | None:
         """The same where it is known without reading the file, else None."""
         ...
 
@@ -108,7 +108,7 @@ class Tree(Protocol):
         """True for folders, skipped ones included, as exists()."""
         ...
 
-    def memory_key(self) -> bytes | None:
+    def make_memory_key(self) -> bytes | None:
         """A name under which `memory` may be kept until the next run; None when there is nothing to keep."""
         ...
 
@@ -116,17 +116,17 @@ class Tree(Protocol):
         """Takes over what an earlier run knew; anything that does not fit is dropped."""
         ...
 
-    def memory(self) -> bytes | None:
+    def make_memory(self) -> bytes | None:
         """What the next run would like to know; None when it would be the same as what was recalled."""
         ...
 
 
-def blob_id(data: bytes) -> str:
+def compute_blob_id(data: bytes) -> str:
     """Git's id for these bytes as a blob (SHA-1 object format)."""
     return hashlib.sha1(b"blob %d\0" % len(data) + data, usedforsecurity=False).hexdigest()
 
 
-def inside(path: str) -> str | None:
+def normalize_path(path: str) -> str | None:
     """The path in its shortest form, `` for the root; None when it leads out of the tree."""
     if not path or path == ".":
         return ""
@@ -142,27 +142,27 @@ def join(folder: str, name: str) -> str:
     return f"{folder}/{name}" if folder else name
 
 
-def within(path: str, folder: str) -> bool:
+def is_within(path: str, folder: str) -> bool:
     """True when path is the folder or lies below it (both absolute, or both relative to one root)."""
     return path == folder or not folder or path.startswith(folder if folder.endswith("/") else folder + "/")
 
 
-def outside(path: str) -> OSError:
+def make_outside_error(path: str) -> OSError:
     """The error for a path that leads out of the tree."""
     return FileNotFoundError(errno.ENOENT, "outside of the tree", path)
 
 
 @cache
-def largest_file() -> int:
+def find_file_size_limit() -> int:
     """Bytes that a file of a workspace may have at most, whatever kind it is of."""
-    known = limits()
+    known = get_limits()
     return max(
         known.manifest, known.cmake, known.interface, known.cpp, known.python, known.launch, known.parameters,
         known.script, known.settings, known.text,
     )  # fmt: skip
 
 
-def _name_problems(entries: Iterable[TreeEntry]) -> Iterator[PathProblem]:
+def _find_name_problems(entries: Iterable[TreeEntry]) -> Iterator[PathProblem]:
     for entry in entries:
         if not entry.path.isascii():
             try:
@@ -179,12 +179,12 @@ class Walked:
         self.skipped: list[PathProblem] = []
         self.aliases: dict[str, str] = {}
         self._entries: list[TreeEntry] | None = None
-        self._left = limits().entries
+        self._left = get_limits().entries
         self._characters_left = self._left * CHARACTERS
 
     def _count(self, folder: str, items: int, shown: str) -> None:
         """Takes what a folder holds from what the tree may hold; names the folder where that is used up."""
-        most = limits().entries
+        most = get_limits().entries
         if items > self._left:
             message = f"more than {most:,} files and folders, the rest is left out"
             self.problems.append(PathProblem(folder or ".", message))
@@ -198,9 +198,9 @@ class Walked:
     def _walk(self, found: list[TreeEntry]) -> None:
         raise NotImplementedError
 
-    def _follows(self, link: str, target: str, parents: tuple[str, ...], followed: set[str]) -> bool:
+    def _may_follow(self, link: str, target: str, parents: tuple[str, ...], followed: set[str]) -> bool:
         """Whether a link to a folder is followed: once for each folder, and never into its own parents."""
-        if any(within(parent, target) for parent in parents):
+        if any(is_within(parent, target) for parent in parents):
             self.problems.append(PathProblem(link, "the link leads to one of its own parent folders, not followed"))
             return False
         if target in followed:
@@ -209,13 +209,13 @@ class Walked:
         followed.add(target)
         return True
 
-    def entries(self) -> list[TreeEntry]:
+    def list_entries(self) -> list[TreeEntry]:
         if self._entries is None:
             found: list[TreeEntry] = []
             self._walk(found)
             found.sort(key=lambda entry: entry.path)
             self._entries = found
-            self.problems.extend(_name_problems(found))
+            self.problems.extend(_find_name_problems(found))
             self.problems.sort()
             self.skipped.sort()
         return self._entries

@@ -15,9 +15,9 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from ...edges import files
-from ...edges.limits import KB, limits, size_text
-from ...edges.memory import cached_method
-from .ignore import git_folder
+from ...edges.limits import KB, format_size, get_limits
+from ...edges.memory import cache_method
+from .ignore import find_git_dir
 from .paths import LONGEST_PATH, TreeError, shown
 
 MODE_FOLDER, MODE_LINK, MODE_SUBMODULE = 0o040000, 0o120000, 0o160000
@@ -49,13 +49,13 @@ def open_repository(place: str) -> OpenedRepository:
     pygit2.option(pygit2.enums.Option.SET_OWNER_VALIDATION, False)
     try:
         check = _Check()
-        check.around(os.path.realpath(place))
+        check.check_enclosing(os.path.realpath(place))
         found = pygit2.discover_repository(place)
         if found is None:
             if not os.path.exists(place):
                 raise TreeError(f"`{shown(place)}` does not exist; give a git repository, or a folder in one")
             raise TreeError(f"`{shown(place)}` is not in a git repository; give a folder that is in one")
-        check.repository(os.path.realpath(found))
+        check.check_repository(os.path.realpath(found))
         return OpenedRepository(pygit2.Repository(found), frozenset(check.refused), check.loose)
     except (pygit2.GitError, KeyError, ValueError, OSError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
@@ -72,9 +72,9 @@ class _Check:
         self.refused: set[str] = set()
         self.loose: dict[str, str] = {}
         self._seen: set[str] = set()
-        self._left = limits().entries
+        self._left = get_limits().entries
 
-    def around(self, folder: str) -> None:
+    def check_enclosing(self, folder: str) -> None:
         """The first repository at or above a folder, as git looks for it."""
         while True:
             if os.path.lexists(os.path.join(folder, ".git")):
@@ -82,19 +82,19 @@ class _Check:
                 if not os.path.isdir(with_git) and not stat.S_ISREG(os.stat(with_git).st_mode):
                     raise OSError(errno.EINVAL, files.NOT_REGULAR, with_git)
                 try:
-                    self.repository(os.path.realpath(git_folder(folder)))
+                    self.check_repository(os.path.realpath(find_git_dir(folder)))
                 except OSError as error:
                     if error.errno != errno.EINVAL or error.filename != with_git:
                         raise
                 return None
             if all(os.path.lexists(os.path.join(folder, name)) for name in ("HEAD", "objects", "refs")):
-                return self.repository(folder)
+                return self.check_repository(folder)
             parent = os.path.dirname(folder)
             if parent == folder:
                 return None
             folder = parent
 
-    def repository(self, place: str) -> None:
+    def check_repository(self, place: str) -> None:
         """A git directory, and the one that it shares its objects with (a worktree's)."""
         if place in self._seen or not os.path.isdir(place):
             return
@@ -103,17 +103,17 @@ class _Check:
             items = list(scan)
         for item in items:
             if item.name in _FOLDERS:
-                self._folder(item.path, objects=item.name == "objects")
+                self._check_folder(item.path, objects=item.name == "objects")
             elif item.name in _FILES or item.name.isupper():
-                self._file(item, limits().index)
+                self._check_file(item, get_limits().index)
         self._includes(os.path.join(place, "config"), 0)
         common = os.path.join(place, "commondir")
         if os.path.isfile(common):
             text = os.fsdecode(files.read_file(common, _SMALL_FILE)).strip()
             if "\0" not in text:
-                self.repository(os.path.realpath(os.path.join(place, text)))
+                self.check_repository(os.path.realpath(os.path.join(place, text)))
 
-    def _folder(self, top: str, objects: bool = False, deep: int = 0) -> None:
+    def _check_folder(self, top: str, objects: bool = False, deep: int = 0) -> None:
         """A folder with all that it holds; of one with objects, the folders too that its alternates name."""
         stack = [top]
         while stack:
@@ -128,26 +128,26 @@ class _Check:
                 items = list(scan)
             self._left -= len(items)
             if self._left < 0:
-                raise OSError(errno.E2BIG, f"more than {limits().entries:,} files", top)
+                raise OSError(errno.E2BIG, f"more than {get_limits().entries:,} files", top)
             name = os.path.basename(folder)
             loose = name if objects and len(name) == 2 else ""
             for item in items:
                 if item.is_dir():
                     stack.append(item.path)
                 elif objects and name == "pack":
-                    self._file(item, 0)
+                    self._check_file(item, 0)
                 elif loose:
-                    if self._file(item, 0) > limits().object:
+                    if self._check_file(item, 0) > get_limits().object:
                         self.refused.add(loose + item.name)
                     self.loose[loose + item.name] = item.path
                     _check_commit(item.path)
                 else:
-                    self._file(item, limits().index)
+                    self._check_file(item, get_limits().index)
         if objects and deep < _ALTERNATES_DEEP:
-            for other in _alternates(top):
-                self._folder(other, objects=True, deep=deep + 1)
+            for other in _list_alternates(top):
+                self._check_folder(other, objects=True, deep=deep + 1)
 
-    def _file(self, item: os.DirEntry[str], limit: int) -> int:
+    def _check_file(self, item: os.DirEntry[str], limit: int) -> int:
         """The size of a file. Raises OSError where it is none, or larger than the limit when there is one."""
         try:
             status = item.stat()
@@ -155,10 +155,10 @@ class _Check:
             return 0  # a broken link, or gone by now: libgit2 finds that out too
         if stat.S_ISDIR(status.st_mode):
             return 0
-        if not stat.S_ISREG(status.st_mode) or (item.is_symlink() and _of_system(os.path.realpath(item.path))):
+        if not stat.S_ISREG(status.st_mode) or (item.is_symlink() and _is_system_path(os.path.realpath(item.path))):
             raise OSError(errno.EINVAL, files.NOT_REGULAR, item.path)
         if limit and status.st_size > limit:
-            raise OSError(errno.EFBIG, f"larger than {size_text(limit)}", item.path)
+            raise OSError(errno.EFBIG, f"larger than {format_size(limit)}", item.path)
         return status.st_size
 
     def _includes(self, config: str, deep: int) -> None:
@@ -166,7 +166,7 @@ class _Check:
         if deep > _INCLUDES_DEEP or not os.path.lexists(config):
             return
         try:
-            text = os.fsdecode(files.read_file(config, limits().settings))
+            text = os.fsdecode(files.read_file(config, get_limits().settings))
         except FileNotFoundError:
             return
         included = False
@@ -196,8 +196,8 @@ def _is_whole(place: str) -> bool:
     """Whether a loose object's file is not cut off. Other faults are libgit2's to find."""
     reader = zlib.decompressobj()
     try:
-        data = files.read_file(place, limits().object)
-        left = limits().object + _SMALL_FILE
+        data = files.read_file(place, get_limits().object)
+        left = get_limits().object + _SMALL_FILE
         while data and left > 0:
             left -= len(reader.decompress(data, _SMALL_FILE))
             data = reader.unconsumed_tail
@@ -206,17 +206,17 @@ def _is_whole(place: str) -> bool:
     return reader.eof
 
 
-def _of_system(real: str) -> bool:
+def _is_system_path(real: str) -> bool:
     """Whether a path lies where reading a regular file can wait for ever, or has no end."""
     return real.startswith(("/proc/", "/sys/", "/dev/"))
 
 
-def _alternates(objects: str) -> Iterator[str]:
+def _list_alternates(objects: str) -> Iterator[str]:
     """Folders in which a repository's objects are looked for too."""
     place = os.path.join(objects, "info", "alternates")
     if not os.path.isfile(place):
         return
-    for line in os.fsdecode(files.read_file(place, limits().settings)).splitlines():
+    for line in os.fsdecode(files.read_file(place, get_limits().settings)).splitlines():
         if line and not line.startswith("#") and "\0" not in line:
             yield os.path.join(objects, line)
 
@@ -270,14 +270,14 @@ class RepositoryObjects:
         self._faults = (KeyError, ValueError, TypeError, AttributeError, pygit2.GitError)
         self._header = getattr(opened.repository.odb, "read_header", None)
 
-    def size(self, oid: Any) -> int:
+    def read_size(self, oid: Any) -> int:
         """Bytes of a file. Reads the object's header alone where this pygit2 can."""
-        return self._sized(oid)[1]
+        return self._read_kind_and_size(oid)[1]
 
-    def _sized(self, oid: Any) -> tuple[int, int]:
+    def _read_kind_and_size(self, oid: Any) -> tuple[int, int]:
         """(kind, bytes) of an object."""
         if self._refused and str(oid) in self._refused:
-            raise OSError(errno.EFBIG, f"larger than {size_text(limits().object)}")
+            raise OSError(errno.EFBIG, f"larger than {format_size(get_limits().object)}")
         try:
             if self._header is None:
                 self._check(oid)
@@ -297,28 +297,28 @@ class RepositoryObjects:
         if place is not None and not _is_whole(place):
             raise OSError(errno.EIO, DAMAGED)
 
-    def blob(self, oid: Any, limit: int) -> bytes:
+    def read_blob(self, oid: Any, limit: int) -> bytes:
         """A file's bytes, at most as many as `limit`."""
-        limit = min(limit, limits().object)
-        kind, size = self._sized(oid)
+        limit = min(limit, get_limits().object)
+        kind, size = self._read_kind_and_size(oid)
         if kind != _BLOB:
             raise OSError(errno.EIO, "its object is not a file")
         if size > limit:
-            raise OSError(errno.EFBIG, f"larger than {size_text(limit)}")
+            raise OSError(errno.EFBIG, f"larger than {format_size(limit)}")
         self._check(oid)
         try:
             return self._repo[oid].data
         except self._faults:
             raise OSError(errno.EIO, DAMAGED) from None
 
-    @cached_method
-    def folder(self, oid: Any) -> tuple[tuple[str, int, Any], ...]:
+    @cache_method
+    def read_folder(self, oid: Any) -> tuple[tuple[str, int, Any], ...]:
         """(name, mode, id) of everything in a folder; names that no file can have are left out."""
-        kind, size = self._sized(oid)
+        kind, size = self._read_kind_and_size(oid)
         if kind != _TREE:
             raise OSError(errno.EIO, "its object is not a folder")
-        if size > limits().object:
-            raise OSError(errno.EFBIG, f"larger than {size_text(limits().object)}")
+        if size > get_limits().object:
+            raise OSError(errno.EFBIG, f"larger than {format_size(get_limits().object)}")
         self._check(oid)
         try:
             return tuple(
@@ -329,15 +329,15 @@ class RepositoryObjects:
         except self._faults:
             raise OSError(errno.EIO, DAMAGED) from None
 
-    @cached_method
-    def _entries(self, oid: Any) -> dict[str, tuple[int, Any]]:
-        return {name: (mode, item) for name, mode, item in self.folder(oid)}
+    @cache_method
+    def _index_entries(self, oid: Any) -> dict[str, tuple[int, Any]]:
+        return {name: (mode, item) for name, mode, item in self.read_folder(oid)}
 
-    def entry(self, oid: Any, name: str) -> tuple[int, Any] | None:
+    def find_entry(self, oid: Any, name: str) -> tuple[int, Any] | None:
         """(mode, id) of what a folder has under a name."""
-        return self._entries(oid).get(name)
+        return self._index_entries(oid).get(name)
 
-    @cached_method
+    @cache_method
     def link(self, oid: Any) -> str:
         """What a link leads to."""
-        return self.blob(oid, LONGEST_PATH).decode("utf-8", "surrogateescape")
+        return self.read_blob(oid, LONGEST_PATH).decode("utf-8", "surrogateescape")

@@ -11,8 +11,8 @@ from itertools import islice
 import msgspec
 
 from ...edges import files
-from ...edges.limits import limits
-from .ignore import Index, enclosing_repository
+from ...edges.limits import get_limits
+from .ignore import Index, find_enclosing_repository
 from .paths import (
     IGNORE_MARKERS,
     LEAVES,
@@ -21,13 +21,13 @@ from .paths import (
     TreeEntry,
     TreeError,
     Walked,
-    blob_id,
-    inside,
+    compute_blob_id,
+    find_file_size_limit,
+    is_within,
     join,
-    largest_file,
-    outside,
+    make_outside_error,
+    normalize_path,
     shown,
-    within,
 )
 
 PRODUCTS = frozenset(("build", "install", "devel", "log"))
@@ -69,12 +69,12 @@ class WorkingTree(Walked):
 
     @property
     def repositories(self) -> dict[str, str]:
-        self.entries()
+        self.list_entries()
         return self._repositories
 
     def _walk(self, found: list[TreeEntry]) -> None:
         real_root = self._real_root
-        enclosing = enclosing_repository(real_root)
+        enclosing = find_enclosing_repository(real_root)
         if enclosing and enclosing != real_root:
             self._repositories[""] = enclosing
         links: list[tuple[str, str, tuple[str, ...]]] = []
@@ -82,17 +82,17 @@ class WorkingTree(Walked):
         stack = [("", real_root, enclosing)]
         while stack and self._left > 0:
             folder, real, repository = stack.pop()
-            self._folder(folder, real, repository, (), stack, links, found)
+            self._list_folder(folder, real, repository, (), stack, links, found)
         followed: set[str] = set()
         visited: set[str] = set()
         links.sort()  # a folder's order on the disk decides nothing
         for link, target, parents in links:  # grows while links lead to further links
             known = len(links)
-            if not self._follows(link, target, parents, followed):
+            if not self._may_follow(link, target, parents, followed):
                 continue
-            in_tree = within(target, real_root)
+            in_tree = is_within(target, real_root)
             self.aliases[link] = os.path.relpath(target, real_root) if in_tree else target
-            stack = [(link, target, enclosing_repository(target))]
+            stack = [(link, target, find_enclosing_repository(target))]
             limit = len(found) + LINKED_FILES_AT_MOST
             while stack and self._left > 0:
                 folder, real, repository = stack.pop()
@@ -103,10 +103,10 @@ class WorkingTree(Walked):
                     message = f"the link leads to more than {LINKED_FILES_AT_MOST} files, the rest is left out"
                     self.problems.append(PathProblem(link, message))
                     break
-                self._folder(folder, real, repository, parents, stack, links, found)
+                self._list_folder(folder, real, repository, parents, stack, links, found)
             links[known:] = sorted(links[known:])
 
-    def _folder(
+    def _list_folder(
         self, folder: str, real: str, repository: str | None, parents: tuple[str, ...],
         stack: list[tuple[str, str, str | None]], links: list[tuple[str, str, tuple[str, ...]]], found: list[TreeEntry],
     ) -> None:  # fmt: skip
@@ -115,7 +115,7 @@ class WorkingTree(Walked):
             with os.scandir(os.path.join(self.root, folder)) as scan:
                 items = list(islice(scan, self._left + 1))
         except OSError as error:
-            self.problems.append(PathProblem(folder or ".", f"the folder cannot be listed: {_reason(error)}"))
+            self.problems.append(PathProblem(folder or ".", f"the folder cannot be listed: {_format_reason(error)}"))
             return
         names = {item.name for item in items}
         if not IGNORE_MARKERS.isdisjoint(names):
@@ -134,7 +134,7 @@ class WorkingTree(Walked):
             path = prefix + name
             try:
                 if item.is_dir(follow_symlinks=False):
-                    why = self._untracked(name, path, os.path.join(real, name), repository)
+                    why = self._explain_untracked(name, path, os.path.join(real, name), repository)
                     if why:
                         self.skipped.append(PathProblem(path, why))
                     elif name not in VERSION_CONTROL:
@@ -145,7 +145,7 @@ class WorkingTree(Walked):
                 target = ""
                 if item.is_symlink():
                     target = os.path.realpath(os.path.join(self.root, path))
-                    why = self._refused(target)
+                    why = self._explain_refused(target)
                     if why:
                         self.problems.append(PathProblem(path, why))
                         continue
@@ -153,11 +153,11 @@ class WorkingTree(Walked):
                 else:
                     status = item.stat(follow_symlinks=False)
             except OSError as error:
-                self.problems.append(PathProblem(path, self._why_unreadable(path, error)))
+                self.problems.append(PathProblem(path, self._explain_unreadable(path, error)))
                 continue
             if stat.S_ISREG(status.st_mode):
                 found.append(TreeEntry(path, status.st_size))
-                self._stats[path] = _stamp(status)
+                self._stats[path] = _make_stamp(status)
                 if status.st_dev != device:
                     self._devices[path] = status.st_dev
             elif stat.S_ISDIR(status.st_mode):
@@ -165,24 +165,24 @@ class WorkingTree(Walked):
             else:
                 self.problems.append(PathProblem(path, "neither a file nor a folder"))
         if ".gitmodules" in names:
-            self._submodules(folder)
+            self._note_submodules(folder)
 
-    def _refused(self, real: str) -> str:
+    def _explain_refused(self, real: str) -> str:
         """Why what has this real path is not read, or an empty string."""
-        if not within(real, self._real_root):
+        if not is_within(real, self._real_root):
             return "" if self.follow_links else LEAVES
         parts = real[len(self._real_root) :].split("/")
         closed = next((part for part in parts if part in VERSION_CONTROL), "")
         return f"the link leads into `{closed}`, which is not read" if closed else ""
 
-    def _why_unreadable(self, path: str, error: OSError) -> str:
+    def _explain_unreadable(self, path: str, error: OSError) -> str:
         try:
             target = os.readlink(os.path.join(self.root, path))
         except OSError:
-            return f"cannot be read: {_reason(error)}"
-        return f"the link to `{shown(target)}` is broken: {_reason(error)}"
+            return f"cannot be read: {_format_reason(error)}"
+        return f"the link to `{shown(target)}` is broken: {_format_reason(error)}"
 
-    def _untracked(self, name: str, path: str, real: str, repository: str | None) -> str:
+    def _explain_untracked(self, name: str, path: str, real: str, repository: str | None) -> str:
         """Why a folder is left out, or an empty string."""
         if name in VERSION_CONTROL or repository is None:
             return ""
@@ -197,22 +197,22 @@ class WorkingTree(Walked):
         if os.path.lexists(os.path.join(real, ".git")):
             return ""
         if repository not in self._indexes:
-            self._indexes[repository] = Index.of(repository)
+            self._indexes[repository] = Index.open_index(repository)
         index = self._indexes[repository]
         inner = os.path.relpath(real, repository).replace(os.sep, "/")
         return "" if index is None or index.tracks_below(inner) else why
 
-    def _submodules(self, folder: str) -> None:
+    def _note_submodules(self, folder: str) -> None:
         """Names the submodules of a repository that are not checked out."""
         try:
-            text = self.read(join(folder, ".gitmodules"), limits().settings)
+            text = self.read(join(folder, ".gitmodules"), get_limits().settings)
         except OSError:
             return
         for line in text.splitlines():
             key, _, value = line.partition(b"=")
             if key.strip() != b"path":
                 continue
-            path = inside(join(folder, value.strip().strip(b'"').decode("utf-8", "surrogateescape")))
+            path = normalize_path(join(folder, value.strip().strip(b'"').decode("utf-8", "surrogateescape")))
             if path:
                 self.submodules.append(path)
             if path and not self._holds_something(path):
@@ -220,12 +220,12 @@ class WorkingTree(Walked):
 
     def _holds_something(self, path: str) -> bool:
         try:
-            with os.scandir(self._contained(path)) as scan:
+            with os.scandir(self._resolve_contained(path)) as scan:
                 return next(scan, None) is not None
         except OSError:
             return False
 
-    def known_id(self, path: str) -> str | None:
+    def find_known_id(self, path: str) -> str | None:
         known = self._ids.get(path)
         if known is None:
             remembered = self._remembered.get(path)
@@ -233,24 +233,24 @@ class WorkingTree(Walked):
                 known = self._ids[path] = remembered[1]
         return known
 
-    def state(self, path: str) -> object | None:
+    def find_state(self, path: str) -> object | None:
         """What tells the content of a file that was walked from what it was at other times, without reading it; None
         where it may still change without its time stamp showing it."""
         stamp = self._stats[path]
-        known = self.known_id(path)
+        known = self.find_known_id(path)
         return known or (stamp if max(stamp[1], stamp[3]) < time.time_ns() - RACY_NS else None)
 
-    def content_id(self, path: str) -> str:
-        return self.known_id(path) or self.read_with_id(path)[1]
+    def find_content_id(self, path: str) -> str:
+        return self.find_known_id(path) or self.read_with_id(path)[1]
 
     def read(self, path: str, limit: int = 0) -> bytes:
         return self._read(path, limit)[0]
 
     def read_with_id(self, path: str, limit: int = 0) -> tuple[bytes, str]:
         data, status = self._read(path, limit)
-        content = blob_id(data)
+        content = compute_blob_id(data)
         self._ids[path] = content
-        stamp = _stamp(status)
+        stamp = _make_stamp(status)
         self._stats[path] = stamp
         if max(status.st_mtime_ns, status.st_ctime_ns) < time.time_ns() - RACY_NS and status.st_size == len(data):
             self._remembered[path] = (stamp, content)
@@ -263,29 +263,29 @@ class WorkingTree(Walked):
         """A regular file's bytes and status. What the walk found is read as it stands where it is still the same file;
         anything else must really lie where it may be read."""
         walked = self._stats.get(path)
-        place = os.path.join(self.root, path) if walked is not None else self._contained(path)
-        data, status = files.read_with_status(place, limit or largest_file())
+        place = os.path.join(self.root, path) if walked is not None else self._resolve_contained(path)
+        data, status = files.read_with_status(place, limit or find_file_size_limit())
         if walked is not None and (
-            walked[2] != _stamp(status)[2] or status.st_dev != self._devices.get(path, self._device)
+            walked[2] != _make_stamp(status)[2] or status.st_dev != self._devices.get(path, self._device)
         ):
-            self._contained(path)
+            self._resolve_contained(path)
             self._devices[path] = status.st_dev
         return data, status
 
-    def _contained(self, path: str) -> str:
+    def _resolve_contained(self, path: str) -> str:
         """The absolute path of what may be read. Raises OSError for what really lies outside of the tree."""
-        clean = inside(path)
+        clean = normalize_path(path)
         if clean is None:
-            raise outside(path)
+            raise make_outside_error(path)
         real = os.path.realpath(os.path.join(self.root, clean))
-        if self._refused(real):
-            raise outside(path)
+        if self._explain_refused(real):
+            raise make_outside_error(path)
         return real
 
     def exists(self, path: str) -> bool:
         if path in self._stats or path in self._folders:
             return True
-        real = self._real(path)
+        real = self._find_real_path(path)
         return real is not None and os.path.exists(real)
 
     def is_dir(self, path: str) -> bool:
@@ -293,24 +293,24 @@ class WorkingTree(Walked):
             return False
         if path in self._folders:
             return True
-        real = self._real(path)
+        real = self._find_real_path(path)
         return real is not None and os.path.isdir(real)
 
-    def _real(self, path: str) -> str | None:
+    def _find_real_path(self, path: str) -> str | None:
         """The real path of what may be asked about; None for what lies outside."""
-        clean = inside(path)
+        clean = normalize_path(path)
         if clean is None:
             return None
         real = os.path.realpath(os.path.join(self.root, clean))
-        return real if self.follow_links or within(real, self._real_root) else None
+        return real if self.follow_links or is_within(real, self._real_root) else None
 
-    def memory_key(self) -> bytes | None:
+    def make_memory_key(self) -> bytes | None:
         return self.root.encode("utf-8", "surrogateescape")
 
     def recall(self, memory: bytes) -> None:
         self._remembered = _decode_memory(memory)
 
-    def memory(self) -> bytes | None:
+    def make_memory(self) -> bytes | None:
         stale = len(self._remembered) > 2 * len(self._stats) + 100
         if not self._fresh and not stale:
             return None
@@ -318,11 +318,11 @@ class WorkingTree(Walked):
         return _encode_memory({path: kept for path, kept in self._remembered.items() if path in stats})
 
 
-def _stamp(status: os.stat_result) -> tuple[int, int, int, int]:
+def _make_stamp(status: os.stat_result) -> tuple[int, int, int, int]:
     return (status.st_size, status.st_mtime_ns, status.st_ino & 0x7FFFFFFFFFFFFFFF, status.st_ctime_ns)
 
 
-def _reason(error: OSError) -> str:
+def _format_reason(error: OSError) -> str:
     return (error.strerror or type(error).__name__).lower()
 
 

@@ -13,13 +13,13 @@ evaluate, training = Late("rosimpact.classifier.evaluate"), Late("rosimpact.clas
 
 @pytest.fixture(scope="module")
 def found(labelled):
-    return training.examples(*labelled)
+    return training.read_examples(*labelled)
 
 
 def test_no_repository_is_on_both_sides(found):
     groups = found.groups
     judged = []
-    for learn, judge in training.splits(found, 10, 1):
+    for learn, judge in training.make_splits(found, 10, 1):
         assert not {groups[row] for row in learn} & {groups[row] for row in judge}
         judged.extend(judge)
     assert sorted(judged) == list(range(len(found.rows)))
@@ -34,7 +34,7 @@ def test_no_repository_is_on_both_sides(found):
     ],
 )
 def test_macro_f1_is_over_the_labels_that_are_there(truth, said, score):
-    assert evaluate.macro_f1(np.array(truth), np.array(said)) == pytest.approx(score)
+    assert evaluate.average_f1(np.array(truth), np.array(said)) == pytest.approx(score)
 
 
 def test_macro_f1_is_that_of_scikit_learn():
@@ -42,13 +42,13 @@ def test_macro_f1_is_that_of_scikit_learn():
 
     source = np.random.default_rng(0)
     truth, said = source.integers(0, 5, 300), source.integers(0, 5, 300)
-    assert evaluate.macro_f1(truth, said) == pytest.approx(f1_score(truth, said, average="macro"))
+    assert evaluate.average_f1(truth, said) == pytest.approx(f1_score(truth, said, average="macro"))
 
 
 @pytest.mark.parametrize(("sure", "right", "error"), [(0.9, 0.9, 0.0), (0.9, 0.5, 0.4)])
 def test_calibration_error_is_the_gap_between_sure_and_right(sure, right, error):
     hits = np.arange(1000) % 10 < right * 10
-    assert evaluate.calibration_error(np.full(1000, sure), hits, bins=10) == pytest.approx(error, abs=1e-9)
+    assert evaluate.compute_calibration_error(np.full(1000, sure), hits, bins=10) == pytest.approx(error, abs=1e-9)
 
 
 def test_an_interval_is_over_repositories():
@@ -58,8 +58,8 @@ def test_an_interval_is_over_repositories():
     def right(t, s):
         return float((t == s).mean())
 
-    alone = evaluate.interval(right, truth, said, [str(n) for n in range(40)], resamples=200)
-    together = evaluate.interval(right, truth, said, ["a"] * 20 + ["b"] * 20, resamples=200)
+    alone = evaluate.estimate_interval(right, truth, said, [str(n) for n in range(40)], resamples=200)
+    together = evaluate.estimate_interval(right, truth, said, ["a"] * 20 + ["b"] * 20, resamples=200)
     assert alone.value == together.value == 0.5
     assert (together.low, together.high) == (0.0, 1.0)
     assert 0.2 < alone.low < 0.5 < alone.high < 0.8
@@ -80,7 +80,7 @@ def test_commands_train_evaluate_and_use_a_model(labelled, tmp_path):
     assert result["reports"] == 64
     assert result["scores"]["all"]["macro_f1"]["value"] > result["beside"]["majority"]["macro_f1"]["value"]
     assert sum(map(sum, result["confusion"])) == 64
-    assert evaluate.as_text(result).startswith("64 reports of 8 repositories")
+    assert evaluate.render_text(result).startswith("64 reports of 8 repositories")
 
 
 @pytest.mark.parametrize("command", ["train", "evaluate"])

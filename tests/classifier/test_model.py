@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from late import Late
-from rosimpact.classifier.model import SHIPPED, ClassifierError, load, packed, softmax
+from rosimpact.classifier.model import SHIPPED, ClassifierError, compute_softmax, load, pack_json
 from rosimpact.classifier.reading import VIEWS, read
 from rosimpact.corpus.report import LABELS_FILE, read_labels
 from written_reports import rows, write
@@ -19,7 +19,7 @@ training = Late("rosimpact.classifier.training")
 
 @pytest.fixture(scope="module")
 def found(labelled):
-    return training.examples(*labelled)
+    return training.read_examples(*labelled)
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def test_the_same_reports_give_the_same_bytes(tmp_path, labelled, model):
     lines = reports.read_text().splitlines()
     mixed = tmp_path / "mixed.jsonl"
     mixed.write_text("\n".join(reversed(lines)))
-    training.train(training.examples(labels, mixed)).save(tmp_path / "b.npz")
+    training.train(training.read_examples(labels, mixed)).save(tmp_path / "b.npz")
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
 
 
@@ -46,9 +46,9 @@ def test_the_file_gives_what_scikit_learn_gave(found, model, tmp_path):
     model.save(tmp_path / "m.npz")
     kept = load(tmp_path / "m.npz")
     linear = training.fit(found)
-    expected = linear.scores(found.counts)
+    expected = linear.compute_scores(found.counts)
     reports = [example.report for example in found.rows]
-    scores = np.array([kept.scores(read(report.title, report.body)) for report in reports])
+    scores = np.array([kept.compute_scores(read(report.title, report.body)) for report in reports])
     assert np.allclose(scores, expected, atol=1e-4)
 
 
@@ -59,7 +59,7 @@ def test_a_changed_text_changes_the_digest(found):
             **{f: getattr(first.report, f) for f in first.report.__struct_fields__} | {"body": "new"}
         )
     )
-    before, after = training.digests(found.rows), training.digests([other, *rest])
+    before, after = training.compute_digests(found.rows), training.compute_digests([other, *rest])
     assert before["labels_digest"] == after["labels_digest"]
     assert before["texts_digest"] != after["texts_digest"]
 
@@ -81,18 +81,18 @@ def test_words_of_one_repository_are_not_learnt(model):
     ],
 )
 def test_unseen_reports_are_labelled(model, shipped, title, label):
-    assert model.verdict(read(title, "")).label == label
-    assert shipped.verdict(read(title, "")).label == label
+    assert model.judge(read(title, "")).label == label
+    assert shipped.judge(read(title, "")).label == label
 
 
 @settings(max_examples=50, deadline=None)
 @given(st.text(), st.text())
 def test_any_text_is_judged(title, body):
     model = _SHIPPED
-    verdict = model.verdict(read(title, body))
+    verdict = model.judge(read(title, body))
     assert set(verdict.probabilities) == set(model.labels)
     assert sum(verdict.probabilities.values()) == pytest.approx(1)
-    assert len(model.reasons(read(title, body), verdict.label)) <= 8
+    assert len(model.list_reasons(read(title, body), verdict.label)) <= 8
 
 
 _SHIPPED = load()
@@ -126,13 +126,13 @@ class TestShipped:
 class TestNearest:
     def test_the_report_itself_is_nearest(self, found, model):
         example = found.rows[0]
-        best = model.nearest(read(example.report.title, example.report.body))
+        best = model.find_nearest(read(example.report.title, example.report.body))
         assert len(best) == 5
         assert best[0].likeness == pytest.approx(1, abs=1e-2)
         assert best[0].label == example.label
 
     def test_a_report_without_a_known_word_has_none(self, model):
-        assert model.nearest(read("", "")) == []
+        assert model.find_nearest(read("", "")) == []
 
 
 class TestRefusals:
@@ -151,7 +151,7 @@ class TestRefusals:
 
     @pytest.mark.parametrize("change", [{"format": 1}, {"signs": "0"}])
     def test_a_model_for_other_features(self, tmp_path, model, change):
-        arrays = model.arrays | {"about": packed(model.about | change)}
+        arrays = model.arrays | {"about": pack_json(model.about | change)}
         file = tmp_path / "m.npz"
         np.savez(file, **arrays)
         with pytest.raises(ClassifierError, match="train it again with `rosimpact classifier train`"):
@@ -180,30 +180,30 @@ class TestTooLittle:
     def test_no_text_for_any_label(self, tmp_path, labelled):
         reports = write(tmp_path / "r.jsonl", [])
         with pytest.raises(ClassifierError, match="holds none of the 64 reports"):
-            training.examples(labelled[0], reports)
+            training.read_examples(labelled[0], reports)
 
     def test_a_label_with_few_reports(self, tmp_path):
         reports, labels = rows(3)
         with pytest.raises(ClassifierError, match="library-update 6"):
-            training.examples(write(tmp_path / "l.jsonl", labels), write(tmp_path / "r.jsonl", reports))
+            training.read_examples(write(tmp_path / "l.jsonl", labels), write(tmp_path / "r.jsonl", reports))
 
     def test_one_repository(self, tmp_path, labelled):
         reports, labels = rows()
         for number, (report, label) in enumerate(zip(reports, labels, strict=True)):
             report["id"] = label["id"] = f"lab/one#{number}"
         with pytest.raises(ClassifierError, match="of one repository"):
-            training.examples(write(tmp_path / "l.jsonl", labels), write(tmp_path / "r.jsonl", reports))
+            training.read_examples(write(tmp_path / "l.jsonl", labels), write(tmp_path / "r.jsonl", reports))
 
     def test_two_labels_are_enough(self, tmp_path):
         reports, labels = rows()
         kept = [(r, lab) for r, lab in zip(reports, labels, strict=True) if lab["label"] in ("other", "dependency")]
         file = write(tmp_path / "l.jsonl", [lab for _, lab in kept])
-        model = training.train(training.examples(file, write(tmp_path / "r.jsonl", [r for r, _ in kept])))
+        model = training.train(training.read_examples(file, write(tmp_path / "r.jsonl", [r for r, _ in kept])))
         assert model.labels == ["dependency", "other"]
-        assert model.verdict(read("missing dependency in package.xml", "")).label == "dependency"
-        assert model.verdict(read("segmentation fault in the window", "")).label == "other"
+        assert model.judge(read("missing dependency in package.xml", "")).label == "dependency"
+        assert model.judge(read("segmentation fault in the window", "")).label == "other"
 
 
 def test_softmax_adds_up_and_bears_large_scores():
-    assert softmax(np.array([1000.0, 1000.0])) == pytest.approx([0.5, 0.5])
-    assert json.loads(packed({"a": "ü"}).tobytes()) == {"a": "ü"}
+    assert compute_softmax(np.array([1000.0, 1000.0])) == pytest.approx([0.5, 0.5])
+    assert json.loads(pack_json({"a": "ü"}).tobytes()) == {"a": "ü"}

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from rosimpact.classifier.model import load
-from rosimpact.classifier.triage import CHECKS, Post, checks, from_text, is_address, post_of, triage
+from rosimpact.classifier.triage import CHECKS, Post, is_address, list_checks, make_post, parse_post, triage
 from rosimpact.corpus.polite import Clock
 from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
@@ -117,22 +117,22 @@ class TestChecks:
         ],
     )
     def test_only_commands_that_exist_are_named(self, label, text, commands, calls):
-        assert checks(label, Post("", text, ""), commands) == calls
+        assert list_checks(label, Post("", text, ""), commands) == calls
 
     def test_the_command_line_has_what_it_names(self):
         from typer.main import get_command
 
         commands = set(get_command(app).commands)
         for label in CHECKS:
-            for call in checks(label, Post("", "", ""), commands):
+            for call in list_checks(label, Post("", "", ""), commands):
                 assert call.split()[1] in commands
 
     def test_without_a_command_it_says_so(self):
-        from rosimpact.classifier.triage import as_text
+        from rosimpact.classifier.triage import render_triage
 
-        found = triage(load(), from_text("wrong frame_id: values in degrees, radians expected"), frozenset())
+        found = triage(load(), make_post("wrong frame_id: values in degrees, radians expected"), frozenset())
         assert found.verdict.label == "inconsistency"
-        assert "no command of this version looks into reports of the label inconsistency yet" in as_text(found)
+        assert "no command of this version looks into reports of the label inconsistency yet" in render_triage(found)
 
 
 class TestStream:
@@ -205,7 +205,7 @@ class TestStream:
 
     @pytest.mark.parametrize("line", ["", "3", "[]", "{}", '{"title": []}', "[" * 100_000, '{"id": {}, "title": ""}'])
     def test_what_is_no_report(self, line):
-        assert post_of(line) is None
+        assert parse_post(line) is None
 
 
 class TestAddresses:
@@ -294,7 +294,7 @@ class TestAddresses:
             raise AssertionError("nobody may be asked")
 
         monkeypatch.delenv("ROSIMPACT_GITHUB_API", raising=False)
-        monkeypatch.setattr("rosimpact.corpus.polite.Client._once", ask)
+        monkeypatch.setattr("rosimpact.corpus.polite.Client._send_request", ask)
         result = run(url)
         assert result.exit_code == 2
         assert says in result.stderr
@@ -314,10 +314,10 @@ class TestAddresses:
         ],
     )
     def test_which_server_is_asked(self, named, host, api, monkeypatch):
-        from rosimpact.classifier.triage import _github_api
+        from rosimpact.classifier.triage import _find_github_api
 
         monkeypatch.setenv("ROSIMPACT_GITHUB_API", named)
-        assert _github_api(host, "public") == api
+        assert _find_github_api(host, "public") == api
 
     def test_a_password_in_an_address_is_not_shown(self):
         result = run("https://ghp_s3cret:x@github.com/o/r/issues/5")
@@ -415,7 +415,7 @@ class TestErrors:
             raise ZeroDivisionError
 
         monkeypatch.delenv("ROSIMPACT_DEBUG", raising=False)
-        monkeypatch.setattr("rosimpact.classifier.training.examples", broken)
+        monkeypatch.setattr("rosimpact.classifier.training.read_examples", broken)
         (tmp_path / "reports.jsonl").write_text("")
         result = CliRunner().invoke(app, ["classifier", command, "--reports", str(tmp_path / "reports.jsonl")])
         assert result.exit_code == 2

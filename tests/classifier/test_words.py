@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.classifier.reading import read
 from rosimpact.classifier.signs import SIGNS
-from rosimpact.classifier.text import general_words, n_grams, parts_of, plain_words
+from rosimpact.classifier.text import list_general_words, list_plain_words, make_n_grams, split_parts
 
 BODY = """It fails on my machine.
 
@@ -21,7 +21,7 @@ So what now?
 
 
 def test_prose_code_and_error_lines_are_told_apart():
-    parts = parts_of("Fails", BODY)
+    parts = split_parts("Fails", BODY)
     assert "It fails on my machine." in parts.prose
     assert "So what now?" in parts.prose
     assert "starting" not in parts.prose
@@ -33,7 +33,7 @@ def test_prose_code_and_error_lines_are_told_apart():
 
 @pytest.mark.parametrize("fence", ["```", "~~~", "{{{", "<pre>"])
 def test_a_fence_that_is_never_closed_holds_the_rest(fence):
-    parts = parts_of("x", f"before\n{fence}\nerror: inside")
+    parts = split_parts("x", f"before\n{fence}\nerror: inside")
     assert "inside" not in parts.prose
     assert parts.errors == "error: inside"
 
@@ -48,7 +48,7 @@ def test_a_fence_that_is_never_closed_holds_the_rest(fence):
     ],
 )
 def test_plain_words_replace_what_differs_from_report_to_report(text, words):
-    assert plain_words(text) == words
+    assert list_plain_words(text) == words
 
 
 @pytest.mark.parametrize(
@@ -61,11 +61,11 @@ def test_plain_words_replace_what_differs_from_report_to_report(text, words):
     ],
 )
 def test_general_words_replace_names(text, words):
-    assert general_words(text) == words
+    assert list_general_words(text) == words
 
 
 def test_n_grams_are_runs_of_words():
-    assert n_grams(["a", "b", "c"], 2) == ["a", "b", "c", "a b", "b c"]
+    assert make_n_grams(["a", "b", "c"], 2) == ["a", "b", "c", "a b", "b c"]
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import random
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.corpus.agreement import agreement, kappa, wilson
+from rosimpact.corpus.agreement import compute_agreement, compute_kappa, compute_wilson
 from rosimpact.corpus.report import LABELS, read_labels
 
 
@@ -48,12 +48,12 @@ def error_of(table: list[list[int]]) -> float:
 
 @pytest.mark.parametrize("table", TABLES)
 def test_the_interval_is_that_of_the_delta_method(table):
-    found = kappa(pairs_of(table))
+    found = compute_kappa(pairs_of(table))
     assert (found.high - found.low) / 2 / 1.959964 == pytest.approx(error_of(table), rel=1e-4)
 
 
 def test_kappa_of_a_known_table():
-    assert kappa(pairs_of([[20, 5], [10, 15]])).value == pytest.approx(0.4)  # observed 0.7, by chance 0.5
+    assert compute_kappa(pairs_of([[20, 5], [10, 15]])).value == pytest.approx(0.4)  # observed 0.7, by chance 0.5
 
 
 @settings(deadline=None)  # the first call imports scikit-learn
@@ -61,7 +61,7 @@ def test_kappa_of_a_known_table():
 def test_kappa_is_scikit_learns(pairs):
     from sklearn.metrics import cohen_kappa_score
 
-    found = kappa(pairs)
+    found = compute_kappa(pairs)
     if len({name for pair in pairs for name in pair}) == 1:
         assert found.value is None  # both always say the same one word: nothing beyond chance can be seen
         return
@@ -73,8 +73,8 @@ def test_kappa_is_scikit_learns(pairs):
 def test_the_analytic_interval_is_close_to_a_bootstrap():
     pairs = pairs_of(TABLES[0])
     random.seed(7)
-    values = sorted(kappa(random.choices(pairs, k=len(pairs))).value for _ in range(1000))
-    found = kappa(pairs)
+    values = sorted(compute_kappa(random.choices(pairs, k=len(pairs))).value for _ in range(1000))
+    found = compute_kappa(pairs)
     assert found.low == pytest.approx(values[25], abs=0.03)
     assert found.high == pytest.approx(values[975], abs=0.03)
 
@@ -84,7 +84,7 @@ def test_the_analytic_interval_is_close_to_a_bootstrap():
     [(81, 263, 0.2553, 0.3662), (0, 20, 0.0, 0.1611), (20, 20, 0.8389, 1.0)],  # the first as in Newcombe 1998, table I
 )
 def test_wilson(hits, total, low, high):
-    found = wilson(hits, total)
+    found = compute_wilson(hits, total)
     assert (found.value, found.low, found.high) == (
         pytest.approx(hits / total),
         pytest.approx(low, abs=1e-4),
@@ -93,7 +93,9 @@ def test_wilson(hits, total, low, high):
 
 
 def test_label_by_label():
-    found = agreement([("dependency", "dependency")] * 3 + [("dependency", "other")] + [("other", "other")] * 4, LABELS)
+    found = compute_agreement(
+        [("dependency", "dependency")] * 3 + [("dependency", "other")] + [("other", "other")] * 4, LABELS
+    )
     assert (found.reports, found.same) == (8, 7)
     assert found.confusion["dependency"]["other"] == 1
     by_name = {row.label: row for row in found.labels}
@@ -105,11 +107,11 @@ def test_label_by_label():
 
 
 def test_nothing_read_twice():
-    found = agreement([], LABELS)
+    found = compute_agreement([], LABELS)
     assert (found.reports, found.share.value, found.kappa.value) == (0, None, None)
 
 
 def test_the_corpus_agreed_as_its_card_says():
-    found = agreement([label.annotators[:2] for label in read_labels() if len(label.annotators) > 1], LABELS)
+    found = compute_agreement([label.annotators[:2] for label in read_labels() if len(label.annotators) > 1], LABELS)
     assert (found.reports, found.same) == (630, 602)
     assert 0.9 < found.kappa.value < 0.97

@@ -7,15 +7,15 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from rosimpact.corpus.report import LABELS, PHASES, Label, read_labels, repository_of
-from rosimpact.corpus.splits import grouped_folds
-from rosimpact.corpus.stats import stats_of
+from rosimpact.corpus.report import LABELS, PHASES, Label, find_repository, read_labels
+from rosimpact.corpus.splits import make_grouped_folds
+from rosimpact.corpus.stats import compute_stats
 
 TEXT = (Path(__file__).parents[2] / "DATA.md").read_text(encoding="utf-8")
 CARD = TEXT[TEXT.index("\n# The corpus of bug reports\n") :]
 WORDS = " ".join(CARD.split())
 ROWS = read_labels()
-STATS = stats_of(ROWS)
+STATS = compute_stats(ROWS)
 
 
 def test_the_parts_of_a_dataset_card_are_there():
@@ -44,7 +44,7 @@ def test_numbers_of_phases(phase):
 
 
 def test_how_many_from_where():
-    repositories = [repository_of(row.id) for row in ROWS]
+    repositories = [find_repository(row.id) for row in ROWS]
     sites = Counter(row.id.partition(":")[0] for row, name in zip(ROWS, repositories, strict=True) if not name)
     assert f"**{len(ROWS):,} bug reports" in CARD
     assert f"{sum(map(bool, repositories)):,} reports are from {len(set(repositories) - {''})} repositories" in WORDS
@@ -68,7 +68,7 @@ def test_how_far_they_agreed():
 
 
 def test_the_recommended_folds():
-    folds = grouped_folds([row.id for row in ROWS], [row.label for row in ROWS])
+    folds = make_grouped_folds([row.id for row in ROWS], [row.label for row in ROWS])
     sizes = Counter(folds).values()
     rare = Counter(fold for fold, row in zip(folds, ROWS, strict=True) if row.label == "message-logic").values()
     assert f"{min(sizes)} to {max(sizes)} reports in a fold" in WORDS

@@ -20,7 +20,7 @@ from distro_history import Behind, Graph, History, Life, Sync, behind, kind_of_s
 )
 def test_versions_are_those_of_the_target(distro, day):
     target = DistroTarget(distro, day)
-    assert History(distro).versions(day) == {name: target.version(name) for name in target.released_names()}
+    assert History(distro).versions(day) == {name: target.find_version(name) for name in target.list_released()}
 
 
 def test_an_unknown_distro():

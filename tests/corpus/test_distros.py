@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from rosimpact.corpus.distros import distros_in
+from rosimpact.corpus.distros import find_distros
 
 
 @pytest.mark.parametrize(
@@ -30,4 +30,4 @@ from rosimpact.corpus.distros import distros_in
     ],
 )
 def test_names(text, named):
-    assert distros_in(text) == named
+    assert find_distros(text) == named

@@ -11,7 +11,7 @@ import time
 
 import pytest
 from rosimpact.corpus.gather import Progress
-from rosimpact.corpus.progress import Estimate, Reporter, described
+from rosimpact.corpus.progress import Estimate, Reporter, describe_progress
 from rosimpact.corpus.report import Report, read_reports, write_rows
 from rosimpact.corpus.store import Taken, open_reports
 from rosimpact.impact.cli.app import app
@@ -341,15 +341,15 @@ def test_an_estimate_counts_what_was_waited_and_is_silent_until_it_can_know():
     times = iter([0.0, 10.0, 20.0, 90.0, 100.0])
     estimate = Estimate(clock=lambda: next(times))
     # 300 reports in 90 s, a minute of it waited: 3.3 a second
-    assert [estimate.left(done, 1000) for done in (100, 200, 300, 400)] == [None, None, None, 180.0]
-    assert estimate.left(500, None) is None
+    assert [estimate.estimate_left(done, 1000) for done in (100, 200, 300, 400)] == [None, None, None, 180.0]
+    assert estimate.estimate_left(500, None) is None
 
 
 def test_progress_in_words():
-    assert described(Progress(1200, 4000, Taken(new=1000, same=200)), 75.0) == (
+    assert describe_progress(Progress(1200, 4000, Taken(new=1000, same=200)), 75.0) == (
         "1,200 of about 4,000 read; 1,000 new, 200 unchanged, about 75 s left"
     )
-    assert described(Progress(0, None, Taken()), None) == "0 read; nothing new"
+    assert describe_progress(Progress(0, None, Taken()), None) == "0 read; nothing new"
 
 
 def test_a_terminal_shows_a_line_that_renews_itself():
@@ -360,8 +360,8 @@ def test_a_terminal_shows_a_line_that_renews_itself():
     stream = Terminal()
     with Reporter("github:a/[b]", stream=stream) as reporter:
         for done in (100, 200):
-            reporter.page(Progress(done, 400, Taken(new=done)))
-        reporter.line("GitHub: the rate limit is reached; waiting 45 s")
+            reporter.report_page(Progress(done, 400, Taken(new=done)))
+        reporter.print_line("GitHub: the rate limit is reached; waiting 45 s")
         assert reporter._bars is not None
         reporter._bars.refresh()
     assert "github:a/[b]" in stream.getvalue() and "waiting 45 s" in stream.getvalue()

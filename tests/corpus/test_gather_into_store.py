@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from rosimpact.corpus.gather import gather, hydrate, import_reports, missing, refresh, service_of
+from rosimpact.corpus.gather import find_missing, find_service, gather, hydrate, import_reports, refresh
 from rosimpact.corpus.polite import Client
 from rosimpact.corpus.report import CorpusError, Report
 from rosimpact.corpus.sources.github import GitHub, Listed, Searched
@@ -53,7 +53,7 @@ def exchange(server: Services) -> StackExchange:
 
 
 def ids(store: Store) -> list[str]:
-    return [report.id for report in store.reports()]
+    return [report.id for report in store.iterate_reports()]
 
 
 def many(repository: str, count: int, start: int = 0) -> list[dict]:
@@ -66,7 +66,7 @@ def many(repository: str, count: int, start: int = 0) -> list[dict]:
 def test_a_report_of_github_is_what_was_posted(server, store):
     server.issues[NAV] = [issue(NAV, 7, day="2024-03-01T12:00:00Z", title="Costmap is empty", labels=[{"name": "bug"}])]
     gather(Listed(github(server), NAV), store)
-    assert list(store.reports()) == [
+    assert list(store.iterate_reports()) == [
         Report(
             id=f"{NAV}#7",
             url=f"https://github.com/{NAV}/issues/7",
@@ -118,7 +118,7 @@ def test_pull_requests_come_only_where_asked_for(server, tmp_path):
     for kinds, expected in ((("issue",), ["issue"]), (("issue", "pull"), ["issue", "pull"])):
         with Store(tmp_path / f"{len(kinds)}.sqlite") as store:
             gather(Listed(github(server), NAV, kinds=kinds), store)
-            assert [report.kind for report in store.reports()] == expected
+            assert [report.kind for report in store.iterate_reports()] == expected
 
 
 def test_since_goes_by_the_day_of_posting(server, store):
@@ -172,7 +172,7 @@ def test_a_server_of_github_enterprise(server, store):
     hub = GitHub(client(), f"{server.url}/api/v3", "t")
     gather(Listed(hub, NAV), store)
     gather(Searched(hub, f"repo:{NAV} transform"), store)
-    assert hub.quota() == (10_000, 5_000)
+    assert hub.fetch_quota() == (10_000, 5_000)
     report = store.report(f"{NAV}#130")
     assert report is not None and report.url == f"https://ghe.example.org/{NAV}/issues/130"
     assert len(ids(store)) == 130
@@ -185,7 +185,7 @@ def test_an_issue_that_was_transferred_is_found_where_it_is_now(server, store):
     store.want(["ros2/ros2#7"])
     hydrate(github(server), "github", ["ros2/ros2#7"], store)
     gather(Listed(github(server), "ros2/rclcpp"), store)
-    assert [(one.id, one.url, one.body) for one in store.reports()] == [
+    assert [(one.id, one.url, one.body) for one in store.iterate_reports()] == [
         ("ros2/ros2#7", "https://github.com/ros2/rclcpp/issues/31", "moved here")
     ]
 
@@ -212,9 +212,9 @@ def test_a_name_that_is_none_is_refused_before_anything_is_asked(server, name):
 def test_what_is_kept_names_the_author_and_nothing_else_of_the_person(server, store):
     server.issues[NAV] = [issue(NAV, 1)]
     gather(Listed(github(server), NAV), store)
-    raw = json.loads(store.raw(f"{NAV}#1"))
+    raw = json.loads(store.read_raw(f"{NAV}#1"))
     assert raw["user"] == {"login": "robotnik", "html_url": "https://github.com/robotnik"}
-    whole = store.path.read_bytes() + store.raw(f"{NAV}#1")
+    whole = store.path.read_bytes() + store.read_raw(f"{NAV}#1")
     for secret in (b"example.org", b"avatar", b"4711", b"assignee", b"MDQ6"):
         assert secret not in whole
 
@@ -253,7 +253,7 @@ def test_a_migrated_question_counts_once_whichever_side_came_first(server, store
     for source in jobs if archive_first else reversed(jobs):
         gather(source, store)
     assert ids(store) == ["robotics-se:5", "ros-answers:10010"]
-    assert store.copied() == 1
+    assert store.count_copied() == 1
     copy = store.report("robotics-se:31710")
     assert copy is not None and copy.same_as == "ros-answers:10010"
 
@@ -299,13 +299,13 @@ def test_the_archive_is_read_anew_only_where_a_file_changed(store, tmp_path, mon
     folder.mkdir(parents=True)
     for number in range(1, 451):
         (folder / f"{number}.md").write_bytes(archived(number))
-    gather(Archive(tmp_path, known=store.digest), store)
+    gather(Archive(tmp_path, known=store.read_digest), store)
     assert len(ids(store)) == 450
     (folder / "7.md").write_bytes(archived(7, body="Edited."))
     parsed = []
     parse = ros_answers.parse_archived
     monkeypatch.setattr(ros_answers, "parse_archived", lambda data, name: parsed.append(name) or parse(data, name))
-    taken = gather(Archive(tmp_path, known=store.digest), store)
+    taken = gather(Archive(tmp_path, known=store.read_digest), store)
     assert parsed == ["content/question/7.md"]
     assert taken.changed == 1
 
@@ -340,7 +340,7 @@ def test_one_bad_file_of_the_archive_is_named_and_the_rest_is_read(store, tmp_pa
     ],
 )
 def test_an_id_says_who_has_the_report(id, service):
-    assert service_of(id) == service
+    assert find_service(id) == service
 
 
 def test_labelled_ids_are_gathered_again_and_those_gone_are_told(server, store):
@@ -354,12 +354,12 @@ def test_labelled_ids_are_gathered_again_and_those_gone_are_told(server, store):
         "nobody/nothing#1",
     ]
     store.want(labelled)
-    todo = missing(store, labelled)
+    todo = find_missing(store, labelled)
     assert todo == {"github": labelled}
     taken = hydrate(github(server), "github", todo["github"], store)
     assert (taken.new, taken.gone) == (2, 2)
-    assert {report.id for report in store.reports()} == {labelled[0], labelled[2]}
-    assert missing(store, labelled) == {}
+    assert {report.id for report in store.iterate_reports()} == {labelled[0], labelled[2]}
+    assert find_missing(store, labelled) == {}
 
 
 def test_a_labelled_report_keeps_its_id_when_its_repository_moves_and_is_gathered_too(server, store):
@@ -392,7 +392,7 @@ def test_an_archive_that_has_moved_makes_no_question_gone(server, store):
     service = ArchivedFiles(client("archive"), f"{server.url}/raw")
     with pytest.raises(CorpusError, match=r"is not at .*/raw any more; clone .* and give it with --archive DIR"):
         hydrate(service, "ros-answers", ["ros-answers:7"], store)
-    assert store.kept("ros-answers:7") is None
+    assert store.find_kept("ros-answers:7") is None
 
 
 def test_a_text_that_names_another_source_is_asked_for_where_its_id_leads(server, store):
@@ -445,10 +445,10 @@ def test_refresh_takes_edits_over_and_lets_go_of_what_was_deleted(server, store,
 
     assert (taken.changed, taken.gone, taken.same) == (3, 3, 3)
     for prefix in (f"{NAV}#", "robotics-se:", "ros-answers:"):
-        edited, gone = store.report(f"{prefix}1"), store.kept(f"{prefix}2")
+        edited, gone = store.report(f"{prefix}1"), store.find_kept(f"{prefix}2")
         assert edited is not None and edited.body == "edited"
         assert gone is not None and gone.gone
-        assert store.report(f"{prefix}2") is None and store.raw(f"{prefix}2") == b""
+        assert store.report(f"{prefix}2") is None and store.read_raw(f"{prefix}2") == b""
     assert len(ids(store)) == 6
 
 
@@ -459,7 +459,7 @@ def test_a_deleted_text_leaves_the_file_itself(tmp_path):
     reports = [Report(f"a/b#{n}", "u", "github", None, "t", chance.randbytes(3000).hex()) for n in range(40)]
     with Store(path), Store(path) as store:  # one more has it open, or closing it would mend much by itself
         store.put([GatheredReport(report) for report in reports])
-        packed = [row[0] for row in store._all("SELECT report FROM report ORDER BY id")]
+        packed = [row[0] for row in store._fetch_all("SELECT report FROM report ORDER BY id")]
         # what fits no page goes on in others, from which a piece of its end is looked for
         assert all(blob[-500:-400] in everything_of(tmp_path) for blob in packed)
         store.forget([(report.id, "github") for report in reports])

@@ -45,7 +45,7 @@ def gathered(server: Services, world: Moving, tmp_path, stop_after: float) -> di
     world.rest()
     with Store(path) as store:
         gather(source(), store)
-        return {report.id: report.body for report in store.reports()}
+        return {report.id: report.body for report in store.iterate_reports()}
 
 
 @pytest.mark.parametrize("stop_after", [0.0, 0.2])

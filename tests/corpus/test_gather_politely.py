@@ -13,7 +13,7 @@ from rosimpact.corpus.report import CorpusError
 from rosimpact.corpus.sources.github import GitHub, Listed, Searched
 from rosimpact.corpus.sources.stack_exchange import StackExchange, Tagged
 from rosimpact.corpus.store import Store
-from rosimpact.corpus.tokens import github_token, stack_exchange_key
+from rosimpact.corpus.tokens import find_github_token, find_stack_exchange_key
 from server import Fault, Services, issue, question, stamp
 from waiting import Hours
 
@@ -71,7 +71,7 @@ def test_each_fault_is_waited_for_as_long_as_the_service_asks(server, store, fau
     clock = Hours(NOW)
     server.fail(fault)
     gather(Listed(GitHub(client(clock), server.url), REPO), store)
-    assert len(list(store.reports())) == 250
+    assert len(list(store.iterate_reports())) == 250
     assert len(clock.slept) == 1 and least <= clock.slept[0] <= most
 
 
@@ -115,10 +115,10 @@ def test_it_stops_cleanly_and_says_when_to_go_on(server, store):
     )
     assert stopped.value.until == NOW + 3001
     assert clock.slept == []
-    assert len(list(store.reports())) == 100
+    assert len(list(store.iterate_reports())) == 100
     clock.time = stopped.value.until
     gather(source, store)
-    assert len(list(store.reports())) == 250
+    assert len(list(store.iterate_reports())) == 250
 
 
 def test_patience_is_for_all_waits_together(server):
@@ -208,13 +208,13 @@ def test_no_redirect_leaves_the_host_that_was_asked(server):
     ],
 )
 def test_where_a_redirect_may_lead(url, place, onward):
-    from rosimpact.corpus.polite import _Fault, _onward
+    from rosimpact.corpus.polite import _Fault, _resolve_redirect
 
     if onward:
-        assert _onward("Askbot", url, place) == onward
+        assert _resolve_redirect("Askbot", url, place) == onward
     else:
         with pytest.raises((CorpusError, _Fault)):
-            _onward("Askbot", url, place)
+            _resolve_redirect("Askbot", url, place)
 
 
 @pytest.mark.parametrize(
@@ -240,7 +240,7 @@ def test_a_hostile_answer_is_one_error(server, fault, message):
 def test_halves_of_characters_do_not_stop_a_gathering(server, store):
     server.issues[REPO] = [issue(REPO, 1, title="half \ud83d of one", body="\udcff")]
     gather(Listed(GitHub(client(Hours(NOW)), server.url), REPO), store)
-    assert [(report.title, report.body) for report in store.reports()] == [("half \ufffd of one", "\ufffd")]
+    assert [(report.title, report.body) for report in store.iterate_reports()] == [("half \ufffd of one", "\ufffd")]
 
 
 def test_a_token_that_a_server_repeats_is_not_shown(server):
@@ -273,7 +273,7 @@ def test_faults_of_a_search_are_met_in_the_same_way(server, store):
     html = Fault(body=b"<html>", headers={"Content-Type": "text/html"})
     server.fail(Fault(429, {"Retry-After": "30"}), Fault(502), html, Fault(403, {}, SECONDARY))
     gather(Searched(GitHub(client(clock), server.url, "t"), f"repo:{REPO}"), store)
-    assert len(list(store.reports())) == 250
+    assert len(list(store.iterate_reports())) == 250
     assert len(clock.slept) == 4 and clock.slept[0] == 30
     assert {asked.headers["authorization"] for asked in server.asked} == {"token t"} or {
         asked.headers["authorization"] for asked in server.asked
@@ -301,10 +301,10 @@ def test_the_quota_of_the_day_ends_the_day(server, store):
     server.quota = 2
     with pytest.raises(Later, match=r"the quota of the day is used up, .* at 2023-11-15 00:00 UTC \(in 1.8 h\)"):
         gather(Tagged(exchange(server, clock, patience=60), "ros2"), store)
-    assert len(list(store.reports())) > 100
+    assert len(list(store.iterate_reports())) > 100
     server.quota = 100
     gather(Tagged(exchange(server, clock), "ros2"), store)
-    assert len(list(store.reports())) == 350
+    assert len(list(store.iterate_reports())) == 350
 
 
 def test_a_throttle_that_arrives_as_status_400_tells_its_seconds(server, store):
@@ -340,21 +340,21 @@ def test_a_question_that_stack_exchange_refuses(server, store):
     ],
 )  # fmt: skip
 def test_a_token_goes_only_to_the_service_it_is_for(monkeypatch, api, environment, token):
-    monkeypatch.setattr("rosimpact.corpus.tokens._kept", lambda user: "")
-    assert github_token(api, environment) == token
+    monkeypatch.setattr("rosimpact.corpus.tokens._read_keyring", lambda user: "")
+    assert find_github_token(api, environment) == token
 
 
 def test_a_key_goes_only_to_stack_exchange(monkeypatch):
-    monkeypatch.setattr("rosimpact.corpus.tokens._kept", lambda user: "")
+    monkeypatch.setattr("rosimpact.corpus.tokens._read_keyring", lambda user: "")
     key = {"STACK_EXCHANGE_KEY": "k"}
-    assert stack_exchange_key("https://api.stackexchange.com/2.3", key) == "k"
-    assert stack_exchange_key("https://mirror.example.org/2.3", key) == ""
+    assert find_stack_exchange_key("https://api.stackexchange.com/2.3", key) == "k"
+    assert find_stack_exchange_key("https://mirror.example.org/2.3", key) == ""
 
 
 def test_the_keyring_is_asked_where_the_environment_has_nothing(monkeypatch):
     keyring = pytest.importorskip("keyring")
     monkeypatch.setattr(keyring, "get_password", lambda service, user: f"{service}/{user}")
-    assert github_token("https://api.github.com", {}) == "rosimpact/github@api.github.com"
+    assert find_github_token("https://api.github.com", {}) == "rosimpact/github@api.github.com"
 
 
 def test_a_keyring_that_cannot_be_opened_means_no_token(monkeypatch):
@@ -364,7 +364,7 @@ def test_a_keyring_that_cannot_be_opened_means_no_token(monkeypatch):
         raise RuntimeError("locked")
 
     monkeypatch.setattr(keyring, "get_password", locked)
-    assert github_token("https://api.github.com", {}) == ""
+    assert find_github_token("https://api.github.com", {}) == ""
 
 
 def test_secrets_are_in_no_message_no_log_and_no_store(server, tmp_path, monkeypatch):

@@ -10,11 +10,11 @@ import zipfile
 
 import pytest
 from rosimpact.classifier.model import ClassifierError, load
-from rosimpact.corpus.gather import gather, service_of
+from rosimpact.corpus.gather import find_service, gather
 from rosimpact.corpus.labelling import Session
 from rosimpact.corpus.report import CorpusError, Report, read_reports, write_rows
 from rosimpact.corpus.robust import read_robust
-from rosimpact.corpus.sources.markup import markdown
+from rosimpact.corpus.sources.markup import convert_to_markdown
 from rosimpact.corpus.sources.ros_answers import Archive, SavedPages
 from rosimpact.corpus.store import GatheredReport, Store, open_reports
 from rosimpact.impact.cli.app import app
@@ -37,7 +37,7 @@ def test_a_link_or_pipe_in_an_archive_hides_no_question(tmp_path):
                                 ("3.md", tarfile.LNKTYPE, b""), ("10.md", tarfile.REGTYPE, archived(10))])  # fmt: skip
     with Store(tmp_path / "corpus.sqlite") as store:
         gather(Archive(tmp_path / "a.tar.gz"), store)
-        assert [report.id for report in store.reports()] == ["ros-answers:10"]
+        assert [report.id for report in store.iterate_reports()] == ["ros-answers:10"]
 
 
 def test_an_archive_that_unpacks_without_end_is_refused(tmp_path):
@@ -60,13 +60,13 @@ def test_links_pipes_and_large_files_of_a_clone_are_named_and_the_rest_is_read(t
     source = Archive(tmp_path)
     with Store(tmp_path / "corpus.sqlite") as store:
         gather(source, store)
-        assert [report.id for report in store.reports()] == ["ros-answers:4"]
+        assert [report.id for report in store.iterate_reports()] == ["ros-answers:4"]
     assert len(source.unread) == 3
 
 
 def test_a_folder_without_pages_is_an_error(tmp_path):
     with pytest.raises(CorpusError, match=r"holds no \*\.html"):
-        list(SavedPages(tmp_path).pages(None))
+        list(SavedPages(tmp_path).read_pages(None))
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_a_hostile_record_of_robust_is_passed_over(content, tmp_path):
 
 @pytest.mark.parametrize("depth", [100, 1_000, 50_000])
 def test_nested_html_is_text_at_worst(depth):
-    assert "deep" in markdown("<div>" * depth + "deep" + "</div>" * depth)
+    assert "deep" in convert_to_markdown("<div>" * depth + "deep" + "</div>" * depth)
 
 
 @pytest.mark.parametrize("content", [b"[" * 100_000, b'{"id": "\\ud800"}', b"\xff", b"9" * 5_000])
@@ -126,8 +126,8 @@ def test_a_damaged_store_is_an_error_and_stays(harm, tmp_path):
     db.close()
     before = path.read_bytes()
     with pytest.raises(CorpusError, match=r"corpus\.sqlite: (is|cannot be)"), Store(path) as store:
-        store.state("x")
-        list(store.reports())
+        store.read_state("x")
+        list(store.iterate_reports())
     assert path.read_bytes() == before
 
 
@@ -158,7 +158,7 @@ def test_a_model_that_unpacks_to_too_much_is_refused(tmp_path):
 
 @pytest.mark.parametrize("id", ["ros-answers:" + "9" * 5_000, "ros-answers:\u00b2", "robotics-se:", "x:1"])
 def test_an_id_of_no_source(id):
-    assert service_of(id) == ""
+    assert find_service(id) == ""
 
 
 @pytest.mark.parametrize("wait", ["nan", "inf", "-inf", "-1"])

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.console import Console
 from rosimpact.corpus.label_screen import GUIDE_FILE, Screen, clean
-from rosimpact.corpus.labelling import WHY_LIMIT, Session, current_labels
-from rosimpact.corpus.report import LABELS, PHASES, Report, faults_of
+from rosimpact.corpus.labelling import WHY_LIMIT, Session, read_current_labels
+from rosimpact.corpus.report import LABELS, PHASES, Report, find_faults
 
 GUIDE = GUIDE_FILE.read_text(encoding="utf-8")
 # It is drawn beside every text and takes most of the time: enough of it to be scrolled. A test of its own draws all.
@@ -92,8 +92,8 @@ def test_any_keys_leave_labels_that_follow_the_guide(moves, mode):
                     screen.press(key)
                 assert not screen.ended
                 drawn(screen)
-        for label in current_labels(file).values():
-            assert faults_of(label) == ""
+        for label in read_current_labels(file).values():
+            assert find_faults(label) == ""
             assert label.why and len(label.why) <= WHY_LIMIT
 
 

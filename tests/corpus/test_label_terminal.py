@@ -15,7 +15,7 @@ import termios
 import time
 
 import pytest
-from rosimpact.corpus.labelling import journal_of, read_journal
+from rosimpact.corpus.labelling import find_journal, read_journal
 from rosimpact.corpus.report import Label, Report, read_labels, write_rows
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals there")
@@ -260,7 +260,7 @@ def test_however_it_ends_no_answer_is_lost(desk, tmp_path, way):
         at.process.send_signal(signals[way])
     status = at.end()
     if way == "kill":
-        assert [event.event for event in read_journal(journal_of(tmp_path / "labels.jsonl"))] == ["answer"]
+        assert [event.event for event in read_journal(find_journal(tmp_path / "labels.jsonl"))] == ["answer"]
         again = desk()
         again.see("Long one", "2 to go").press("q")
         assert again.end() == 0
@@ -310,7 +310,7 @@ def test_the_suggestion_is_hidden_until_asked_for_and_noted(desk, tmp_path):
     assert "0.70" not in at.shown.split("1 done")[-1]
     at.press("q")
     assert at.end() == 0
-    (answer,) = [event for event in read_journal(journal_of(tmp_path / "labels.jsonl")) if event.event == "answer"]
+    (answer,) = [event for event in read_journal(find_journal(tmp_path / "labels.jsonl")) if event.event == "answer"]
     assert answer.suggested
 
 

@@ -11,13 +11,13 @@ import pytest
 from rosimpact.corpus.labelling import (
     GivenLabel,
     Session,
-    answered,
-    chosen,
-    current_labels,
-    journal_of,
-    offered,
-    opinions,
+    apply_answer,
+    find_journal,
+    list_opinions,
+    read_current_labels,
     read_journal,
+    select_offered,
+    select_reports,
 )
 from rosimpact.corpus.report import CorpusError, Label, Report, read_labels, write_rows
 
@@ -48,7 +48,7 @@ def by_id(file):
 def said(file, annotator, mode, *answers, reports=REPORTS):
     with Session(file, annotator, mode, reports) as session:
         for given in answers:
-            session.answer(given)
+            session.record_answer(given)
 
 
 def test_a_first_reading_makes_single_labels_in_the_order_of_the_reports(file):
@@ -67,7 +67,7 @@ def test_the_next_session_goes_on_where_the_last_stopped(file):
 def test_what_is_put_off_comes_again_next_time(file):
     with Session(file, "ann", "first", REPORTS) as session:
         session.skip()
-        session.answer(OTHER)
+        session.record_answer(OTHER)
     with Session(file, "ann", "first", REPORTS) as session:
         assert [r.id for r in session.queue] == ["acme/arm#1", "acme/arm#3", "acme/arm#4", "acme/arm#5"]
 
@@ -112,7 +112,7 @@ def test_a_disagreement_is_decided_with_both_answers_in_sight(file):
     with Session(file, "eve", "disagreements", REPORTS) as session:
         assert [r.id for r in session.queue] == ["acme/arm#1"]
         assert session.opinions == [UPDATE, MISSING]
-        session.answer(MISSING)
+        session.record_answer(MISSING)
     label = by_id(file)["acme/arm#1"]
     assert label == Label(
         "acme/arm#1", *msgspec.structs.astuple(MISSING), ("library-update", "dependency"), "adjudicated"
@@ -123,7 +123,7 @@ def test_a_disagreement_is_decided_with_both_answers_in_sight(file):
 
 def test_only_the_label_is_known_of_an_answer_that_no_journal_holds():
     disputed = Label("acme/arm#1", *msgspec.structs.astuple(UPDATE), ("library-update", "other"), "disputed")
-    assert opinions(disputed, []) == [UPDATE, GivenLabel("other", None, "", "")]
+    assert list_opinions(disputed, []) == [UPDATE, GivenLabel("other", None, "", "")]
 
 
 @pytest.mark.parametrize(
@@ -140,27 +140,27 @@ def test_only_the_label_is_known_of_an_answer_that_no_journal_holds():
 def test_answers_that_break_the_guide_are_refused(given, fault, mode):
     before = Label("a/b#1", "other", None, "none", "w", ("other", "other")[: 2 - (mode == "second")], "single")
     with pytest.raises(ValueError, match=fault):
-        answered(None if mode == "first" else before, "a/b#1", given, mode)
+        apply_answer(None if mode == "first" else before, "a/b#1", given, mode)
 
 
 def test_a_refused_answer_leaves_no_trace(file):
     with Session(file, "ann", "first", REPORTS) as session:
         with pytest.raises(ValueError):
-            session.answer(GivenLabel("other", None, "none", ""))
+            session.record_answer(GivenLabel("other", None, "none", ""))
         assert session.current == REPORTS[0]
-    assert read_journal(journal_of(file)) == []
+    assert read_journal(find_journal(file)) == []
     assert not file.exists()
 
 
 def test_undo_shows_the_report_again(file):
     with Session(file, "ann", "first", REPORTS) as session:
-        session.answer(UPDATE)
-        session.answer(OTHER)
+        session.record_answer(UPDATE)
+        session.record_answer(OTHER)
         assert session.undo().id == "acme/arm#2"
         assert session.undo().id == "acme/arm#1"
         assert session.undo() is None
         assert [r.id for r in session.queue] == [r.id for r in REPORTS]
-        session.answer(MISSING)
+        session.record_answer(MISSING)
     assert [(label.id, label.label) for label in read_labels(file)] == [("acme/arm#1", "dependency")]
 
 
@@ -184,10 +184,10 @@ def test_nobody_takes_back_what_others_have_built_on(file):
 
 def test_every_answer_is_on_disk_before_the_session_ends(file):
     session = Session(file, "ann", "first", REPORTS)
-    session.answer(UPDATE)
+    session.record_answer(UPDATE)
     # As another process would find it, the labels file not yet written.
     assert not file.exists()
-    assert current_labels(file)["acme/arm#1"].label == "library-update"
+    assert read_current_labels(file)["acme/arm#1"].label == "library-update"
     session._journal.close()  # as if killed: nothing is merged
     with Session(file, "ann", "first", REPORTS) as later:
         assert later.current == REPORTS[1]
@@ -197,7 +197,7 @@ def test_every_answer_is_on_disk_before_the_session_ends(file):
 def test_a_session_killed_between_labels_and_mark_changes_nothing_twice(file):
     said(file, "ann", "first", UPDATE)
     said(file, "bob", "second", MISSING)
-    journal = journal_of(file)
+    journal = find_journal(file)
     lines = journal.read_bytes().splitlines(keepends=True)
     journal.write_bytes(b"".join(line for line in lines if b'"merged"' not in line))
     before = read_labels(file)
@@ -209,16 +209,16 @@ def test_a_session_killed_between_labels_and_mark_changes_nothing_twice(file):
 @pytest.mark.parametrize("cut", [1, 5, 40])
 def test_a_line_cut_short_by_a_crash_is_left_out(file, cut):
     said(file, "ann", "first", UPDATE)
-    journal = journal_of(file)
+    journal = find_journal(file)
     journal.write_bytes(journal.read_bytes() + journal.read_bytes().splitlines(keepends=True)[0][: -cut - 1])
     with Session(file, "ann", "first", REPORTS) as session:
-        session.answer(OTHER)
+        session.record_answer(OTHER)
     assert [label.label for label in read_labels(file)] == ["library-update", "other"]
     assert all(json.loads(line) for line in journal.read_bytes().splitlines())
 
 
 def test_a_fault_in_the_middle_of_a_journal_is_named(file):
-    journal_of(file).write_bytes(b'{"event": "merged"}\nnonsense\n{"event": "merged"}\n')
+    find_journal(file).write_bytes(b'{"event": "merged"}\nnonsense\n{"event": "merged"}\n')
     with pytest.raises(CorpusError, match=r"labels\.journal\.jsonl:2"):
         Session(file, "ann", "first", REPORTS)
 
@@ -257,16 +257,16 @@ def test_edits_by_hand_after_a_session_stay(file):
     said(file, "ann", "first", UPDATE)
     file.write_text(file.read_text().replace("compiler of the new distro", "clang"))
     with Session(file, "ann", "first", REPORTS) as session:
-        session.answer(OTHER)
+        session.record_answer(OTHER)
     assert by_id(file)["acme/arm#1"].why.startswith("clang")
 
 
 def test_the_journal_knows_who_looked_at_a_suggestion(file):
     with Session(file, "ann", "first", REPORTS) as session:
-        session.suggestion_seen()
-        session.answer(UPDATE)
-        session.answer(OTHER)
-    answers = [event for event in read_journal(journal_of(file)) if event.event == "answer"]
+        session.note_suggestion_seen()
+        session.record_answer(UPDATE)
+        session.record_answer(OTHER)
+    answers = [event for event in read_journal(find_journal(file)) if event.event == "answer"]
     assert [(event.annotator, event.suggested) for event in answers] == [("ann", True), ("ann", False)]
     assert b"ann" not in file.read_bytes().replace(b"annotators", b"")
 
@@ -275,10 +275,10 @@ def test_only_the_reports_asked_for():
     elsewhere = Report("ros-answers:7", "https://answers.ros.org/question/7", "ros-answers", None, "t", "b")
     copy = report(9, same_as="acme/arm#1")
     everything = [*REPORTS[:2], elsewhere, copy, REPORTS[0]]
-    assert [r.id for r in chosen(everything, (), ())] == ["acme/arm#1", "acme/arm#2", "ros-answers:7"]
-    assert chosen(everything, ("ros-answers",), ()) == [elsewhere]
-    assert chosen(everything, (), ("Acme/Arm",)) == REPORTS[:2]
-    assert offered([], {}, [], "first", "ann") == []
+    assert [r.id for r in select_reports(everything, (), ())] == ["acme/arm#1", "acme/arm#2", "ros-answers:7"]
+    assert select_reports(everything, ("ros-answers",), ()) == [elsewhere]
+    assert select_reports(everything, (), ("Acme/Arm",)) == REPORTS[:2]
+    assert select_offered([], {}, [], "first", "ann") == []
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -295,16 +295,16 @@ def test_whatever_is_pressed_labels_are_what_the_journal_says(file, seed):
             elif session.current and move < 0.35:
                 session.skip()
             elif session.current:
-                session.answer(chance.choice([UPDATE, MISSING, OTHER]))
+                session.record_answer(chance.choice([UPDATE, MISSING, OTHER]))
         expected = dict(session.labels)
         if chance.random() < 0.5:
             session._journal.close()  # killed
         else:
             session.__exit__(None, None, None)
-        assert current_labels(file) == expected
+        assert read_current_labels(file) == expected
     replayed = {}
-    for event in read_journal(journal_of(file)):
+    for event in read_journal(find_journal(file)):
         row = event.after if event.event == "answer" else event.before
         if event.event != "merged":
             replayed[event.id] = row
-    assert {id: row for id, row in replayed.items() if row} == current_labels(file)
+    assert {id: row for id, row in replayed.items() if row} == read_current_labels(file)

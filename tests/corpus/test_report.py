@@ -8,10 +8,10 @@ from rosimpact.corpus.report import (
     CorpusError,
     Label,
     Report,
-    faults_of,
+    find_faults,
+    find_repository,
     read_labels,
     read_reports,
-    repository_of,
     write_rows,
 )
 
@@ -33,7 +33,7 @@ LABEL = Label("a/b#1", "library-update", "ros", "run", "stopped after an update"
     ],
 )
 def test_repository_of(id, repository):
-    assert repository_of(id) == repository
+    assert find_repository(id) == repository
     assert msgspec.structs.replace(REPORT, id=id).group == (repository or id)
 
 
@@ -74,7 +74,7 @@ def test_writing_is_whole_or_not_at_all(tmp_path):
     ],
 )
 def test_what_breaks_the_rules_of_the_guide(change, fault):
-    said = faults_of(msgspec.structs.replace(LABEL, **change))
+    said = find_faults(msgspec.structs.replace(LABEL, **change))
     assert (fault in said) if fault else said == ""
 
 

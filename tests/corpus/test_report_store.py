@@ -55,25 +55,29 @@ def test_a_page_is_written_with_its_state_or_not_at_all(path):
 
         with pytest.raises(Exception, match=r".*"):
             store.take("job", Page([GatheredReport(report("a/b#2")), None], {"after": 2}))  # type: ignore[list-item]
-        assert [one.id for one in store.reports()] == ["a/b#1"]
-        assert store.state("job") == {"after": 1}
+        assert [one.id for one in store.iterate_reports()] == ["a/b#1"]
+        assert store.read_state("job") == {"after": 1}
 
 
 def test_a_file_is_made_for_reports_and_for_nothing_less(path):
     with Store(path) as store:
         store.want(["A/b#1"])
         store.take("job", Page([], {"since": "2024"}))
-        store.seen(["a/b#1"])
+        store.mark_seen(["a/b#1"])
         assert store.put([]) == Taken() and store.forget([]) == 0
-        assert (store.state("job"), store.kept("a/b#1"), list(store.reports())) == ({"since": "2024"}, None, [])
+        assert (store.read_state("job"), store.find_kept("a/b#1"), list(store.iterate_reports())) == (
+            {"since": "2024"},
+            None,
+            [],
+        )
     assert not path.parent.exists()
     with Store(path) as store:
         store.want(["A/b#1"])
         store.take("job", Page([], {"since": "2024"}))
         store.put([GatheredReport(report("a/b#1"))])
     with Store(path) as store:
-        assert store.state("job") == {"since": "2024"}
-        assert [one.id for one in store.reports()] == ["A/b#1"]
+        assert store.read_state("job") == {"since": "2024"}
+        assert [one.id for one in store.iterate_reports()] == ["A/b#1"]
 
 
 def test_a_file_that_another_has_made_meanwhile_is_gone_on_with(path):
@@ -82,8 +86,8 @@ def test_a_file_that_another_has_made_meanwhile_is_gone_on_with(path):
         late.take("own", Page([], {"after": 5}))
         early.take("job", Page([GatheredReport(report("a/b#1"))], {"after": 2}))
         late.put([GatheredReport(report("a/b#2"))])
-        assert (late.state("job"), late.state("own")) == ({"after": 2}, {"after": 5})
-        assert [one.id for one in late.reports()] == ["a/b#1", "a/b#2"]
+        assert (late.read_state("job"), late.read_state("own")) == ({"after": 2}, {"after": 5})
+        assert [one.id for one in late.iterate_reports()] == ["a/b#1", "a/b#2"]
 
 
 def test_a_place_for_no_file_is_refused_at_once(tmp_path):
@@ -96,7 +100,7 @@ def test_ids_of_github_are_the_same_in_any_case(path):
     with Store(path) as store:
         assert store.put([GatheredReport(report("ANYbotics/x#1"))]).new == 1
         assert store.put([GatheredReport(report("anybotics/x#1", body="edited"))]).changed == 1
-        assert [one.body for one in store.reports()] == ["edited"]
+        assert [one.body for one in store.iterate_reports()] == ["edited"]
 
 
 def test_what_is_the_same_is_not_written_anew(path):
@@ -104,7 +108,7 @@ def test_what_is_the_same_is_not_written_anew(path):
     with Store(path, clock=lambda: next(ticks)) as store:
         store.put([GatheredReport(report("a/b#1"))])
         assert store.put([GatheredReport(report("a/b#1"))]).same == 1
-        assert store._all("SELECT first, checked, changed FROM report") == [(1.0, 2.0, 1.0)]
+        assert store._fetch_all("SELECT first, checked, changed FROM report") == [(1.0, 2.0, 1.0)]
 
 
 def test_one_reads_while_another_writes(path):
@@ -129,8 +133,8 @@ def test_many_write_at_once(path):
     for thread in threads:
         thread.join()
     with Store(path) as store:
-        assert len(list(store.reports())) == 120
-        assert [store.state(f"w{n}") for n in range(4)] == [{"after": 29}] * 4
+        assert len(list(store.iterate_reports())) == 120
+        assert [store.read_state(f"w{n}") for n in range(4)] == [{"after": 29}] * 4
 
 
 def test_many_make_the_file_at_once(path):
@@ -203,10 +207,10 @@ def test_moves_there_and_back_lose_nothing(path):
     with Store(path) as store:
         store.put([GatheredReport(report("old/x#1")), GatheredReport(report("old/x#2"))])
         store.take("job", Page([GatheredReport(report("new/x#1"), asked="old/x#1")], {}, moved=("old/x", "new/x")))
-        assert [one.id for one in store.reports()] == ["new/x#1", "new/x#2"]
+        assert [one.id for one in store.iterate_reports()] == ["new/x#1", "new/x#2"]
         assert store.report("old/x#2") == store.report("new/x#2")
         store.take("job", Page([GatheredReport(report("old/x#1"), asked="new/x#1")], {}, moved=("new/x", "old/x")))
-        assert [one.id for one in store.reports()] == ["old/x#1", "old/x#2"]
+        assert [one.id for one in store.iterate_reports()] == ["old/x#1", "old/x#2"]
         assert store.report("new/x#1") == store.report("old/x#1")
 
 
@@ -238,7 +242,7 @@ def test_whatever_happens_to_ids_no_report_is_there_twice(tmp_path_factory, step
             else:
                 store.forget([(id, "github")])
                 assert store.report(id) is None
-        before = list(store.reports())
+        before = list(store.iterate_reports())
         ids = [one.id.lower() for one in before]
         assert len(ids) == len(set(ids))
     assert (list(open_reports(path)) if path.exists() else []) == before
@@ -258,10 +262,10 @@ def test_a_damaged_row_is_named(path, column, value):
         db.commit()
     with Store(path) as store:
         for read in (
-            lambda: list(store.reports()),
+            lambda: list(store.iterate_reports()),
             lambda: store.report("a/b#1"),
-            lambda: store.raw("a/b#1"),
-            lambda: store.state("job"),
+            lambda: store.read_raw("a/b#1"),
+            lambda: store.read_state("job"),
             lambda: store.take("job", Page([], {"after": 2}, moved=("a/b", "c/d"))),
         ):
             try:

@@ -7,8 +7,16 @@ import os
 from pathlib import Path
 
 import pytest
-from rosimpact.corpus.report import faults_of, read_labels
-from rosimpact.corpus.robust import licence_of, map_record, read_robust, report_of, rows_of, summary, verdict
+from rosimpact.corpus.report import find_faults, read_labels
+from rosimpact.corpus.robust import (
+    describe_licence,
+    judge_record,
+    make_rows,
+    map_record,
+    read_robust,
+    report_of,
+    summarize,
+)
 
 RECORD = """%YAML 1.1
 ---
@@ -112,7 +120,7 @@ WRONG = ("SOFTWARE:BEHAVIORAL", "SYSTEM:BEHAVING-INCORRECTLY")
     ],
 )  # fmt: skip
 def test_what_codes_say(faults, failures, classification, words, expected):
-    assert verdict(faults, failures, f"{classification} (no CWE)", words)[:3] == expected
+    assert judge_record(faults, failures, f"{classification} (no CWE)", words)[:3] == expected
 
 
 @pytest.mark.parametrize(
@@ -166,7 +174,7 @@ def test_the_file_name_counts_where_the_id_inside_is_another_records(tmp_path):
 
 def test_nothing_of_a_records_text_is_taken(tmp_path):
     write(tmp_path, "a1b2c3d", ["BDO:DEPENDENCY"], BUILD, title="Secret title", classification="Missing Dependency")
-    (row,) = rows_of(read_robust(tmp_path).mapped)
+    (row,) = make_rows(read_robust(tmp_path).mapped)
     assert "Secret" not in str(row) and "looks for" not in str(row)
 
 
@@ -175,8 +183,8 @@ def test_records_of_one_report_that_differ_make_no_label(tmp_path):
     write(tmp_path, "1111111", ["EVOLUTION:PACKAGE"], BUILD, issue=issue)
     write(tmp_path, "2222222", ["BDO:BUILD"], BUILD, issue=issue)
     records = read_robust(tmp_path)
-    assert list(rows_of(records.mapped)) == []
-    assert summary(records.mapped)["library-update"] == {"sure": 1, "likely": 0, "unmapped": 0}
+    assert list(make_rows(records.mapped)) == []
+    assert summarize(records.mapped)["library-update"] == {"sure": 1, "likely": 0, "unmapped": 0}
 
 
 @pytest.mark.parametrize("bug", ["bug: null", "bug: text", "bug: {issue: [1, 2], phase: {a: b}}", "bug: {}"])
@@ -204,9 +212,9 @@ def test_a_file_that_cannot_be_read_is_named_and_passed_over(tmp_path, text, fau
 
 
 def test_the_licence_is_what_the_clone_says(tmp_path):
-    assert "no licence file" in licence_of(tmp_path)
+    assert "no licence file" in describe_licence(tmp_path)
     (tmp_path / "LICENSE.md").write_text("\n\nApache License\nmore")
-    assert licence_of(tmp_path) == "licence: LICENSE.md (Apache License)"
+    assert describe_licence(tmp_path) == "licence: LICENSE.md (Apache License)"
 
 
 def test_a_missing_field_is_no_error():
@@ -226,7 +234,7 @@ def test_the_command_writes_labels_that_read_back(say, tmp_path):
     assert "licence: the clone has no licence file" in said.err
     (label,) = read_labels(output)
     assert (label.id, label.label, label.kind, label.phase) == ("acme/arm#5", "library-update", "ros", "build")
-    assert (label.decided, label.annotators, faults_of(label)) == ("imported", ("library-update",), "")
+    assert (label.decided, label.annotators, find_faults(label)) == ("imported", ("library-update",), "")
     (row,) = map(json.loads, output.read_text().splitlines())
     assert (row["confidence"], row["record"]) == ("sure", "1111111")
 
@@ -249,7 +257,7 @@ def test_no_records_is_one_line_that_says_what_to_give(say, tmp_path, where):
 def test_the_real_records_map_as_the_documentation_says():
     records = read_robust(Path(os.environ["ROSIMPACT_ROBUST"]))
     assert records.unreadable == []
-    assert {name: sum(counts.values()) for name, counts in summary(records.mapped).items()} == {
+    assert {name: sum(counts.values()) for name, counts in summarize(records.mapped).items()} == {
         "dependency": 43,
         "inconsistency": 12,
         "library-update": 34,

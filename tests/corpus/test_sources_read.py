@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.corpus.report import CorpusError
-from rosimpact.corpus.sources.markup import markdown
-from rosimpact.corpus.sources.person import public_name
+from rosimpact.corpus.sources.markup import convert_to_markdown
+from rosimpact.corpus.sources.person import make_public_name
 from rosimpact.corpus.sources.ros_answers import (
     Archive,
     Askbot,
@@ -20,7 +20,7 @@ from rosimpact.corpus.sources.ros_answers import (
     parse_item,
     parse_page,
 )
-from rosimpact.corpus.sources.stack_exchange import gathered, original_of
+from rosimpact.corpus.sources.stack_exchange import convert, find_original
 from server import archived, askbot_item, question
 
 # -- HTML as Markdown --------------------------------------------------------------------------------------------------
@@ -48,21 +48,21 @@ from server import archived, askbot_item, question
     ],
 )
 def test_what_matters_of_html_survives(html, text):
-    assert markdown(html) == text
+    assert convert_to_markdown(html) == text
 
 
 @given(st.text(alphabet=st.characters(codec="utf-8", exclude_characters="\r\x00"), max_size=200))
 def test_code_survives_whatever_it_holds(code):
     import html
 
-    text = markdown(f"<p>before</p><pre><code>{html.escape(code)}</code></pre><p>after</p>")
+    text = convert_to_markdown(f"<p>before</p><pre><code>{html.escape(code)}</code></pre><p>after</p>")
     assert code.strip("\n") in text
     assert text.startswith("before\n\n```") and text.endswith("```\n\nafter")
 
 
 @given(st.text(max_size=300))
 def test_any_text_is_some_html(text):
-    assert isinstance(markdown(text), str)
+    assert isinstance(convert_to_markdown(text), str)
 
 
 @pytest.mark.parametrize(
@@ -70,13 +70,13 @@ def test_any_text_is_some_html(text):
     [("Ann B", "Ann B"), ("ann@example.org", "ann"), ("ann@home", "ann@home"), ("@ann", "@ann"), (None, "")],
 )
 def test_a_name_that_is_a_mail_address_is_not_kept_as_one(given, kept):
-    assert public_name(given) == kept
+    assert make_public_name(given) == kept
 
 
 def test_mail_addresses_as_names_stay_out_of_what_is_kept():
     found = parse_archived(archived(1).replace(b"fergs\n", b"f@example.org\n"), "1.md")
     item = parse_item(askbot_item(1, author={"id": 1, "username": "m@example.org"}))
-    asked = gathered(question(1, owner={"display_name": "m@example.org"}))
+    asked = convert(question(1, owner={"display_name": "m@example.org"}))
     assert found is not None
     for one in (found[0], item, asked):
         assert b"example.org" not in one.raw.replace(b"answers.example.org", b"")
@@ -184,13 +184,13 @@ def test_a_tarball_without_questions_says_what_to_give(tmp_path):
     with tarfile.open(tmp_path / "archive.tar.gz", "w:gz") as tar:
         tar.add(__file__, "answers-archive/README.md")
     with pytest.raises(CorpusError, match=r"holds no questions; give a clone of .* with --archive DIR"):
-        list(Archive(tmp_path / "archive.tar.gz").pages(None))
+        list(Archive(tmp_path / "archive.tar.gz").read_pages(None))
 
 
 def test_a_tarball_that_is_damaged_says_so(tmp_path):
     (tmp_path / "archive.tar.gz").write_bytes(b"\x1f\x8b nothing of the kind")
     with pytest.raises(CorpusError, match="is damaged; delete it, and it is fetched again"):
-        list(Archive(tmp_path / "archive.tar.gz").pages(None))
+        list(Archive(tmp_path / "archive.tar.gz").read_pages(None))
 
 
 def test_the_archive_lists_more_copies_than_its_questions_name(tmp_path):
@@ -199,7 +199,7 @@ def test_the_archive_lists_more_copies_than_its_questions_name(tmp_path):
     (tmp_path / "answers").mkdir()
     posts = [{"OriginalPostID": 9, "NewUrl": "https://robotics.stackexchange.com/questions/25232/x"}]
     (tmp_path / "answers/ros-to-robotics.json").write_text(json.dumps({"Posts": posts}))
-    assert [page.copies for page in Archive(tmp_path).pages(None)] == [(("robotics-se:25232", "ros-answers:9"),)]
+    assert [page.copies for page in Archive(tmp_path).read_pages(None)] == [(("robotics-se:25232", "ros-answers:9"),)]
 
 
 @pytest.mark.parametrize(
@@ -286,7 +286,7 @@ def test_a_folder_of_saved_pages_names_those_it_cannot_read(tmp_path):
     (tmp_path / "users.htm").write_text("<h1>Users</h1>")
     (tmp_path / "style.css").write_text("h1 {}")
     source = SavedPages(tmp_path)
-    reports = [gathered.report.id for page in source.pages(None) for gathered in page.reports]
+    reports = [gathered.report.id for page in source.read_pages(None) for gathered in page.reports]
     assert (reports, source.unread) == (["ros-answers:344567"], ["users.htm: holds no question"])
 
 
@@ -330,7 +330,7 @@ COMMENTS = (
     ],
 )  # fmt: skip
 def test_a_migrated_question_is_read_as_it_was_posted(body, text, original):
-    report = gathered(question(67689, body)).report
+    report = convert(question(67689, body)).report
     assert report.body == text
     assert report.same_as == (f"ros-answers:{original}" if original else "")
     assert (report.date, report.author) == ("2015-05-20", "Ann B")
@@ -339,7 +339,7 @@ def test_a_migrated_question_is_read_as_it_was_posted(body, text, original):
 
 def test_a_question_of_gazebo_answers_is_no_copy_of_one_of_ros():
     body = LOGO.replace("answers.ros.org", "answers.gazebosim.org") + "<p>x</p>" + FOOTER.replace("ROS", "Gazebo")
-    found = original_of(body)
+    found = find_original(body)
     assert (found.id, found.date) == ("", "2015-05-20")
 
 
@@ -353,11 +353,11 @@ def test_a_question_of_gazebo_answers_is_no_copy_of_one_of_ros():
     ],
 )
 def test_a_question_that_was_never_migrated_is_left_as_it_is(body):
-    assert original_of(body) == ("", "", "", body)
+    assert find_original(body) == ("", "", "", body)
 
 
 def test_a_question_of_stack_exchange():
-    found = gathered(question(98659))
+    found = convert(question(98659))
     report = found.report
     assert (report.id, report.title) == ("robotics-se:98659", 'It stops & says "no map"')
     assert (report.author, report.date, report.tags) == ("Jürgen", "2023-11-16", ("ros2", "navigation"))
@@ -366,17 +366,17 @@ def test_a_question_of_stack_exchange():
 
 
 def test_votes_and_views_change_no_report():
-    one, other = gathered(question(1)), gathered(question(1, view_count=99, score=4, last_activity_date=1_800_000_000))
+    one, other = convert(question(1)), convert(question(1, view_count=99, score=4, last_activity_date=1_800_000_000))
     assert one.digest == other.digest
 
 
 def test_a_question_whose_author_left():
     owner = {"user_type": "does_not_exist", "display_name": "user9"}
-    assert gathered(question(1, owner=owner)).report.author == "user9"
-    assert gathered(question(1, owner=None)).report.author == ""
+    assert convert(question(1, owner=owner)).report.author == "user9"
+    assert convert(question(1, owner=None)).report.author == ""
 
 
 @pytest.mark.parametrize("item", [{}, {"question_id": 1}, {"question_id": "x", "creation_date": 1, "body": ""}])
 def test_what_is_no_question_is_said(item):
     with pytest.raises(CorpusError, match="is no question"):
-        gathered(item)
+        convert(item)

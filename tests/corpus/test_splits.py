@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.corpus.report import LABELS, group_of, read_labels
-from rosimpact.corpus.splits import day_of, grouped_folds, grouped_splits, time_split, unseen
+from rosimpact.corpus.splits import make_grouped_folds, make_grouped_splits, make_time_split, parse_day, select_unseen
 
 IDS = st.builds(lambda repo, number: f"acme/r{repo}#{number}", st.integers(0, 12), st.integers(1, 9))
 
@@ -18,21 +18,21 @@ def test_no_repository_on_both_sides_and_every_row_tested_once(rows, folds):
     ids, labels = [id for id, _ in rows], [label for _, label in rows]
     if len({group_of(id) for id in ids}) < folds:
         with pytest.raises(ValueError, match="groups"):
-            grouped_splits(ids, labels, folds)
+            make_grouped_splits(ids, labels, folds)
         return
-    splits = grouped_splits(ids, labels, folds)
+    splits = make_grouped_splits(ids, labels, folds)
     assert sorted(i for split in splits for i in split.test) == list(range(len(rows)))
     for split in splits:
         assert sorted(split.train + split.test) == list(range(len(rows)))
-        assert unseen(ids, split) == split.test != []
+        assert select_unseen(ids, split) == split.test != []
 
 
 def test_the_corpus_is_split_evenly_and_the_same_each_time():
     rows = read_labels()
     ids, labels = [row.id for row in rows], [row.label for row in rows]
-    folds = grouped_folds(ids, labels)
-    assert folds == grouped_folds(ids, labels)
-    assert folds != grouped_folds(ids, labels, seed=1)
+    folds = make_grouped_folds(ids, labels)
+    assert folds == make_grouped_folds(ids, labels)
+    assert folds != make_grouped_folds(ids, labels, seed=1)
     for name in LABELS:
         found = Counter(fold for fold, label in zip(folds, labels, strict=True) if label == name)
         even = sum(found.values()) / 5
@@ -42,8 +42,8 @@ def test_the_corpus_is_split_evenly_and_the_same_each_time():
 def test_the_order_of_rows_does_not_matter():
     rows = read_labels()
     ids, labels = [row.id for row in rows], [row.label for row in rows]
-    forward = dict(zip(ids, grouped_folds(ids, labels), strict=True))
-    assert dict(zip(ids[::-1], grouped_folds(ids[::-1], labels[::-1]), strict=True)) == forward
+    forward = dict(zip(ids, make_grouped_folds(ids, labels), strict=True))
+    assert dict(zip(ids[::-1], make_grouped_folds(ids[::-1], labels[::-1]), strict=True)) == forward
 
 
 def test_repositories_are_compared_as_github_does():
@@ -54,16 +54,16 @@ def test_repositories_are_compared_as_github_does():
 def test_by_time():
     ids = ["a/b#1", "a/b#2", "c/d#3", "e/f#4", "g/h#5"]
     dates = ["2020-01-01", "2021-06-01", "2021-06-02", None, "Jul 3, 2013"]
-    split = time_split(ids, dates, "2021-06-01")
+    split = make_time_split(ids, dates, "2021-06-01")
     assert split == ([0, 4], [1, 2])
-    assert unseen(ids, split) == [2]
+    assert select_unseen(ids, split) == [2]
 
 
 def test_lists_of_different_length_are_refused():
     with pytest.raises(ValueError, match="one label for each"):
-        grouped_folds(["a/b#1"], [])
+        make_grouped_folds(["a/b#1"], [])
     with pytest.raises(ValueError, match="one date"):
-        time_split(["a/b#1"], [], "2020-01-01")
+        make_time_split(["a/b#1"], [], "2020-01-01")
 
 
 @pytest.mark.parametrize(
@@ -80,4 +80,4 @@ def test_lists_of_different_length_are_refused():
     ],
 )
 def test_days(date, day):
-    assert day_of(date) == day
+    assert parse_day(date) == day

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import pytest
 from rosimpact.corpus.report import Label, Report, read_labels, write_rows
-from rosimpact.corpus.stats import project_of, stats_of, year_of
+from rosimpact.corpus.stats import compute_stats, find_project, find_year
 
 
 def label(id, name, kind=None, phase="run", annotators=None, decided="single"):
@@ -37,7 +37,7 @@ def row(**counts):
 
 
 def test_tables():
-    found = stats_of(LABELS, REPORTS)
+    found = compute_stats(LABELS, REPORTS)
     assert (found.reports, found.read) == (4, 3)
     assert found.labels == row(library_update=1, dependency=1, inconsistency=1, other=1)
     assert found.kinds["dependency"] == {"undeclared": 1, "unavailable": 0, "build-order": 0, "wrong": 0}
@@ -58,20 +58,20 @@ def test_tables():
 
 
 def test_agreement_is_over_reports_with_two_annotators():
-    found = stats_of(LABELS).agreement
+    found = compute_stats(LABELS).agreement
     assert (found.reports, found.same) == (3, 2)
     assert found.confusion["other"]["dependency"] == 1
 
 
 def test_without_texts_years_and_distros_are_not_guessed():
-    found = stats_of(LABELS)
+    found = compute_stats(LABELS)
     assert found.years is None and found.distros is None
     assert "give those with --reports" in found.notes[0]
 
 
 def test_every_label_of_the_corpus_is_counted_once_in_each_table():
     labels = read_labels()
-    found = stats_of(labels)
+    found = compute_stats(labels)
     for table in (found.phases, found.projects, found.decided):
         assert sum(sum(counts.values()) for counts in table.values()) == len(labels) == found.reports
     assert sum(sum(kinds.values()) for kinds in found.kinds.values()) == sum(bool(x.kind) for x in labels)
@@ -88,14 +88,14 @@ def test_every_label_of_the_corpus_is_counted_once_in_each_table():
     ],
 )
 def test_projects(id, project):
-    assert project_of(id) == project
+    assert find_project(id) == project
 
 
 @pytest.mark.parametrize(
     ("date", "year"), [("2024-05-01", "2024"), ("Jul 3, 2013", "2013"), (None, ""), ("May 5", ""), ("12345", "")]
 )
 def test_years(date, year):
-    assert year_of(date) == year
+    assert find_year(date) == year
 
 
 # -- the command -------------------------------------------------------------------------------------------------------

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from late import Late
 from rosimpact.classifier import study as triage_study
-from rosimpact.corpus.curves import pooled_share, survival
-from rosimpact.corpus.figures import apart, names
+from rosimpact.corpus.curves import estimate_pooled_share, estimate_survival
+from rosimpact.corpus.figures import spread_places, write_names
 from rosimpact.corpus.report import KINDS, LABELS, CorpusError, Report, read_labels
-from rosimpact.corpus.study import command, run
+from rosimpact.corpus.study import run, run_study
 from rosimpact.impact.cli.app import app
-from rosimpact.impact.rules.rule import all_rules
+from rosimpact.impact.rules.rule import load_rules
 from typer.testing import CliRunner
 
 evaluate, training = Late("rosimpact.classifier.evaluate"), Late("rosimpact.classifier.training")
@@ -72,7 +72,7 @@ def test_the_command_line(tmp_path):
 )
 def test_a_notebook_without_its_figure_fails_the_run(tmp_path, capfd, source, said):
     folder = folder_with(tmp_path, source)
-    assert command(output=tmp_path / "out", notebooks=folder) == 1
+    assert run_study(output=tmp_path / "out", notebooks=folder) == 1
     assert f"01_made.ipynb: {said}" in re.sub(r"cell 1: ValueError: (figure)", r"\1", capfd.readouterr().err)
 
 
@@ -139,7 +139,7 @@ def test_every_kind_has_its_rules_and_every_rule_named_exists():
     rows = rows_of("rules_of_kinds.csv")
     kinds = [(label, kind) for label in LABELS for kind in KINDS.get(label, ("",))]
     assert [(row["label"], row["kind"]) for row in rows] == kinds
-    assert {rule for row in rows for rule in row["rules"].split()} <= all_rules().keys()
+    assert {rule for row in rows for rule in row["rules"].split()} <= load_rules().keys()
     for row in rows:
         assert row["extent"] in ("yes", "in part", "hardly", "no")
         assert (row["extent"] == "no") == (row["rules"] == "")
@@ -166,7 +166,7 @@ def test_predictions_hold_no_text_and_can_be_read_again(tmp_path):
     judged = evaluate.Judged(np.array([[0.1, 0.6, 0.1, 0.1, 0.1]]), np.array([True]))
     beside = {"majority": {"macro_f1": {"value": 0.5, "low": 0.4, "high": 0.6}, "right": 1.0}}
     digests = {"labels_digest": "1", "texts_digest": "2"}
-    found = triage_study.Measured(triage_study.predictions_of([example], judged), beside, digests)
+    found = triage_study.Measured(triage_study.make_predictions([example], judged), beside, digests)
     triage_study.write(found, tmp_path)
     assert triage_study.read(tmp_path) == found
     assert "secret" not in "".join(path.read_text() for path in tmp_path.iterdir())
@@ -196,7 +196,7 @@ def test_damaged_facts_name_the_file_and_the_cure(tmp_path, file, change, said):
 
 
 def test_predicting_from_a_file_that_is_not_there(tmp_path, capfd):
-    assert triage_study.command(tmp_path / "none.jsonl", tmp_path / "out", quiet=True) == 2
+    assert triage_study.run_study(tmp_path / "none.jsonl", tmp_path / "out", quiet=True) == 2
     assert "none.jsonl" in capfd.readouterr().err
     assert not (tmp_path / "out").exists()
 
@@ -209,34 +209,34 @@ def test_the_pages_name_the_notebooks_there_are(page):
 
 def test_survival_by_hand():
     # Five followed: ends at 1, 2 and 4; two still stood at 2 and 5.
-    curve = survival([1, 2, 2, 4, 5], [True, True, False, True, False])
+    curve = estimate_survival([1, 2, 2, 4, 5], [True, True, False, True, False])
     assert curve.x.tolist() == [0, 1, 2, 4, 5]
     assert curve.y == pytest.approx([1, 0.8, 0.6, 0.3, 0.3])
     assert (curve.low <= curve.y).all() and (curve.y <= curve.high).all()
-    assert curve.at(3)[0] == pytest.approx(0.6)
-    assert curve.first_below(0.5) == 4
+    assert curve.evaluate(3)[0] == pytest.approx(0.6)
+    assert curve.find_first_below(0.5) == 4
     with pytest.raises(ValueError, match="nothing was followed"):
-        survival([], [])
+        estimate_survival([], [])
 
 
 def test_a_share_of_groups_that_are_alike_has_no_width():
-    curve = pooled_share(np.array([[1, 2], [1, 2]]), [4, 4], [0, 1], draws=50)
+    curve = estimate_pooled_share(np.array([[1, 2], [1, 2]]), [4, 4], [0, 1], draws=50)
     for values in (curve.y, curve.low, curve.high):
         assert values == pytest.approx([0.25, 0.5])
-    wide = pooled_share(np.array([[0], [4]]), [4, 4], [0], draws=200)
+    wide = estimate_pooled_share(np.array([[0], [4]]), [4, 4], [0], draws=200)
     assert wide.low[0] < 0.5 < wide.high[0]
 
 
 def test_names_stay_apart():
-    assert apart([0.0, 0.01, 0.5], 0.1, 0, 1) == pytest.approx([0, 0.1, 0.5])
-    assert apart([0.95, 0.99], 0.1, 0, 1) == pytest.approx([0.9, 1])
+    assert spread_places([0.0, 0.01, 0.5], 0.1, 0, 1) == pytest.approx([0, 0.1, 0.5])
+    assert spread_places([0.95, 0.99], 0.1, 0, 1) == pytest.approx([0.9, 1])
 
 
 def test_names_of_lines_that_end_far_apart_are_left_where_they_are():
     axes = figure.Figure(figsize=(9, 4)).subplots()
     for name, x in (("early", 1.0), ("late", 10.0), ("later", 10.0)):
         axes.plot([0, x], [0, 1], label=name)
-    names(axes)
+    write_names(axes)
     heights = {text.get_text(): text.xyann[1] for text in axes.texts}
     assert heights["early"] == pytest.approx(1)
     assert abs(heights["late"] - heights["later"]) > 0.03

@@ -10,7 +10,7 @@ class Hours:
         self.time = now
         self.slept: list[float] = []
 
-    def now(self) -> float:
+    def get_time(self) -> float:
         return self.time
 
     def sleep(self, seconds: float) -> None:

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from rosimpact.databuild.extract.cpp import extract
 from rosimpact.impact.facts.kinds import FileFacts, decode, encode
 from rosimpact.impact.facts.kinds import extract as facts_of
-from rosimpact.impact.facts.surface import Entity, declared, plain
+from rosimpact.impact.facts.surface import Entity, drop_inline, format_declaration
 
 
 def offered(text: str) -> list[Entity]:
@@ -165,7 +165,7 @@ def test_bases_templates_and_final():
     ],
 )  # fmt: skip
 def test_how_an_entity_could_be_written(text, line):
-    assert declared(offered(text)[0]) == line
+    assert format_declaration(offered(text)[0]) == line
 
 
 def test_a_macro_may_stand_for_final():
@@ -234,7 +234,7 @@ def test_conditions_lines_and_scopes():
     surface = extract(text.encode())
     f, g = surface.entities
     assert (f.name, f.line, [one.text for one in f.conditions]) == ("n::v1::f", 4, ["N > 2"])
-    assert (plain(f.name, surface.inline), f.internal, g.internal, g.conditions) == ("n::f", False, True, ())
+    assert (drop_inline(f.name, surface.inline), f.internal, g.internal, g.conditions) == ("n::f", False, True, ())
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ from ros_nodes import NodeFailed, Registered
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.graph import Graph
 from rosimpact.impact.model.flow.join import Join
-from rosimpact.impact.model.flow.workspace import joined, linked
+from rosimpact.impact.model.flow.workspace import join_code, link_for_flow
 from rosimpact.impact.tree import WorkingTree
 from rosrun import rosrun
 
@@ -175,7 +175,7 @@ def code(tmp_path_factory):
     @cache
     def of(source: str) -> Join:
         with Store(cache_folder) as store:
-            return joined(linked(WorkingTree(folder(source)), store))
+            return join_code(link_for_flow(WorkingTree(folder(source)), store))
 
     return of
 

@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from rosimpact.edges import console
 from rosimpact.edges.console import (
     cut_visibly,
+    escape,
+    escape_bytes_in_json,
+    escape_commands,
     escape_json,
+    escape_lines,
+    escape_page,
+    format_json,
     is_obeyed,
-    json_text,
-    visible,
-    visible_bytes_in_json,
-    visible_in_page,
-    visible_lines,
-    without_commands,
 )
 
 MEAN = st.text(
@@ -54,16 +54,16 @@ FOR_CI = re.compile(r"##[A-Za-z]{0,20}\[")
     ],
 )
 def test_what_is_dangerous_is_shown_escaped(text, expected):
-    assert visible(text) == expected
+    assert escape(text) == expected
 
 
 @given(TEXTS)
 def test_nothing_is_hidden_in_what_is_shown(text):
-    for shown in (visible(text), visible_lines(text)):
+    for shown in (escape(text), escape_lines(text)):
         assert not HIDDEN.search(shown) and not FOR_CI.search(shown)
-    assert "\n" not in visible(text) and "\t" not in visible(text)
-    assert visible(visible(text)) == visible(text), "what is shown twice is escaped once"
-    assert not HIDDEN.search(visible_in_page(text))
+    assert "\n" not in escape(text) and "\t" not in escape(text)
+    assert escape(escape(text)) == escape(text), "what is shown twice is escaped once"
+    assert not HIDDEN.search(escape_page(text))
 
 
 @pytest.mark.parametrize(
@@ -77,24 +77,24 @@ def test_nothing_is_hidden_in_what_is_shown(text):
     ],
 )
 def test_no_line_is_a_command(text, expected):
-    assert without_commands(text) == expected
+    assert escape_commands(text) == expected
 
 
 @given(TEXTS, st.data())
 def test_an_escaped_line_is_cut_where_it_was(text, data):
     offsets = sorted(data.draw(st.lists(st.integers(0, len(text)), max_size=4)))
     pieces = cut_visibly(text, *offsets)
-    assert "".join(pieces) == visible_lines(text)
+    assert "".join(pieces) == escape_lines(text)
     assert len(pieces) == len(offsets) + 1
     for place, offset in enumerate(offsets):
         if offset < len(text) and text[offset] not in "#":
             rest = "".join(pieces[place + 1 :])
-            assert rest.startswith(visible_lines(text[offset]))
+            assert rest.startswith(escape_lines(text[offset]))
 
 
 @given(TEXTS)
 def test_json_says_the_same_and_hides_nothing(text):
-    shown = json_text({text: [text]})
+    shown = format_json({text: [text]})
     assert json.loads(shown) == {text: [text]}
     assert not HIDDEN.search(shown) and not FOR_CI.search(shown)
     shown.encode()
@@ -116,7 +116,7 @@ def test_json_escapes(text, expected):
 
 @given(TEXTS)
 def test_where_lone_surrogates_are_refused_bytes_are_shown(text):
-    shown = escape_json(visible_bytes_in_json(json.dumps(text, ensure_ascii=False)))
+    shown = escape_json(escape_bytes_in_json(json.dumps(text, ensure_ascii=False)))
     json.loads(shown).encode("utf-8")
 
 
@@ -169,7 +169,7 @@ def test_text_is_printed_in_every_encoding(monkeypatch, encoding):
 def test_json_is_valid_in_every_encoding(monkeypatch, encoding):
     value = {"é": "✗ 😀 \udcff \u202e ##[x]"}
     out = Bytes(monkeypatch, encoding)
-    console.write_json(json_text(value))
+    console.write_json(format_json(value))
     assert json.loads(out.value().decode(encoding)) == value
     assert json.loads(out.value()) == value, "a reader that looks at the bytes understands it too"
 
@@ -182,7 +182,7 @@ def test_documents_that_say_utf8_are_utf8(monkeypatch, encoding):
 
 
 def test_colours_of_ours_stay_and_no_other_sequence():
-    assert console._finished("\x1b[31mred\x1b[0m \x1b[2J") == "\x1b[31mred\x1b[0m \\x1b[2J"
+    assert console._finish_text("\x1b[31mred\x1b[0m \x1b[2J") == "\x1b[31mred\x1b[0m \\x1b[2J"
 
 
 def test_a_note_is_one_line(capsys):

@@ -2,7 +2,7 @@
 
 import ast
 
-from rosimpact.edges.dispatch import methods_of, node_methods
+from rosimpact.edges.dispatch import collect_methods, collect_node_methods
 
 
 class Base:
@@ -24,10 +24,10 @@ class Reader(Base):
 
 
 def test_methods_by_what_stands_behind_the_prefix():
-    assert {name: method(Reader()) for name, method in methods_of(Reader, "visit_").items()} == {
+    assert {name: method(Reader()) for name, method in collect_methods(Reader, "visit_").items()} == {
         "If": "if", "While": "if", "Name": "name", "Nonsense": "of no Python",
     }  # fmt: skip
 
 
 def test_methods_by_the_class_of_nodes():
-    assert set(node_methods(Reader, "visit_")) == {ast.If, ast.While, ast.Name}
+    assert set(collect_node_methods(Reader, "visit_")) == {ast.If, ast.While, ast.Name}

@@ -167,7 +167,7 @@ def test_what_is_not_written(room, name, why, always, relative):
             with pytest.raises(OSError, match=why):
                 files.write_file(path, NEW, beneath=beneath)
         if always:
-            with pytest.raises(OSError, match=why), files.writing(path) as file:
+            with pytest.raises(OSError, match=why), files.open_for_replacing(path) as file:
                 file.write(NEW)
             if len(name) < 255:
                 with pytest.raises(OSError, match=why):
@@ -199,7 +199,7 @@ def test_what_is_written(room, name, relative):
             files.check_writable_path(path, beneath=beneath)
             files.write_file(path, data, beneath=beneath)
             assert files.read_file(path, 1 << 20) == data
-        with files.writing(path) as file:
+        with files.open_for_replacing(path) as file:
             file.write(b"one ")
             file.write(b"two")
         assert files.read_file(path, 1 << 20) == b"one two"
@@ -250,7 +250,7 @@ def test_a_file_that_changed_since_is_left_alone(room, present):
 def test_a_block_that_fails_leaves_the_old_file(room):
     before = state(room)
     for error in (ValueError, KeyboardInterrupt):
-        with pytest.raises(error), files.writing(room / "plain") as file:
+        with pytest.raises(error), files.open_for_replacing(room / "plain") as file:
             file.write(NEW)
             raise error
     assert state(room) == before
@@ -264,7 +264,7 @@ def test_a_full_disk_leaves_the_old_file(room):
         for beneath in (room, None):
             with pytest.raises(OSError, match="File too large"):
                 files.write_file(room / "plain", b"x" * 100_000, beneath=beneath)
-        with pytest.raises(OSError), files.writing(room / "plain") as file:
+        with pytest.raises(OSError), files.open_for_replacing(room / "plain") as file:
             file.write(b"x" * 100_000)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, kept)
@@ -366,7 +366,7 @@ def test_appending(room):
 )
 def test_the_folder_that_a_path_lies_in(room, path, folders, expected):
     (room.parent / "to ws").symlink_to(room)
-    found = files.outermost(f"{room.parent}/{path}", [f"{room.parent}/{each}" for each in folders])
+    found = files.find_outermost(f"{room.parent}/{path}", [f"{room.parent}/{each}" for each in folders])
     assert found == (expected and f"{room.parent}/{expected}")
 
 

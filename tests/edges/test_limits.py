@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from rosimpact.edges import limits as limits_module
-from rosimpact.edges.limits import KB, MB, LimitError, Limits, limits_stamp, of_environment, parse, size_text
+from rosimpact.edges.limits import KB, MB, LimitError, Limits, format_limits, format_size, parse, read_limits
 
 
 @pytest.mark.parametrize(
@@ -20,7 +20,7 @@ from rosimpact.edges.limits import KB, MB, LimitError, Limits, limits_stamp, of_
     ],
 )
 def test_limits_are_read(text, expected):
-    assert parse(text) == of_environment({"ROSIMPACT_LIMITS": text}) == expected
+    assert parse(text) == read_limits({"ROSIMPACT_LIMITS": text}) == expected
 
 
 @pytest.mark.parametrize("text", ["cpp", "cpp=", "cpp=-1", "cpp=0", "cpp=1TB", "cxx=1MB", "cpp=" + "9" * 5000, "cpp=²"])
@@ -33,7 +33,7 @@ def test_a_wrong_limit_is_an_error_that_shows_how_to_write_one(text):
     ("size", "text"), [(0, "0 bytes"), (900, "900 bytes"), (1536, "1.5 KB"), (8 * MB, "8 MB"), (3 << 30, "3 GB")]
 )
 def test_sizes_as_people_write_them(size, text):
-    assert size_text(size) == text
+    assert format_size(size) == text
 
 
 def test_the_documentation_lists_every_limit_with_its_default():
@@ -43,7 +43,7 @@ def test_the_documentation_lists_every_limit_with_its_default():
     expected = {}
     for field in fields(Limits):
         value = field.default
-        unit = f"{value:,}" if field.name in counts else f"{value} s" if field.name in seconds else size_text(value)
+        unit = f"{value:,}" if field.name in counts else f"{value} s" if field.name in seconds else format_size(value)
         expected[field.name] = unit
     assert rows == expected
 
@@ -53,9 +53,9 @@ def test_the_documentation_lists_every_limit_with_its_default():
     [("", ""), ("seconds=60,memory=1GB", ""), ("items=5", " items=5"), ("depth=200,cpp=1KB", " cpp=1024")],
 )
 def test_what_is_remembered_depends_on_the_limits_that_decide_it(monkeypatch, text, expected):
-    monkeypatch.setattr(limits_module, "limits", lambda: parse(text))
-    limits_stamp.cache_clear()
+    monkeypatch.setattr(limits_module, "get_limits", lambda: parse(text))
+    format_limits.cache_clear()
     try:
-        assert limits_stamp() == expected
+        assert format_limits() == expected
     finally:
-        limits_stamp.cache_clear()
+        format_limits.cache_clear()

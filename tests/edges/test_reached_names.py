@@ -19,8 +19,8 @@ GRAPHS = [
 @pytest.mark.parametrize(("leads", "along", "start", "reached", "besides"), GRAPHS)
 def test_what_is_reached(leads, along, start, reached, besides):
     reach = Reach(lambda name: (leads.get(name, ""), along.get(name, "")))
-    found = reach.masks((start,))
-    assert ["".join(sorted(reach.names(mask))) for mask in found] == [reached, besides]
+    found = reach.collect_masks((start,))
+    assert ["".join(sorted(reach.list_names(mask))) for mask in found] == [reached, besides]
 
 
 NAMES = st.sampled_from("abcdefgh")
@@ -37,12 +37,12 @@ def test_every_order_of_questions_gives_what_a_walk_gives(leads, along, asked):
             walked |= fresh
             waiting += fresh
         besides = {one for name in walked for one in along.get(name, ())}
-        assert tuple(set(reach.names(mask)) for mask in reach.masks((start,))) == (walked, besides)
+        assert tuple(set(reach.list_names(mask)) for mask in reach.collect_masks((start,))) == (walked, besides)
 
 
 def test_each_name_is_looked_at_once():
     looked = []
     reach = Reach(lambda name: (looked.append(name) or "abc", ()))
-    reach.masks(("a",))
-    reach.masks(("c", "a"))
+    reach.collect_masks(("a",))
+    reach.collect_masks(("c", "a"))
     assert sorted(looked) == ["a", "b", "c"]

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.impact.facts import elf
-from rosimpact.impact.facts.elf import Elf, member, read, stem_and_version
+from rosimpact.impact.facts.elf import Elf, parse_symbol, read, split_soname
 
 
 def test_the_dynamic_section_is_read(made_elf):
@@ -65,7 +65,7 @@ def test_damaged_bytes_never_raise(made_elf, data):
     ],
 )
 def test_a_soname_has_a_stem_and_a_version(soname, parts):
-    assert stem_and_version(soname) == parts
+    assert split_soname(soname) == parts
 
 
 # Files that a real linker made
@@ -142,12 +142,12 @@ def test_a_linked_program_that_is_cut_off_is_told(linked, share):
     ],
 )
 def test_what_a_symbol_is_a_member_of(symbol, name, scope):
-    assert member(symbol) == (name, scope)
+    assert parse_symbol(symbol) == (name, scope)
 
 
 @pytest.mark.parametrize("symbol", ["malloc", "_ZNSt6thread4joinEv", "_ZdlPv", "_Z"])
 def test_symbols_that_are_of_no_class_of_ones_own(symbol):
-    assert member(symbol) is None
+    assert parse_symbol(symbol) is None
 
 
 # Files that claim what no file has
@@ -195,7 +195,7 @@ def test_what_a_file_claims_costs_a_second_at_most(data):
     data = data() if callable(data) else data
     began = time.process_time()
     found = read(data)
-    elf.defined(data)
+    elf.read_defined_symbols(data)
     assert time.process_time() - began < 5
     assert found is not None and found.machine == "EM_X86_64" and found.problem
 
@@ -206,4 +206,4 @@ def test_more_libraries_than_any_file_asks_for(made_elf):
 
 
 def test_a_name_that_gives_a_length_of_5000_digits():
-    assert member("_ZN1a" + "9" * 5000 + "bE") is not None
+    assert parse_symbol("_ZN1a" + "9" * 5000 + "bE") is not None

@@ -3,7 +3,7 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.expressions import has_needed, last_literals, needed_words
+from rosimpact.impact.facts.expressions import find_last_literals, find_needed, has_needed
 
 
 @pytest.mark.parametrize(
@@ -27,15 +27,15 @@ from rosimpact.impact.facts.expressions import has_needed, last_literals, needed
     ],
 )
 def test_what_a_match_contains_and_ends_with(expression, words, ends):
-    assert needed_words(expression) == tuple((word,) if isinstance(word, str) else word for word in words)
-    assert last_literals(expression) == ends
+    assert find_needed(expression) == tuple((word,) if isinstance(word, str) else word for word in words)
+    assert find_last_literals(expression) == ends
 
 
 @given(st.from_regex(r"(?:\bnode|this)\s*(?:->|\.)\s*publish(?:er)?(?:_\w+)*\s*", fullmatch=True))
 def test_all_that_matches_has_them(text):
     expression = r"(?:\bnode|this)\s*(?:->|\.)\s*publish(?:er)?(?:_\w+)*\s*"
     assert re.search(expression, text)
-    assert all(any(word in text for word in words) for words in needed_words(expression))
+    assert all(any(word in text for word in words) for words in find_needed(expression))
     assert has_needed(expression, text)
-    ends = last_literals(expression)
+    ends = find_last_literals(expression)
     assert not ends or text.rstrip().endswith(ends)

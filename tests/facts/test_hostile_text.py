@@ -6,13 +6,13 @@ import subprocess
 import sys
 
 import pytest
-from rosimpact.databuild.extract.parameters import _cpp_value
+from rosimpact.databuild.extract.parameters import _normalize
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.allow import allows
-from rosimpact.impact.facts.cpp.flow_clean import Region, Regions, cleaned
-from rosimpact.impact.facts.markup import text_encoding
+from rosimpact.impact.facts.cpp.flow_clean import Region, Regions, clean_source
+from rosimpact.impact.facts.markup import find_text_encoding
 from rosimpact.impact.facts.setup import ENTRY_POINT
-from rosimpact.impact.facts.usage import template_arguments
+from rosimpact.impact.facts.usage import find_template_arguments
 
 MOST = 20_000
 
@@ -57,7 +57,7 @@ def test_lists_of_real_files_stay_whole():
     ],
 )
 def test_defaults_of_parameters(text, expected):
-    assert _cpp_value(text) == expected
+    assert _normalize(text) == expected
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_defaults_of_parameters(text, expected):
     ],
 )
 def test_template_arguments(text, end):
-    found = template_arguments(text, 0)
+    found = find_template_arguments(text, 0)
     assert (found.end() if found else None) == end
 
 
@@ -156,9 +156,9 @@ def test_hostile_texts_are_read_once(kind, text):
 def test_encodings_of_text(name, expected):
     if expected is None:
         with pytest.raises(LookupError):
-            text_encoding(name)
+            find_text_encoding(name)
     else:
-        assert text_encoding(name) == expected
+        assert find_text_encoding(name) == expected
 
 
 # Stretches from 0 to 100, 10 to 40, 20 to 30 and 50 to 60: which are around a place, and begin behind another.
@@ -183,7 +183,7 @@ STRETCHES = [Region(0, 100, "a", 1), Region(10, 40, "b", 2), Region(20, 30, "c",
     ],
 )
 def test_stretches_around_a_place(outside, inside, expected):
-    assert "".join(one.condition for one in Regions(STRETCHES).between(outside, inside)) == expected
+    assert "".join(one.condition for one in Regions(STRETCHES).list_between(outside, inside)) == expected
 
 
 def test_stretches_are_those_that_a_walk_over_all_finds():
@@ -204,13 +204,13 @@ def test_stretches_are_those_that_a_walk_over_all_finds():
     for _ in range(2_000):
         inside, outside = chance.randrange(410), chance.randrange(-1, 410)
         walked = [one for one in made if one.start <= inside < one.end and one.start > outside]
-        assert regions.between(outside, inside) == walked
+        assert regions.list_between(outside, inside) == walked
 
 
 @pytest.mark.parametrize(("number", "kept"), [(31, True), (32, False)])
 def test_attributes_in_a_row(number, kept):
     text = "int a; " + "[[x]] " * number + "int b;"
-    source = cleaned(text.encode()).source.decode()
+    source = clean_source(text.encode()).source.decode()
     assert (source == text) is kept
     assert len(source) == len(text)
     assert source.endswith("int b;")

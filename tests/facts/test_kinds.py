@@ -5,7 +5,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from rosimpact.databuild.extract import cpp, parameters, python
-from rosimpact.edges.limits import Limits, size_text
+from rosimpact.edges.limits import Limits, format_size
 from rosimpact.impact.facts import kinds
 from rosimpact.impact.facts.kinds import (
     EXTRACTORS,
@@ -14,9 +14,9 @@ from rosimpact.impact.facts.kinds import (
     decode,
     encode,
     extract,
-    kind_of,
-    largest,
-    version_of,
+    find_kind,
+    find_size_limit,
+    make_version,
 )
 
 NAMES = [
@@ -72,7 +72,7 @@ NAMES = [
 
 @pytest.mark.parametrize(("path", "kind"), NAMES)
 def test_name_gives_kind(path, kind):
-    assert kind_of(path) == kind
+    assert find_kind(path) == kind
 
 
 SCRIPTS = [
@@ -111,14 +111,14 @@ LIMITS = ("manifest", "cmake", "interface", "cpp", "python", "launch", "paramete
 )  # fmt: skip
 def test_each_kind_has_its_limit(kind, limit, monkeypatch):
     given = Limits(**{name: number for number, name in enumerate(LIMITS)})
-    monkeypatch.setattr(kinds, "limits", lambda: given)
-    assert LIMITS[largest(kind)] == limit
+    monkeypatch.setattr(kinds, "get_limits", lambda: given)
+    assert LIMITS[find_size_limit(kind)] == limit
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS - {"script", "flow_script"} - SEARCHES))
 def test_what_is_too_large_is_named_and_not_read(kind):
-    facts = extract(kind, b"#" * (largest(kind) + 1))
-    assert [p.message for p in facts.facts.problems] == [f"larger than {size_text(largest(kind))}"]
+    facts = extract(kind, b"#" * (find_size_limit(kind) + 1))
+    assert [p.message for p in facts.facts.problems] == [f"larger than {format_size(find_size_limit(kind))}"]
     assert decode(kind, encode(facts)) == facts
 
 
@@ -184,4 +184,4 @@ def test_allow_comments_come_with_the_facts():
 
 
 def test_versions_differ_between_kinds():
-    assert len({version_of(kind) for kind in EXTRACTORS}) == len(EXTRACTORS)
+    assert len({make_version(kind) for kind in EXTRACTORS}) == len(EXTRACTORS)

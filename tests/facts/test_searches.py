@@ -4,7 +4,7 @@ import pytest
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp import lexical as cpp
 from rosimpact.impact.facts.kinds import decode, encode, search
-from rosimpact.impact.facts.searches import WordUse, declares_in_tf2, declares_type, opens_space
+from rosimpact.impact.facts.searches import WordUse, declares_in_tf2, declares_type, opens_namespace
 from rosimpact.impact.facts.usage import Pattern, Rows, UsageTable
 
 TABLE = UsageTable({"advertise": [("advertise(a)", Pattern("advertise", arguments="1"))]}, ["changed", "other"])
@@ -61,7 +61,7 @@ def test_which_types_a_file_declares(text, declared, others):
 
 def test_which_namespaces_a_file_opens():
     text = b"namespace tf2 {\n}\nnamespace a::b {\n}\n// not namespaces\n"
-    assert [opens_space(text, name) for name in ("tf2", "a", "b", "namespaces")] == [True, True, False, False]
+    assert [opens_namespace(text, name) for name in ("tf2", "a", "b", "namespaces")] == [True, True, False, False]
 
 
 @pytest.mark.parametrize(("text", "declared", "others"), [

@@ -18,11 +18,11 @@ from hypothesis import strategies as st
 from rosimpact.edges.limits import Limits
 from rosimpact.impact.cache import cache_folder
 from rosimpact.impact.facts import store as store_module
-from rosimpact.impact.facts.store import Store, fact_key, pack, unpack
+from rosimpact.impact.facts.store import Store, make_fact_key, pack, unpack
 
 
 def key(number, extractor="cpp.1"):
-    return fact_key(f"{number:040x}", extractor)
+    return make_fact_key(f"{number:040x}", extractor)
 
 
 def rows(start, count, size=50):
@@ -69,12 +69,12 @@ def test_memo(tmp_path):
         store.remember("digest", [(b"k", b"v"), (b"l", b"w" * 1000)])
         store.remember("other", [(b"k", b"else")])
     with Store(tmp_path) as store:
-        assert store.memo("digest", b"k") == b"v"
-        assert store.memo("other", b"k") == b"else"
-        assert store.memo("digest", b"m") is None
-        assert store.memos("digest", [b"k", b"l", b"m"]) == {b"k": b"v", b"l": b"w" * 1000}
+        assert store.find_memo("digest", b"k") == b"v"
+        assert store.find_memo("other", b"k") == b"else"
+        assert store.find_memo("digest", b"m") is None
+        assert store.find_memos("digest", [b"k", b"l", b"m"]) == {b"k": b"v", b"l": b"w" * 1000}
         store.remember("digest", [(b"k", b"newer")])
-        assert store.memo("digest", b"k") == b"newer"
+        assert store.find_memo("digest", b"k") == b"newer"
 
 
 def test_a_closed_store_opens_itself_again(tmp_path):
@@ -157,7 +157,7 @@ def test_a_folder_that_cannot_be_made(tmp_path):
         store.put(rows(0, 5))
         assert store.find([key(n) for n in range(9)]) == {key(n) for n in range(5)}
         store.remember("t", [(b"k", b"v")])
-        assert store.memo("t", b"k") == b"v"
+        assert store.find_memo("t", b"k") == b"v"
         assert len(store.notes) == 1
 
 
@@ -328,11 +328,11 @@ def test_a_damaged_row_counts_as_lost_whatever_it_holds(tmp_path, column, value)
     with Store(tmp_path) as store:
         found = dict(store.get([key(n) for n in range(5)]))
         assert found.items() <= dict(rows(0, 3)).items() and {key(1), key(2)} <= found.keys()
-        assert store.memo("t", b"k") in (None, b"v" * 3000)
+        assert store.find_memo("t", b"k") in (None, b"v" * 3000)
         store.put(rows(0, 1))
         store.remember("t", [(b"k", b"v" * 3000)])
         assert dict(store.get([key(n) for n in range(5)])) == dict(rows(0, 3))
-        assert store.memo("t", b"k") == b"v" * 3000
+        assert store.find_memo("t", b"k") == b"v" * 3000
         assert store.notes == []
 
 
@@ -359,7 +359,7 @@ def test_any_damage_of_the_file_gives_what_was_stored_or_nothing(tmp_path):
             wanted = [key(n) for n in range(210)]
             store.find(wanted)
             assert dict(store.get(wanted)).items() <= dict(rows(0, 200, size=300)).items()
-            assert all(data == k * 999 for k, data in store.memos("t", [b"%d" % n for n in range(60)]).items())
+            assert all(data == k * 999 for k, data in store.find_memos("t", [b"%d" % n for n in range(60)]).items())
             store.put(rows(195, 10, size=300))
             assert dict(store.get(wanted)).items() <= dict(rows(0, 205, size=300)).items()
             assert len(store.notes) <= 1
@@ -409,7 +409,7 @@ def test_what_is_no_file_is_done_without(tmp_path, monkeypatch, make, suffix):
         store.put(rows(0, 3))
         store.remember("t", [(b"k", b"v")])
         assert store.find([key(1), key(7)]) == {key(1)}
-        assert store.memo("t", b"k") == b"v"
+        assert store.find_memo("t", b"k") == b"v"
         assert len(store.notes) == 1 and f"remove `facts.sqlite{suffix}`" in store.notes[0]
     assert (tmp_path / "other").read_bytes() == b"" and not (tmp_path / "made").exists()
 
@@ -432,7 +432,7 @@ def test_a_file_that_another_process_replaced(tmp_path):
         second.put(rows(10, 3))
         first.put(rows(20, 3))
         assert first.find([key(1), key(21)]) == {key(1), key(21)}, "it keeps what it had open"
-        first._failed(sqlite3.DatabaseError("the same page"))
+        first._recover(sqlite3.DatabaseError("the same page"))
         first.put(rows(30, 3))
         assert first.find([key(1), key(11), key(31)]) == {key(11), key(31)}
         assert first.notes == []
@@ -445,7 +445,7 @@ def test_a_file_that_is_damaged_again_and_again_is_done_without(tmp_path):
     with Store(tmp_path) as store:
         for n in range(5):
             store.put(rows(n, 1))
-            store._failed(sqlite3.DatabaseError("malformed"))
+            store._recover(sqlite3.DatabaseError("malformed"))
         store.put(rows(9, 1))
         assert store.find([key(9)]) == {key(9)}
         assert len(store.notes) == 3
@@ -502,7 +502,7 @@ def test_a_clock_that_goes_back(tmp_path, monkeypatch):
 
 
 def test_a_row_larger_than_its_limit_is_kept_for_this_run_only(tmp_path, monkeypatch):
-    monkeypatch.setattr(store_module, "limits", lambda: Limits(row=1000))
+    monkeypatch.setattr(store_module, "get_limits", lambda: Limits(row=1000))
     with Store(tmp_path) as store:
         store.put([(key(1), b"-" + b"x" * 2000), (key(2), b"-x")])
         assert {k for k, _ in store.get([key(1), key(2)])} == {key(1), key(2)}

@@ -1,7 +1,7 @@
 """How uses look: calls, initialisations, members and types, told from the text of a file alone."""
 
 import pytest
-from rosimpact.impact.facts.usage import Pattern, declares, initialises, places_of_use
+from rosimpact.impact.facts.usage import Pattern, declares, find_use_places, initializes_variable
 
 CALL = Pattern("Duration", before=r"rclcpp\s*::\s*", arguments="1", names=True)
 MEMBER = Pattern("codec", before=r"\bstreams\s*\[[^\]\n]*\]\s*->\s*", after=r"\s*->")
@@ -96,19 +96,19 @@ def cases():
 
 @pytest.mark.parametrize(("pattern", "text", "seen"), cases())
 def test_a_use_is_told_by_its_looks(pattern, text, seen):
-    assert bool(list(places_of_use(text.encode(), pattern))) is seen
+    assert bool(list(find_use_places(text.encode(), pattern))) is seen
 
 
 @pytest.mark.parametrize(
     "text", ["", "\0", "rclcpp::Duration a(", "rclcpp::Duration(}", "class A { } } rclcpp::Duration("]
 )
 def test_broken_files_have_no_uses(text):
-    assert list(places_of_use(text.encode(), CALL)) == []
+    assert list(find_use_places(text.encode(), CALL)) == []
 
 
 def test_a_place_has_line_column_conditions_and_template_arguments():
     text = b"int a;\n#if OLD\n  boost::shared_ptr<const\n urdf::Link> b;\n#endif\n"
-    ((_, (line, column, conditions, types)),) = places_of_use(text, POINTER)
+    ((_, (line, column, conditions, types)),) = find_use_places(text, POINTER)
     assert (line, column, [c.text for c in conditions], types) == (3, 10, ["OLD"], "const urdf::Link")
 
 
@@ -149,4 +149,4 @@ INITIALISED = [
 
 @pytest.mark.parametrize(("code", "expected"), INITIALISED)
 def test_a_variable_that_a_file_declares(code, expected):
-    assert initialises(code.encode(), "turn") is expected
+    assert initializes_variable(code.encode(), "turn") is expected

@@ -1,7 +1,7 @@
 """Arguments that show what they are: floating point numbers, strings, shared pointers."""
 
 import pytest
-from rosimpact.impact.facts.usage import Pattern, places_of_use
+from rosimpact.impact.facts.usage import Pattern, find_use_places
 
 DURATION = Pattern("Duration", before="rclcpp::", arguments="1", where={"1": "<float>"}, names=True)
 ERROR = Pattern("RCLCPP_ERROR", arguments="2+", where={"2": "<string>"})
@@ -55,4 +55,4 @@ USES = (
     ids=[text for _, texts in USES for text in texts],
 )
 def test_what_an_argument_is_is_told_from_the_file(pattern, text, seen):
-    assert bool(list(places_of_use(text.encode(), pattern))) is seen
+    assert bool(list(find_use_places(text.encode(), pattern))) is seen

@@ -54,4 +54,4 @@ def robot(**sources: str) -> Graph:
     texts = {"driver": DRIVER, "planner": PLANNER, "mover": MOVER, **sources}
     files = {f"{name}/{name}.cpp": flow_cpp.extract(dedent(text).encode()) for name, text in texts.items() if text}
     built = [BuiltPackage(path.split("/")[0], {path.split("/")[0]: (path,)}, {}, {}, {}, {}) for path in files]
-    return Join(files, lambda path: path.split("/")[0], built, 2).graph("ws")
+    return Join(files, lambda path: path.split("/")[0], built, 2).build("ws")

@@ -12,13 +12,13 @@ import networkx
 import pytest
 from msgspec import structs
 from robot import DRIVER, robot
-from rosimpact.impact.model.flow.connections import guard_text
+from rosimpact.impact.model.flow.connections import format_guards
 from rosimpact.impact.model.flow.graph import GuardAt
 from rosimpact.impact.model.flow.select import NothingSelected
 from rosimpact.impact.report.graph import draw
-from rosimpact.impact.report.graph.dot import quoted
-from rosimpact.impact.report.graph.json import schema
-from rosimpact.impact.report.graph.mermaid import MOST, ROOM, escaped
+from rosimpact.impact.report.graph.dot import quote_text
+from rosimpact.impact.report.graph.json import render_schema
+from rosimpact.impact.report.graph.mermaid import MOST, ROOM, escape_label
 from rosimpact.impact.report.style import PLAIN
 
 ROOT = Path(__file__).parents[2]
@@ -134,7 +134,7 @@ def test_colours_mark_what_differs():
 @pytest.mark.parametrize("base", [None, BEFORE])
 def test_json_is_what_its_schema_says(base):
     found = json.loads(draw(NOW, "json", base))
-    jsonschema.validate(found, json.loads(schema()))
+    jsonschema.validate(found, json.loads(render_schema()))
     (publish,) = [each for each in found["publishes"] if each["topic"] == "/scan"]
     assert [(guard["kind"], guard["text"]) for guard in publish["guards"]] == [("if", "ready_")]
     (subscriber,) = [each for each in found["subscribers"] if each["topic"] == "/scan"]
@@ -148,8 +148,8 @@ def test_json_is_what_its_schema_says(base):
 
 
 def test_the_schema_that_is_published_is_the_one_in_use():
-    assert (ROOT / "docs/graph.schema.json").read_text() == schema()
-    jsonschema.Draft202012Validator.check_schema(json.loads(schema()))
+    assert (ROOT / "docs/graph.schema.json").read_text() == render_schema()
+    jsonschema.Draft202012Validator.check_schema(json.loads(render_schema()))
 
 
 def test_graphml_can_be_read_again():
@@ -173,8 +173,8 @@ def test_dot_and_mermaid_have_every_edge():
 
 
 def test_hostile_names_stay_names():
-    assert quoted('a"b\nc') == '"a\\"b\\\\nc"'
-    assert escaped('a"b[c]') == "a#34;b#91;c#93;"
+    assert quote_text('a"b\nc') == '"a\\"b\\\\nc"'
+    assert escape_label('a"b[c]') == "a#34;b#91;c#93;"
 
 
 def test_a_part_is_compared_with_the_same_part_of_the_base():
@@ -255,7 +255,7 @@ def test_graphviz_reads_names_as_they_are():
 
 def test_mermaid_names_hold_nothing_that_it_would_read():
     for odd in (*ODD, "\x1b", "\u202e", "\udcff"):
-        text = escaped(odd)
+        text = escape_label(odd)
         assert not re.search(r"""["'`<>{}()\[\]|;%&\\#]""", re.sub(r"#\d+;", "", text))
         assert "#27;" not in text and "#8238;" not in text
 
@@ -303,4 +303,4 @@ def test_mermaid_keeps_within_its_room_and_keeps_what_differs():
 )
 def test_guards_in_a_line_mean_what_they_mean_nested(guards, said):
     publish = structs.replace(NOW.publishes[0], guards=tuple(GuardAt(*guard, path="a.cpp", line=1) for guard in guards))
-    assert guard_text(publish) == said
+    assert format_guards(publish) == said

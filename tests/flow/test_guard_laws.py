@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from one_way import compare, explain
 from rosimpact.impact.logic import guard_reading
 from rosimpact.impact.logic.guard_renames import propose_renames
-from rosimpact.impact.logic.guards import compare_ways, impossible
+from rosimpact.impact.logic.guards import compare_ways, is_impossible
 from rosimpact.impact.model.flow.graph import GuardAt
 
 # Formulas: ("a",) is a boolean, ("<", sum, number) compares, ("not", f), ("and", f, g), ("or", f, g).
@@ -229,7 +229,7 @@ def test_odd_text_never_raises(language, kind, old, new):
     kinds = {compare(before, after), compare(after, before)}
     assert kinds in ({"equivalent"}, {"changed"}, {"tightened", "widened"})
     explain(before, after)
-    impossible(before)
+    is_impossible(before)
     propose_renames(old, new, language)
 
 

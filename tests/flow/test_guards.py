@@ -6,8 +6,8 @@ import sys
 import pytest
 import z3
 from one_way import compare, explain
-from rosimpact.impact.logic.guard_solver import limited_questions
-from rosimpact.impact.logic.guards import NameReading, compare_ways, explain_ways, impossible
+from rosimpact.impact.logic.guard_solver import limit_questions
+from rosimpact.impact.logic.guards import NameReading, compare_ways, explain_ways, is_impossible
 from rosimpact.impact.model.flow.graph import GuardAt
 
 
@@ -192,9 +192,9 @@ def test_scripts_without_an_ending_are_python():
 
 
 def test_contradicting_guards_are_impossible():
-    assert impossible(cpp("if: x > 3", "unless: x > 0"))
-    assert impossible(python("if: a is None and a == 3"))
-    assert not impossible(cpp("if: x > 3", "unless: x > 5"))
+    assert is_impossible(cpp("if: x > 3", "unless: x > 0"))
+    assert is_impossible(python("if: a is None and a == 3"))
+    assert not is_impossible(cpp("if: x > 3", "unless: x > 5"))
 
 
 def test_too_much_work_is_changed():
@@ -222,8 +222,8 @@ def stubborn(monkeypatch):
 
 @pytest.mark.usefixtures("stubborn")
 def test_what_only_lies_far_away_is_not_taken_to_be_impossible():
-    assert impossible(cpp("if: x > 3 && y > 3 * x")) is False
-    assert impossible(cpp("if: x > 3 && y > 30 * x")) is False
+    assert is_impossible(cpp("if: x > 3 && y > 3 * x")) is False
+    assert is_impossible(cpp("if: x > 3 && y > 30 * x")) is False
     assert compare(cpp("if: x < 3"), cpp("if: x < 4")) == "changed"
 
 
@@ -319,6 +319,6 @@ def test_words_of_long_conditions_show_what_differs():
 
 def test_only_so_many_questions_are_decided():
     old, new = (tuple(GuardAt("if", text, "", 1) for text in texts) for texts in (["x > 0"], ["x > 3"]))
-    with limited_questions(1):
+    with limit_questions(1):
         assert [compare(old, new) for _ in range(3)] == ["tightened", "changed", "changed"]
     assert compare(old, new) == "tightened"

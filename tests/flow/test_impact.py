@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import jsonschema
 import pytest
-from rosimpact.impact.analysis.downstream import NOTHING, Impact, ImpactResult, chosen, impact_of
+from rosimpact.impact.analysis.downstream import NOTHING, Impact, ImpactResult, compute_impact, select_effects
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.model.flow.workspace import linked
+from rosimpact.impact.model.flow.workspace import link_for_flow
 from rosimpact.impact.report import impact as impact_report
 from rosimpact.impact.report.style import PLAIN
 from rosimpact.impact.tree import WorkingTree
@@ -120,9 +120,9 @@ def between(tmp_path: Path) -> Between:
 
     def reached(files: dict[str, str]) -> Impact:
         with Store(tmp_path / "cache") as store:
-            base = linked(WorkingTree(written(tmp_path / "base", FILES)), store, 1)
-            now = linked(WorkingTree(written(tmp_path / "now", files)), store, 1)
-            return impact_of(now, base)
+            base = link_for_flow(WorkingTree(written(tmp_path / "base", FILES)), store, 1)
+            now = link_for_flow(WorkingTree(written(tmp_path / "now", files)), store, 1)
+            return compute_impact(now, base)
 
     return reached
 
@@ -215,7 +215,7 @@ def test_what_each_change_reaches(row: Row, between: Between):
 
 @pytest.mark.parametrize("name", ["nothing", "text alone", "comments, white space and what is logged"])
 def test_without_a_change_that_counts_no_graph_is_made(name: str, between: Between, monkeypatch):
-    monkeypatch.setattr("rosimpact.impact.model.flow.workspace.joined", lambda *_: pytest.fail("joined"))
+    monkeypatch.setattr("rosimpact.impact.model.flow.workspace.join_code", lambda *_: pytest.fail("joined"))
     assert between(ROWS[name].files) is NOTHING
 
 
@@ -237,11 +237,11 @@ def test_the_path_is_told_hop_by_hop(between: Between):
     ],
 )  # fmt: skip
 def test_parts_of_it(between: Between, asked: dict, number: int):
-    assert len(chosen(between(ROWS["a condition"].files), **asked).effects) == number
+    assert len(select_effects(between(ROWS["a condition"].files), **asked).effects) == number
 
 
 def test_text_fits_a_terminal_of_eighty_columns(between: Between):
-    shown = impact_report.text(between(ROWS["a condition"].files), style=PLAIN._replace(width=80))
+    shown = impact_report.render_text(between(ROWS["a condition"].files), style=PLAIN._replace(width=80))
     assert shown.split("\n\n")[0].splitlines() == [
         "publish conditions",
         "  tightened  /level  (/gauge)  gauge/src/gauge.cpp:13",
@@ -257,28 +257,28 @@ def test_text_fits_a_terminal_of_eighty_columns(between: Between):
 def test_a_message_that_nothing_sends_is_said_to_have_no_topic(between: Between):
     files = {**edited("tide_msgs/msg/Level.msg", ("metres", "fathoms")), CPP: "int main() {}\n"}
     files[PY] = files["harbour/harbour/horn.py"] = ""
-    shown = impact_report.text(between(files))
+    shown = impact_report.render_text(between(files))
     assert "      no topic of it is known\n" in shown
 
 
 def test_changed_functions_of_which_nothing_goes_out_are_counted(between: Between):
     found = between(ROWS["a callback of which nothing goes out"].files)
-    assert impact_report.summary(found) == (
+    assert impact_report.summarize(found) == (
         "no change that message flow knows of; nothing known to be sent because of 1 changed function"
     )
 
 
 def test_json_is_as_its_schema_says(between: Between):
-    schema = json.loads(impact_report.schema())
+    schema = json.loads(impact_report.render_schema())
     page = Path(__file__).parents[2] / "docs/impact.schema.json"
-    assert page.read_text() == impact_report.schema(), "rosimpact impact --schema > docs/impact.schema.json"
+    assert page.read_text() == impact_report.render_schema(), "rosimpact impact --schema > docs/impact.schema.json"
     impact = between(ROWS["a condition"].files)
-    document = json.loads(impact_report.as_json(impact, ImpactResult(impact, "ws", "", "main", ()), "1.2"))
+    document = json.loads(impact_report.render_json(impact, ImpactResult(impact, "ws", "", "main", ()), "1.2"))
     jsonschema.validate(document, schema)
     (change,) = document["changes"]
     assert (change["kind"], change["line"], len(change["reaches"])) == ("condition", 13, 2)
 
 
 def test_markdown(between: Between):
-    shown = impact_report.markdown(between(ROWS["a condition"].files))
+    shown = impact_report.render_markdown(between(ROWS["a condition"].files))
     assert shown.splitlines()[0] == "- condition tightened `/level` `gauge/src/gauge.cpp:13`: reaches /watch, /horn"

@@ -10,8 +10,8 @@ import pygit2
 import pytest
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.logic.history import CommitHistory
-from rosimpact.impact.logic.repository import Logic, LogicCoverage, Range, chosen, read
-from rosimpact.impact.report.logic import apart, as_json, text
+from rosimpact.impact.logic.repository import Logic, LogicCoverage, Range, read, select
+from rosimpact.impact.report.logic import render_json, render_text, trim_common_ends
 from rosimpact.impact.report.timeline import render
 
 Tree = dict[str, str]
@@ -616,29 +616,29 @@ def test_ranges(made: Made, tmp_path, asked, first: str, last: str, number: int)
 def test_a_date_that_is_none_is_refused(made: Made, since: str) -> None:
     if since:
         with pytest.raises(ValueError, match="is no date"):
-            CommitHistory(made.path).commits(since=since)
+            CommitHistory(made.path).list_commits(since=since)
     else:
-        assert CommitHistory(made.path).commits(since=since)
+        assert CommitHistory(made.path).list_commits(since=since)
 
 
 def test_packages_are_found_at_every_commit(made: Made) -> None:
     history = CommitHistory(made.path)
-    names = {name: (state.path, state.ros) for name, state in history.packages(made.commits["start"]).items()}
+    names = {name: (state.path, state.ros) for name, state in history.find_packages(made.commits["start"]).items()}
     assert names == {
         "talker": ("talker", 1), "listener": ("listener", 1), "watch": ("watch", 1), "camera": ("camera", 2),
         "beeper": ("old/beeper", 1),
     }  # fmt: skip
-    later = history.packages(made.commits["merge"])
+    later = history.find_packages(made.commits["merge"])
     assert {name: state.path for name, state in later.items() if name == "speaker"} == {"speaker": "robot/speaker"}
 
 
 def test_only_a_package_or_a_topic(made: Made) -> None:
-    only = chosen(made.logic, packages=("camera",))
+    only = select(made.logic, packages=("camera",))
     assert {change.package for _, change in only.changes} == {"camera"}
     assert {change.kind for _, change in only.changes} >= {"tightened", "widened", "trigger changed", "new"}
     assert "equivalent" not in {change.kind for _, change in only.changes}
-    assert "equivalent" in {change.kind for _, change in chosen(made.logic, everything=True).changes}
-    topics = {change.topic for _, change in chosen(made.logic, topics=("/chatter",)).changes}
+    assert "equivalent" in {change.kind for _, change in select(made.logic, everything=True).changes}
+    topics = {change.topic for _, change in select(made.logic, topics=("/chatter",)).changes}
     assert topics == {"chatter", "speech"}
 
 
@@ -656,11 +656,11 @@ LONG = [f"a_condition_that_takes_room_{n}" for n in range(9)]
     ],
 )  # fmt: skip
 def test_of_long_conditions_people_are_shown_where_they_differ(old, new, said) -> None:
-    assert apart(old, new) == said
+    assert trim_common_ends(old, new) == said
 
 
 def test_text(made: Made) -> None:
-    shown = text(chosen(made.logic))
+    shown = render_text(select(made.logic))
     block = shown[shown.index(made.commits["ask for more"][:10]) :].split("\n\n")[0]
     assert block.split("\n")[1:] == [
         "  tightened        chatter (talker/talker)  talker/src/talker.cpp:19",
@@ -673,7 +673,7 @@ def test_text(made: Made) -> None:
 
 
 def test_json(made: Made) -> None:
-    document = json.loads(as_json(chosen(made.logic), "1.2"))
+    document = json.loads(render_json(select(made.logic), "1.2"))
     assert (document["schema"], document["tool"]) == (1, {"name": "rosimpact", "version": "1.2"})
     assert document["commits"] == len(STEPS) + 3
     (change,) = (one for one in document["changes"] if one["commit"] == made.commits["ask for more"])
@@ -686,9 +686,9 @@ def test_json(made: Made) -> None:
 
 
 def test_timeline(made: Made) -> None:
-    page = render(chosen(made.logic), "1.2")
+    page = render(select(made.logic), "1.2")
     assert "{{" not in page
     assert page.count("<script") == 2
     assert "http:" not in page and "https:" not in page
     data = json.loads(page.partition('id="data">')[2].partition("</script>")[0])
-    assert len(data["changes"]) == len(chosen(made.logic).changes)
+    assert len(data["changes"]) == len(select(made.logic).changes)

@@ -34,10 +34,10 @@ CHAIN = graph(
 
 
 def test_a_chain_is_walked_with_its_path():
-    reached = DownstreamSearch(CHAIN).from_sent([("/scan", "publisher")])
+    reached = DownstreamSearch(CHAIN).find_downstream([("/scan", "publisher")])
     assert [each.node for each in reached] == ["filter", "planner", "mover"]
     assert [step.name for step in reached[-1].steps] == ["/scan", "/clean", "/plan"]
-    further = DownstreamSearch(CHAIN).from_sent([("/clean", "publisher")], "filter")
+    further = DownstreamSearch(CHAIN).find_downstream([("/clean", "publisher")], "filter")
     assert [each.node for each in further] == ["planner", "mover"]
 
 
@@ -46,8 +46,8 @@ def test_what_another_callback_publishes_is_not_reached():
         [says("a", "/in"), says("b", "/out", by("b", 2))],
         [hears("b", "/in", 1), hears("b", "/other", 2), hears("c", "/out")],
     )
-    assert [each.node for each in DownstreamSearch(found).from_sent([("/in", "publisher")])] == ["b"]
-    assert [each.node for each in DownstreamSearch(found).from_sent([("/other", "publisher")])] == ["b", "c"]
+    assert [each.node for each in DownstreamSearch(found).find_downstream([("/in", "publisher")])] == ["b"]
+    assert [each.node for each in DownstreamSearch(found).find_downstream([("/other", "publisher")])] == ["b", "c"]
 
 
 def test_circles_end_and_topics_of_all_nodes_lead_nowhere():
@@ -55,11 +55,11 @@ def test_circles_end_and_topics_of_all_nodes_lead_nowhere():
         [says("a", "/x"), says("b", "/y"), says("b", "/rosout")],
         [hears("b", "/x"), hears("a", "/y"), hears("logger", "/rosout")],
     )
-    assert [each.node for each in DownstreamSearch(found).from_sent([("/x", "publisher")])] == ["b", "a"]
+    assert [each.node for each in DownstreamSearch(found).find_downstream([("/x", "publisher")])] == ["b", "a"]
 
 
 @pytest.mark.parametrize(("client", "server"), [("client", "server"), ("action client", "action server")])
 def test_requests_reach_who_serves_them(client, server):
     found = graph([], [hears("a", "/do", 1, client), hears("b", "/do", 1, server)])
-    (reached,) = DownstreamSearch(found).from_sent([("/do", client)], "a")
+    (reached,) = DownstreamSearch(found).find_downstream([("/do", client)], "a")
     assert (reached.node, reached.steps[0].kind) == ("b", "service" if server == "server" else "action")

@@ -2,7 +2,7 @@
 
 import pytest
 from robot import robot
-from rosimpact.impact.model.flow.select import NothingSelected, selected
+from rosimpact.impact.model.flow.select import NothingSelected, select_graph
 
 WHOLE = robot(log="""
     class Log : public rclcpp::Node {
@@ -16,12 +16,12 @@ WHOLE = robot(log="""
 
 
 def names(**asked) -> tuple[set[str], set[str]]:
-    part = selected(WHOLE, **asked).graph
+    part = select_graph(WHOLE, **asked).graph
     return {node.package for node in part.nodes}, {e.topic for e in part.endpoints if e.topic}
 
 
 def test_what_every_node_has_is_hidden_and_counted():
-    assert selected(WHOLE).hidden == 1
+    assert select_graph(WHOLE).hidden == 1
     assert "/rosout" not in names()[1]
     assert "/rosout" in names(everything=True)[1]
     assert names(topics=["rosout"])[1] == {"/rosout"}
@@ -65,4 +65,4 @@ def test_what_is_near(around, hops, packages):
 )
 def test_what_is_not_there(asked, said):
     with pytest.raises(NothingSelected, match=said):
-        selected(WHOLE, **asked)
+        select_graph(WHOLE, **asked)

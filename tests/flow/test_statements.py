@@ -3,7 +3,7 @@
 import pytest
 from rosimpact.impact.facts.cpp import flow as flow_cpp
 from rosimpact.impact.logic.history import PackageFile, PackageState
-from rosimpact.impact.logic.statements import Before, PackageStatements, digest
+from rosimpact.impact.logic.statements import Before, PackageStatements, digest_package
 
 TALKER = """
 #include "types.h"
@@ -51,7 +51,7 @@ class Package:
         for path, text in files.items():
             self.known.setdefault((path, text), flow_cpp.extract(text.encode()))
         facts = {path: self.known[path, text] for path, text in files.items()}
-        return digest(PackageState("talk", "", 1, listed, b""), facts, before)
+        return digest_package(PackageState("talk", "", 1, listed, b""), facts, before)
 
 
 @pytest.mark.parametrize("change", CHANGES)

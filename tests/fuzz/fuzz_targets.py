@@ -45,11 +45,11 @@ from rosimpact.impact.facts.launch import parameter_files as flow_parameters
 from rosimpact.impact.facts.usage import Rows
 from rosimpact.impact.model import discovery
 from rosimpact.impact.model.cmake import regex
-from rosimpact.impact.model.cmake.interpret import extras_of, interpret
+from rosimpact.impact.model.cmake.interpret import interpret, list_extras
 from rosimpact.impact.model.cmake.interpreter import MAX_STEPS
 from rosimpact.impact.model.launch import follow as launch
 from rosimpact.impact.model.launch import text as launch_text
-from rosimpact.impact.model.tracked_names import watched
+from rosimpact.impact.model.tracked_names import load_watched
 from rosimpact.impact.report import github, markdown_text
 from rosimpact.impact.targets import capture, resolve, version
 from rosimpact.impact.targets.distro.distro import TargetError
@@ -147,7 +147,7 @@ def extractor(kind: str) -> Callable[[bytes], None]:
 @cache
 def _tables() -> dict[str, object]:
     """What searches are given to look for."""
-    names = watched()
+    names = load_watched()
     rows = Rows([row for group in (*names.modules.values(), names.parameters) for row in group])
     return {"searched_cpp": names.in_cpp, "searched_text": rows, "called_cpp": None}
 
@@ -173,10 +173,10 @@ class _Sources:
     def __init__(self, data: bytes, kind: str):
         self.file, self.values = flow_launch.extract(data, kind), flow_parameters.extract(data)
 
-    def launch(self, package: str, path: str) -> Any:
+    def find_launch_file(self, package: str, path: str) -> Any:
         return self.file
 
-    def parameters(self, package: str, path: str) -> Any:
+    def find_parameter_file(self, package: str, path: str) -> Any:
         return self.values
 
 
@@ -187,7 +187,7 @@ def launched(kind: str) -> Callable[[bytes], None]:
         found = launch.follow("p", "launch/a", _Sources(data, kind), {"use": "true"})
         for place, _ in enumerate(found.started):
             if place < 5:
-                found.values(found.started[place], "")
+                found.collect_parameters(found.started[place], "")
 
     return check
 
@@ -224,7 +224,7 @@ def cmake_build(data: bytes) -> None:
 
     built = interpret("pkg", read, files.__contains__, glob, package="pkg")
     msgspec.msgpack.encode(built)
-    extras_of("pkg", glob)
+    list_extras("pkg", glob)
 
 
 class _Spent(Exception):
@@ -271,13 +271,13 @@ def conditions(data: bytes) -> None:
     elif place == 4:
         with contextlib.suppress(launch_text.CannotTell):
             launch_text.evaluate(text, {"x": "y"}, {"arg": lambda name: name})
-        launch_text.ros1_value(text)
-        launch_text.yaml_value(text)
+        launch_text.parse_ros1_value(text)
+        launch_text.parse_yaml_value(text)
     else:
         first, _, second = text.partition("\n")
         require(version.compare(first, second) == -version.compare(second, first), "an order of versions is one-sided")
-        version.at_least(first, second)
-        capture.plain(first)
+        version.is_at_least(first, second)
+        capture.strip_version(first)
 
 
 # Documents and settings
@@ -318,14 +318,14 @@ def baseline(data: bytes) -> None:
 
 def captured(data: bytes) -> None:
     try:
-        capture.to_json(capture.read(written("captured.json", data))).encode("utf-8", "surrogatepass")
+        capture.dump_capture(capture.read(written("captured.json", data))).encode("utf-8", "surrogatepass")
     except TargetError:
         return
 
 
 def listing(data: bytes) -> None:
     """A listing of `dpkg -l`."""
-    capture.from_dpkg(resolve.parse_dpkg(data.decode("utf-8", "replace")))
+    capture.read_dpkg_rows(resolve.parse_dpkg(data.decode("utf-8", "replace")))
 
 
 def allowed(data: bytes) -> None:
@@ -343,7 +343,7 @@ class _Files:
         self.problems, self.skipped, self.aliases = [], [], {}
         self.repositories: dict[str, str] = {}
 
-    def entries(self) -> list[TreeEntry]:
+    def list_entries(self) -> list[TreeEntry]:
         return [TreeEntry(path, len(data)) for path, data in sorted(self.files.items())]
 
     def read(self, path: str, limit: int = 0) -> bytes:
@@ -364,14 +364,14 @@ class _Facts:
     def __init__(self, files: _Files):
         self.files = files
         self.problems: list[Any] = []
-        self.kinds = {path: kind for path in files.files if (kind := kinds.kind_of(path)) is not None}
+        self.kinds = {path: kind for path in files.files if (kind := kinds.find_kind(path)) is not None}
 
-    def paths(self, *wanted: str) -> list[str]:
+    def list_paths(self, *wanted: str) -> list[str]:
         return [path for path, kind in self.kinds.items() if kind in wanted]
 
     def preload(self, paths: Iterable[str]) -> None: ...
 
-    def facts(self, path: str) -> Any:
+    def get_facts(self, path: str) -> Any:
         return kinds.extract(self.kinds[path], self.files.read(path))
 
     def look(self, paths: Iterable[str], kind: str, on_error: Any = None) -> dict[str, Any]:
@@ -386,13 +386,13 @@ def discovered(data: bytes) -> None:
     parts = _PART.split(data)
     files = _Files({})
     for name, content in zip(parts[1::2], parts[2::2], strict=True):
-        path = tree.inside(name.decode("utf-8", "replace"))
+        path = tree.normalize_path(name.decode("utf-8", "replace"))
         if path:
             files.files[path] = content
     found = discovery.discover(files, _Facts(files))  # pyright: ignore[reportArgumentType]
     for place in (*found.packages, *found.foreign, *found.ignored):
         require(bool(place.name) and isinstance(place.name, str), "a package without a name")
-    found.owner("src/arm/a.cpp")
+    found.find_owner("src/arm/a.cpp")
 
 
 # Binary files
@@ -406,14 +406,14 @@ def binary(data: bytes) -> None:
         require(
             msgspec.msgpack.encode(msgspec.msgpack.decode(encoded, type=elf.Elf)) == encoded, "facts decode to others"
         )
-    for symbol in elf.defined(data) or ():
-        elf.member(symbol)
-    elf.member(data[:200].decode("utf-8", "replace"))
+    for symbol in elf.read_defined_symbols(data) or ():
+        elf.parse_symbol(symbol)
+    elf.parse_symbol(data[:200].decode("utf-8", "replace"))
 
 
 def deb(data: bytes) -> None:
     try:
-        unpacked_deb.members(written("a.deb", data))
+        unpacked_deb.read_members(written("a.deb", data))
     except unpacked_deb.DebError:
         return
 
@@ -444,7 +444,7 @@ class _Memo:
     def __init__(self, data: bytes):
         self.data = data
 
-    def memo(self, table: str, key: bytes) -> bytes:
+    def find_memo(self, table: str, key: bytes) -> bytes:
         return self.data
 
     def remember(self, table: str, rows: object) -> None: ...
@@ -470,11 +470,11 @@ _COMMAND_ANYWHERE = re.compile(r"##[A-Za-z]{0,20}\[")
 def printed(data: bytes) -> None:
     """A text of a workspace, as it is shown to people."""
     text = data.decode("utf-8", "surrogateescape")
-    one = console.visible(text)
+    one = console.escape(text)
     require(not _CONTROL.search(one) and "\n" not in one and "\t" not in one, "visible() leaves a control character")
     require(not _COMMAND_ANYWHERE.search(one), "visible() leaves a command")
-    require(console.visible(one) == one, "visible() twice differs")
-    lines = console.visible_lines(text)
+    require(console.escape(one) == one, "visible() twice differs")
+    lines = console.escape_lines(text)
     require(not _CONTROL.search(lines), "visible_lines() leaves a control character")
     require(lines.count("\n") == text.count("\n"), "visible_lines() changes the lines")
     stream = io.StringIO()
@@ -483,9 +483,9 @@ def printed(data: bytes) -> None:
     require(not _CONTROL.search(_COLOUR.sub("", out)), "write() lets a control character through")
     require(not any(line.lstrip().startswith("::") for line in out.split("\n")), "write() lets a command through")
     require(not _COMMAND_ANYWHERE.search(out), "write() lets a command through")
-    told = console.json_text(text)
+    told = console.format_json(text)
     require(json.loads(told) == text and not console.is_obeyed(told), "JSON of a text says something else")
-    for parameter in (github._data(text), github._property(text)):
+    for parameter in (github._escape_data(text), github._escape_property(text)):
         require("\n" not in parameter and "\r" not in parameter, "a workflow command of two lines")
 
 
@@ -499,12 +499,12 @@ def _markdown() -> Any:
 def marked(data: bytes) -> None:
     """A text of a workspace in a table and a paragraph of Markdown."""
     text = data.decode("utf-8", "replace")
-    for shown in (markdown_text.escaped(text), markdown_text.code(text)):
+    for shown in (markdown_text.escape_markdown(text), markdown_text.quote(text)):
         require("\n" not in shown and not _CONTROL.search(shown), "Markdown of two lines")
         for token in _markdown().parse(f"x {shown} y"):
             for child in token.children or ():
                 require(child.type in ("text", "code_inline"), f"Markdown makes {child.type} of a text")
-        table = _markdown().parse(f"| a | b |\n|---|---|\n| {markdown_text.cell(shown)} | end |\n")
+        table = _markdown().parse(f"| a | b |\n|---|---|\n| {markdown_text.format_cell(shown)} | end |\n")
         cells = [token.content for token in table if token.type == "inline"]
         require(len(cells) == 4 and cells[3] == "end", "a text breaks a table")
 
@@ -522,11 +522,11 @@ def reports(data: bytes) -> None:
         except CorpusError:
             continue
     try:
-        item = ServiceAnswer(200, "", {}, data).json()
+        item = ServiceAnswer(200, "", {}, data).parse_json()
     except ValueError:
         return
     if isinstance(item, dict):
-        for parse in (ros_answers.parse_item, stack_exchange.gathered):
+        for parse in (ros_answers.parse_item, stack_exchange.convert):
             try:
                 parse(item)
             except CorpusError:
@@ -538,12 +538,12 @@ def archived(data: bytes) -> None:
     with contextlib.suppress(CorpusError):
         ros_answers.parse_archived(data, "a.md")
     with contextlib.suppress(ValueError):
-        robust.map_record(robust._parsed(written("a.bug", data)), "a")
+        robust.map_record(robust._parse_record(written("a.bug", data)), "a")
 
 
 def pages(data: bytes) -> None:
     html = data.decode("utf-8", "replace")
-    markup.markdown(html)
+    markup.convert_to_markdown(html)
     try:
         ros_answers.parse_page(html)
     except CorpusError:

@@ -196,7 +196,7 @@ def in_time() -> Iterator[None]:
 
 def about_others(report: Report) -> list[dict]:
     """The findings on the healthy packages, as JSON."""
-    return [as_json.as_data(finding) for finding in report.findings if finding.package in PACKAGES]
+    return [as_json.build_finding_data(finding) for finding in report.findings if finding.package in PACKAGES]
 
 
 @pytest.fixture(scope="module")

@@ -145,12 +145,12 @@ def prepare():
         import typer.main
         from rosimpact.impact.cli.app import _select_command
         from rosimpact.impact.facts import kinds
-        from rosimpact.impact.rules.rule import all_rules
+        from rosimpact.impact.rules.rule import load_rules
     except ImportError:  # older versions
         return
-    all_rules()
+    load_rules()
     for kind in kinds.EXTRACTORS:
-        kinds._decoder(kind)
+        kinds._make_decoder(kind)
     build = typer.main.get_command = functools.cache(typer.main.get_command)
     for name in ("check", "graph", "impact", "logic", "upgrade", "why", "env"):
         build(_select_command(name))

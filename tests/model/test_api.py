@@ -7,10 +7,10 @@ from rosimpact.databuild.extract.cpp import extract as header
 from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface_changes import Lines
 from rosimpact.impact.facts.cpp.code import CppCode
-from rosimpact.impact.facts.surface import Entity, offered
+from rosimpact.impact.facts.surface import Entity, list_offered
 from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.cpp.resolver import KnownFile, Resolver
-from rosimpact.impact.model.cpp.uses import ApiUses, parameter_type
+from rosimpact.impact.model.cpp.uses import ApiUses, normalise_parameter
 from rosimpact.impact.targets.surface.changes import Line
 from rosimpact.impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
 from rosimpact.impact.targets.unpacked import read_packed
@@ -47,7 +47,7 @@ class Asked:
     def __init__(self, version: str, ahead: bool):
         self._versions = ((version, ahead),)
 
-    def of(self, package: str, ros: int) -> tuple[tuple[str, bool], ...]:
+    def list_asked(self, package: str, ros: int) -> tuple[tuple[str, bool], ...]:
         return self._versions
 
 
@@ -59,8 +59,8 @@ class Declared:
     def __init__(self, codes: tuple[str, str]):
         self._of = dict(zip(self.versions, (header(code.encode()) for code in codes), strict=True))
 
-    def entities(self, name: str, version: str) -> Iterator[Entity]:
-        return (entity for entity in offered([self._of[version]]) if entity.name == name)
+    def iterate_entities(self, name: str, version: str) -> Iterator[Entity]:
+        return (entity for entity in list_offered([self._of[version]]) if entity.name == name)
 
 
 def changes_of(packages: dict[str, tuple[str, str]], asked: Asked | None = None) -> Changes:
@@ -77,7 +77,7 @@ def changes_of(packages: dict[str, tuple[str, str]], asked: Asked | None = None)
         state = RepositorySurfaces(surfaces)
         for package in surfaces:
             lines.add(package, version, (2,), state)
-    packed = lines.packed()
+    packed = lines.pack_lines()
     histories = {package: Declared(codes) for package, codes in packages.items()}
     return Changes(
         lambda package: {2: read_packed(packed[package, 2], Line)} if (package, 2) in packed else {},
@@ -97,8 +97,8 @@ def resolver(text: str, vocabulary: Vocabulary, *headers: str) -> Resolver:
 
 def uses(text: str, changes: Changes, *headers: str) -> list[str]:
     vocabulary = Vocabulary(["arm", "leg"], "mine", changes)
-    words = [word for word in sorted(vocabulary.looked_for(vocabulary.words)) if word in text or word in ASSIGNING]
-    found = ApiUses(resolver(text, vocabulary, *headers), {"arm", "leg"}).found(words)
+    words = [word for word in sorted(vocabulary.select_wanted(vocabulary.words)) if word in text or word in ASSIGNING]
+    found = ApiUses(resolver(text, vocabulary, *headers), {"arm", "leg"}).find_uses(words)
     told = []
     for use in sorted(found, key=lambda use: use.offset):
         arguments = "" if use.how == "name" else f"/{use.arguments}"
@@ -259,7 +259,7 @@ PART = (
 )  # fmt: skip
 def test_what_an_exported_class_does_not_implement(text, headers, found):
     vocabulary = Vocabulary(["part"], "mine", changes_of({"part": PART}))
-    assert [use.name for use in ApiUses(resolver(text, vocabulary, *headers)).unimplemented({"n::M"})] == found
+    assert [use.name for use in ApiUses(resolver(text, vocabulary, *headers)).find_unimplemented({"n::M"})] == found
 
 
 def test_a_name_is_looked_for_where_its_class_can_be_meant(changes):
@@ -275,7 +275,7 @@ def test_a_package_does_not_look_for_its_own_names(changes):
 def test_names_of_the_workspace_are_known_but_not_looked_for(changes):
     vocabulary = Vocabulary(["arm", "leg"], "mine", changes, home={"leg"})
     text = "void g(leg::Leg & l) { l.old(); l.went(1); }"
-    assert [use.name for use in ApiUses(resolver(text, vocabulary)).found(["old", "went"])] == ["arm::Base::went"]
+    assert [use.name for use in ApiUses(resolver(text, vocabulary)).find_uses(["old", "went"])] == ["arm::Base::went"]
     assert "old" not in vocabulary.words and "went" in vocabulary.words
 
 
@@ -289,8 +289,8 @@ def test_names_of_the_workspace_are_known_but_not_looked_for(changes):
 def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
     vocabulary = Vocabulary(["arm"], "mine", changes)
     found = resolver(f"class C {{ void g() {{ call({argument}); }} }};", vocabulary)
-    (use,) = found.known.code.uses(["call"])
-    assert ApiUses(found).shown(use.call[0], use.place) == shown
+    (use,) = found.known.code.list_uses(["call"])
+    assert ApiUses(found).classify(use.call[0], use.place) == shown
 
 
 @pytest.mark.parametrize(
@@ -304,8 +304,8 @@ def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
 def test_what_a_variable_shows_itself_to_be(before, shown, changes):
     vocabulary = Vocabulary(["arm"], "mine", changes)
     found = resolver(f"class C {{ rmw_qos_profile_t v; void g() {{\n{before} call(v); }} }};", vocabulary)
-    (use,) = found.known.code.uses(["call"])
-    assert ApiUses(found).shown(use.call[0], use.place) == shown
+    (use,) = found.known.code.list_uses(["call"])
+    assert ApiUses(found).classify(use.call[0], use.place) == shown
 
 
 @pytest.mark.parametrize(
@@ -315,7 +315,7 @@ def test_what_a_variable_shows_itself_to_be(before, shown, changes):
 )  # fmt: skip
 def test_the_type_of_a_parameter(parameter, type_):
     (function,) = CppCode(f"void f({parameter});".encode()).file.names
-    assert [parameter_type(one) for one in function.parameters] == [type_]
+    assert [normalise_parameter(one) for one in function.parameters] == [type_]
 
 
 @pytest.mark.parametrize(
@@ -371,7 +371,7 @@ SPIN = ["shop::Drill::spin/1"]
 def test_what_members_of_other_packages_are(text, found):
     changes = changes_of({"shop": WORKSHOP}, Versions("1.0.0", "2.0.0"))
     vocabulary = Vocabulary(["shop"], "mine", changes)
-    uses = ApiUses(resolver(text, vocabulary), {"shop"}).found(["spin"])
+    uses = ApiUses(resolver(text, vocabulary), {"shop"}).find_uses(["spin"])
     assert [f"{use.name}/{use.arguments}" for use in uses] == found
 
 
@@ -381,5 +381,5 @@ class Versions:
     def __init__(self, *versions: str):
         self._versions = tuple((version, False) for version in versions)
 
-    def of(self, package: str, ros: int) -> tuple[tuple[str, bool], ...]:
+    def list_asked(self, package: str, ros: int) -> tuple[tuple[str, bool], ...]:
         return self._versions

@@ -14,14 +14,14 @@ from rosimpact.impact.conditions.cmake import Token
 from rosimpact.impact.facts.cmake import extract
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.model.cmake.build import Build, DeclaredPackages
-from rosimpact.impact.model.cmake.conditions import evaluate, version_key
-from rosimpact.impact.model.cmake.genex import reduced, rejoin
-from rosimpact.impact.model.cmake.interpret import extras_of, interpret
+from rosimpact.impact.model.cmake.conditions import evaluate, make_version_key
+from rosimpact.impact.model.cmake.genex import reduce_expression, rejoin
+from rosimpact.impact.model.cmake.interpret import interpret, list_extras
 from rosimpact.impact.model.cmake.interpreter import Interpreter
 from rosimpact.impact.model.cmake.lists import calculate
 from rosimpact.impact.model.cmake.regex import match
-from rosimpact.impact.model.cmake.standard import flag_standard
-from rosimpact.impact.model.cmake.values import split_list, word
+from rosimpact.impact.model.cmake.standard import parse_flag_standard
+from rosimpact.impact.model.cmake.values import split_list, wrap
 from rosimpact.impact.model.workspace import _Linker
 
 
@@ -568,7 +568,7 @@ OTHER_PACKAGE = {
 def test_macros_of_another_package_are_known_once_it_is_found():
     tree = Tree(OTHER_PACKAGE)
     source = "project(p)\nfind_package(other)\n\n  other_add_test(t a.cpp)\nfind_package(A_${FROM_EXTRAS})"
-    made = build(source, OTHER_PACKAGE, extras=lambda name: extras_of(name, tree.glob) if name == "other" else ())
+    made = build(source, OTHER_PACKAGE, extras=lambda name: list_extras(name, tree.glob) if name == "other" else ())
     assert [(one.name, one.at.path, one.at.line, one.via) for one in made.found] == [
         ("other", "pkg/CMakeLists.txt", 2, ""),
         ("Inner", "pkg/CMakeLists.txt", 4, "other_add_test"),
@@ -688,11 +688,11 @@ def test_conditions_are_three_valued(text, expected):
     ],
 )
 def test_generator_expressions(text, expected):
-    assert list(reduced(word(text, None))) == expected
+    assert list(reduce_expression(wrap(text, None))) == expected
 
 
 def test_generator_expressions_taken_apart_are_joined_again():
-    assert rejoin([word(part, None) for part in ("$<BUILD_INTERFACE:a", "b>", "c")]) == ["$<BUILD_INTERFACE:a;b>", "c"]
+    assert rejoin([wrap(part, None) for part in ("$<BUILD_INTERFACE:a", "b>", "c")]) == ["$<BUILD_INTERFACE:a;b>", "c"]
 
 
 @pytest.mark.parametrize(
@@ -739,12 +739,12 @@ def test_regular_expressions_cost_what_they_may_take():
     ("text", "expected"), [("-std=c++2a", 20), ("x -std=gnu++17 y", 17), ("-std=c++11 -std=c++14", 14), ("-std=c11", 0)]
 )
 def test_standard_flags(text, expected):
-    assert flag_standard(text) == expected
+    assert parse_flag_standard(text) == expected
 
 
 def test_versions_compare_by_component():
-    assert version_key("1.10") > version_key("1.9.9")
-    assert version_key("1.0.0") == version_key("1")
+    assert make_version_key("1.10") > make_version_key("1.9.9")
+    assert make_version_key("1.0.0") == make_version_key("1")
 
 
 @given(st.lists(st.text(st.sampled_from("ab;\\[]"), max_size=6)))
@@ -1002,7 +1002,7 @@ class Recorder(Interpreter):
 
     def run_call(self, call):
         if call.name == "message":
-            given = [self.shown(";".join(self.expand([template]))) for template in call.templates]
+            given = [self.clean(";".join(self.expand([template]))) for template in call.templates]
             self.said.append((call.at.line, given))
         return super().run_call(call)
 
@@ -1117,7 +1117,7 @@ FILES = ["a/CMakeLists.txt", "a/src/x.cpp", "a/src/y.hpp", "a/src/deep/z.cpp", "
     ],
 )
 def test_files_that_match_a_pattern(pattern, recurse, expected):
-    find = _Linker.glob(None, None, FILES)  # type: ignore[arg-type]
+    find = _Linker.make_glob(None, None, FILES)  # type: ignore[arg-type]
     assert find(pattern, recurse) == expected
     assert find(pattern, recurse) == expected
 

@@ -4,7 +4,7 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.conditions import Environment, all_hold, holds
+from rosimpact.impact.conditions import Environment, evaluate_all, holds
 from rosimpact.impact.facts.condition import Condition
 
 VERSIONS = {
@@ -311,10 +311,10 @@ def test_nothing_is_told_of_an_unknown_machine(language, text):
 
 def test_all_hold_is_false_as_soon_as_one_is():
     yes, no, open_ = Condition("cpp", "1"), Condition("cpp", "0"), Condition("cpp", "FOO")
-    assert all_hold((), HUMBLE) is True
-    assert all_hold((yes, yes), HUMBLE) is True
-    assert all_hold((yes, open_), HUMBLE) is None
-    assert all_hold((open_, no, yes), HUMBLE) is False
+    assert evaluate_all((), HUMBLE) is True
+    assert evaluate_all((yes, yes), HUMBLE) is True
+    assert evaluate_all((yes, open_), HUMBLE) is None
+    assert evaluate_all((open_, no, yes), HUMBLE) is False
 
 
 SPELT = """( ) < > ! & | " ' $ , [ ] { } : . = + - * / % ? ~ && || AND OR NOT defined __has_include(<a>) STREQUAL

@@ -3,9 +3,9 @@
 import os
 
 import pytest
-from rosimpact.impact.facts.extract import gather
+from rosimpact.impact.facts.extract import extract_all
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.model.discovery import discover, generation
+from rosimpact.impact.model.discovery import detect_generation, discover
 from rosimpact.impact.tree import WorkingTree
 
 
@@ -28,7 +28,7 @@ def find(root, files, ask=discover):
     (root / "ws").mkdir(exist_ok=True)
     tree = WorkingTree(root / "ws")
     with Store(root / "cache") as store:
-        gathered = gather(tree, store, jobs=1)
+        gathered = extract_all(tree, store, jobs=1)
         found = discover(tree, gathered)
         return found if ask is discover else ask(found, gathered)
 
@@ -194,7 +194,7 @@ def test_a_manifest_chosen_among_variants(tmp_path):
 def test_ignored_packages_are_told(tmp_path):
     found = find(tmp_path, {"colcon_defaults.yaml": "build: {packages-skip: a}", "a/package.xml": A})
     assert [(place.name, place.ignored) for place in found.ignored] == [("a", "packages-skip in colcon_defaults.yaml")]
-    assert found.owner("a/x.cpp") is None
+    assert found.find_owner("a/x.cpp") is None
 
 
 def test_duplicates_are_told(tmp_path):
@@ -265,13 +265,13 @@ def test_owners(tmp_path):
     }
     found = find(tmp_path, files)
     for _ in ("asked", "asked again"):
-        owners = [(path, found.owner(path)) for path, _ in OWNERS]
+        owners = [(path, found.find_owner(path)) for path, _ in OWNERS]
         assert [(path, place.name if place else None) for path, place in owners] == OWNERS
 
 
 def test_the_root_owns_everything_below_it(tmp_path):
     found = find(tmp_path, {"package.xml": A})
-    assert [found.owner(path).name for path in ("", "x", "a/b/c")] == ["a"] * 3
+    assert [found.find_owner(path).name for path in ("", "x", "a/b/c")] == ["a"] * 3
 
 
 def of_build(*lines):
@@ -307,4 +307,4 @@ BOTH = of_build("<buildtool_depend>catkin</buildtool_depend><buildtool_depend>am
 )
 def test_the_generation_is_that_of_most_packages_that_tell_one(manifests, expected, tmp_path):
     files = {f"p{at}/package.xml": text for at, text in enumerate(manifests)}
-    assert find(tmp_path, files, generation) == expected
+    assert find(tmp_path, files, detect_generation) == expected

@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.model.cmake.build import At, Install
-from rosimpact.impact.model.cmake.installed import copied_files
+from rosimpact.impact.model.cmake.installed import list_copied_files
 
 FILES = ("p/include/p/a.h", "p/include/p/b.hpp", "p/include/p/detail/c.h", "p/src/d.h")
 
@@ -22,9 +22,9 @@ FILES = ("p/include/p/a.h", "p/include/p/b.hpp", "p/include/p/detail/c.h", "p/sr
 )  # fmt: skip
 def test_directories(items, options, places):
     rule = Install("directory", items, "include", At("p/CMakeLists.txt", 1), **options)
-    assert [place for _, place in copied_files(rule, "include", FILES)] == places
+    assert [place for _, place in list_copied_files(rule, "include", FILES)] == places
 
 
 def test_files_may_be_renamed():
     rule = Install("files", ("p/src/d.h",), "include/p", At("p/CMakeLists.txt", 1), rename="e.h")
-    assert list(copied_files(rule, "include/p", FILES)) == [("p/src/d.h", "include/p/e.h")]
+    assert list(list_copied_files(rule, "include/p", FILES)) == [("p/src/d.h", "include/p/e.h")]

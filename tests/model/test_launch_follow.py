@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.model.launch.follow import follow
-from rosimpact.impact.model.launch.result import LaunchParameter, SettingFile, file_values
-from rosimpact.impact.model.launch.text import CannotTell, LaunchText, evaluate, ros1_value
+from rosimpact.impact.model.launch.result import LaunchParameter, SettingFile, select_file_values
+from rosimpact.impact.model.launch.text import CannotTell, LaunchText, evaluate, parse_ros1_value
 
 
 class Files:
@@ -19,13 +19,13 @@ class Files:
     def __init__(self, files):
         self.files = {name: textwrap.dedent(text).strip().encode() for name, text in files.items()}
 
-    def launch(self, package, path):
+    def find_launch_file(self, package, path):
         data = self.files.get(f"{package}/{path}")
         ending = path.rpartition(".")[2]
         kind = {"py": "launch_python", "yaml": "launch_yaml"}.get(ending, "launch_xml")
         return None if data is None else extract(data, kind)
 
-    def parameters(self, package, path):
+    def find_parameter_file(self, package, path):
         data = self.files.get(f"{package}/{path}")
         return None if data is None else parameters(data)
 
@@ -46,7 +46,7 @@ def remaps(started):
 
 
 def values(launch, place=0, name=""):
-    return {key: setting.value for key, setting in launch.values(launch.started[place], name).items()}
+    return {key: setting.value for key, setting in launch.collect_parameters(launch.started[place], name).items()}
 
 
 def node(name, more="", inside=""):
@@ -337,7 +337,7 @@ def test_parameters_of_ros2():
     assert values(launch, 1, "/n")["only"] == "a"
     assert values(launch, 2)["only"] == "a"
     assert values(launch, 2)["all"] is True
-    rate = launch.values(launch.started[0])["rate"]
+    rate = launch.collect_parameters(launch.started[0])["rate"]
     assert isinstance(rate, LaunchParameter)
     assert rate.text.assumed == ("rate",)
     assert [u.what for u in launch.unresolved] == ["parameters `gone.yaml`"]
@@ -382,7 +382,7 @@ def test_which_node_a_file_means(keys, name, holds):
     entries = parameters(f"{keys}: {{ros__parameters: {{x: 1}}}}" if "*" not in keys else
                          f"'{keys}': {{ros__parameters: {{x: 1}}}}").entries  # fmt: skip
     setting = SettingFile(LaunchText("f", "f"), entries, None)  # type: ignore[arg-type]
-    assert bool(file_values(setting, name)) == holds
+    assert bool(select_file_values(setting, name)) == holds
 
 
 def test_processes():
@@ -402,7 +402,7 @@ def test_processes():
      ("1.a", "auto", "1.a")],
 )  # fmt: skip
 def test_values_of_ros1(text, type_, expected):
-    assert ros1_value(text, type_) == expected
+    assert parse_ros1_value(text, type_) == expected
 
 
 @pytest.mark.parametrize(
@@ -472,7 +472,7 @@ def test_following_never_raises(elements, generation):
     text = f"<launch>{''.join(map(written, elements))}</launch>"
     launch = launched(text, generation=generation)
     for started in launch.started:
-        launch.values(started)
+        launch.collect_parameters(started)
         assert started.full_name.value is None or started.full_name.value.startswith("/")
 
 

@@ -16,7 +16,7 @@ from xml.etree import ElementTree
 import pytest
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
-from rosimpact.impact.model.flow.names import joined, ros1_remapped, ros2_remapped, ros2_rule
+from rosimpact.impact.model.flow.names import join_name, parse_ros2_rule, remap_ros1_name, remap_ros2_name
 from rosimpact.impact.model.launch.follow import follow
 from rosimpact.impact.model.launch.result import Started
 
@@ -52,12 +52,12 @@ class Repositories:
         except subprocess.CalledProcessError:
             return None
 
-    def launch(self, package, path):
+    def find_launch_file(self, package, path):
         data = self.read(package, path)
         kind = {"py": "launch_python", "yaml": "launch_yaml"}.get(path.rpartition(".")[2], "launch_xml")
         return None if data is None else extract(data, kind)
 
-    def parameters(self, package, path):
+    def find_parameter_file(self, package, path):
         data = self.read(package, path)
         return None if data is None else parameters(data)
 
@@ -81,9 +81,9 @@ def answer(started: Started, asks, named):
     name, namespace = started.name.value or named or "unnamed", started.namespace.value or "/"
     remaps = [(r.old.value, r.new.value) for r in started.remaps if r.old.value and r.new.value]
     if started.generation == 1:
-        return ros1_remapped(asks, joined(namespace, name), remaps)
-    rules = [rule for rule in (ros2_rule(f"{old}:={new}") for old, new in remaps) if rule is not None]
-    return ros2_remapped(asks, name, namespace, rules)
+        return remap_ros1_name(asks, join_name(namespace, name), remaps)
+    rules = [rule for rule in (parse_ros2_rule(f"{old}:={new}") for old, new in remaps) if rule is not None]
+    return remap_ros2_name(asks, name, namespace, rules)
 
 
 @pytest.mark.skipif(not MIRROR, reason="ROSIMPACT_MIRROR does not name the folder of mirrored repositories")

@@ -1,7 +1,7 @@
 """What a link item stands for, and what one with a variable that nothing sets may stand for."""
 
 import pytest
-from rosimpact.impact.model.cmake.links import may_hide, package_of
+from rosimpact.impact.model.cmake.links import may_hide, resolve_package
 
 
 @pytest.mark.parametrize(
@@ -14,7 +14,7 @@ from rosimpact.impact.model.cmake.links import may_hide, package_of
     ],
 )
 def test_the_package_of_an_item(item, package):
-    assert package_of(item) == package
+    assert resolve_package(item) == package
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,7 @@
 """Macros that CMake defines: what an #if on them asks, in a package's own CMake and sources."""
 
 import pytest
-from rosimpact.impact.conditions import Environment, all_hold
+from rosimpact.impact.conditions import Environment, evaluate_all
 from rosimpact.impact.facts.cmake import extract
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.model.cmake.build import DefinedMacro
@@ -75,18 +75,18 @@ def on(version, distro="humble"):
 )
 def test_what_a_condition_asks(macros, condition, environment, holds):
     links = {"node": {"core"}, "core": {"linked"}}
-    assert all_hold(Macros(macros, (), links).asked((condition,), ("node",)), environment) is holds
+    assert evaluate_all(Macros(macros, (), links).resolve_conditions((condition,), ("node",)), environment) is holds
 
 
 def test_a_macro_of_some_of_the_targets_that_compile_a_file_is_left_alone():
     macros = Macros([DefinedMacro("FOXY", "", "node", (OLD,))], ())
-    assert macros.asked((IFDEF,), ("node", "tool")) == (IFDEF,)
+    assert macros.resolve_conditions((IFDEF,), ("node", "tool")) == (IFDEF,)
 
 
 def test_a_macro_that_an_unread_link_may_bring_is_left_alone():
     macros = Macros([DefinedMacro("FOXY", "", "tool", (OLD,))], (), {"node": {"${core_TARGETS}"}})
-    assert macros.asked((IFDEF,), ("node",)) == (IFDEF,)
+    assert macros.resolve_conditions((IFDEF,), ("node",)) == (IFDEF,)
 
 
 def test_a_macro_that_sources_define_too_is_left_alone():
-    assert Macros([DefinedMacro("FOXY", "", "", (OLD,))], {"FOXY"}).asked((IFDEF,), ("node",)) == (IFDEF,)
+    assert Macros([DefinedMacro("FOXY", "", "", (OLD,))], {"FOXY"}).resolve_conditions((IFDEF,), ("node",)) == (IFDEF,)

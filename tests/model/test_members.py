@@ -7,8 +7,8 @@ from rosimpact.impact.facts.cpp.code import CppCode
 from rosimpact.impact.facts.python.source import extract
 from rosimpact.impact.model.cpp.resolver import KnownFile, Resolver
 from rosimpact.impact.model.cpp.uses import MemberUses
-from rosimpact.impact.model.members import InterfaceScope, interface_named, interfaces_included
-from rosimpact.impact.model.python.members import changing_members, interfaces_used
+from rosimpact.impact.model.members import InterfaceScope, find_included_interfaces, find_interface
+from rosimpact.impact.model.python.members import find_changing_members, list_used
 from rosimpact.impact.targets.surface.fields import Fields
 
 # Two states: of each pair, the first member is in the old one alone, the second in the new one.
@@ -43,12 +43,12 @@ ROS1 = ("arm_msgs/Arm.h", "arm_msgs/Start.h", "arm_msgs/MoveAction.h")
 
 def found_in(text: str, scope: InterfaceScope, headers=(), guess=False):
     known = [KnownFile(CppCode(each.encode())) for each in (text, *headers)]
-    found = MemberUses(Resolver(known, None, scope)).found(sorted(scope.changing), guess)
+    found = MemberUses(Resolver(known, None, scope)).find_uses(sorted(scope.changing), guess)
     return sorted(found, key=lambda use: use.offset)
 
 
 def cpp(text: str, fields: Fields, includes=ROS2, headers=()) -> list[str]:
-    scope = InterfaceScope(interfaces_included(includes, fields)[0], fields)
+    scope = InterfaceScope(find_included_interfaces(includes, fields)[0], fields)
     found = found_in(text, scope, headers)
     return [f"{f.interface.short}.{f.section}.{f.member}" for f in found if f.sure]
 
@@ -146,7 +146,7 @@ def test_two_classes_of_one_name_tell_nothing(fields):
     ],
 )
 def test_names_that_can_mean_nothing_else(text, found, fields):
-    scope = InterfaceScope(interfaces_included(ROS2, fields)[0], fields)
+    scope = InterfaceScope(find_included_interfaces(ROS2, fields)[0], fields)
     assert [f.member for f in found_in(text, scope, guess=True) if not f.sure] == found
 
 
@@ -199,13 +199,13 @@ IMPORTS = "from arm_msgs.msg import Arm\nfrom arm_msgs.srv import Start as Begin
 )  # fmt: skip
 def test_python(text, found, fields):
     uses = extract((IMPORTS + text).encode()).fields
-    scope = InterfaceScope([interface for interface in interfaces_used(uses, fields) if interface.ros == 2], fields)
-    members = {f"{f.interface.short}.{f.section}.{f.member}" for _, f in changing_members(uses, scope)}
+    scope = InterfaceScope([interface for interface in list_used(uses, fields) if interface.ros == 2], fields)
+    members = {f"{f.interface.short}.{f.section}.{f.member}" for _, f in find_changing_members(uses, scope)}
     assert sorted(members) == found
 
 
 def test_includes_that_are_not_known(fields):
-    known, unknown = interfaces_included(
+    known, unknown = find_included_interfaces(
         ("arm_msgs/msg/arm.hpp", "leg_msgs/msg/leg.hpp", "arm/arm.hpp", "arm.h"), fields
     )
     assert ([i.name for i in known], unknown) == (["msg/Arm"], ["leg_msgs/msg/leg.hpp"])
@@ -222,5 +222,5 @@ def test_includes_that_are_not_known(fields):
     ],
 )
 def test_interfaces_told_by_a_qualified_name(text, named, fields):
-    found = interface_named(text, fields)
+    found = find_interface(text, fields)
     assert (found and (found.ros, found.name)) == named

@@ -4,14 +4,14 @@ import pytest
 from rosimpact.impact.model.flow.names import (
     NameRefused,
     RemappingRule,
-    canonical,
-    joined,
-    namespace_of,
-    ros1_name,
-    ros1_remapped,
-    ros2_name,
-    ros2_remapped,
-    ros2_rule,
+    get_namespace,
+    join_name,
+    normalise,
+    parse_ros2_rule,
+    remap_ros1_name,
+    remap_ros2_name,
+    resolve_ros1_name,
+    resolve_ros2_name,
 )
 
 
@@ -34,7 +34,7 @@ from rosimpact.impact.model.flow.names import (
     ],
 )
 def test_names_of_ros1(node, name, expected):
-    assert ros1_name(name, node) == expected
+    assert resolve_ros1_name(name, node) == expected
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ def test_names_of_ros1(node, name, expected):
     ],
 )
 def test_remapping_of_ros1(name, remaps, expected):
-    assert ros1_remapped(name, "/r/n", remaps) == expected
+    assert remap_ros1_name(name, "/r/n", remaps) == expected
 
 
 # The table of https://design.ros2.org/articles/topic_and_service_names.html
@@ -74,13 +74,13 @@ def test_remapping_of_ros1(name, remaps, expected):
     ],
 )
 def test_names_of_ros2(name, namespace, node, expected):
-    assert ros2_name(name, node, namespace) == expected
+    assert resolve_ros2_name(name, node, namespace) == expected
 
 
 @pytest.mark.parametrize("name", ["", "~foo", "foo/", "a//b", "1a", "a b", "{who}/a", "a-b", "a/~"])
 def test_names_that_ros2_refuses(name):
     with pytest.raises(NameRefused):
-        ros2_name(name, "n", "/")
+        resolve_ros2_name(name, "n", "/")
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_names_that_ros2_refuses(name):
     ],
 )
 def test_rules_of_ros2(text, expected):
-    assert ros2_rule(text) == expected
+    assert parse_ros2_rule(text) == expected
 
 
 @pytest.mark.parametrize(
@@ -120,16 +120,16 @@ def test_rules_of_ros2(text, expected):
     ],
 )
 def test_remapping_of_ros2(name, rules, kind, expected):
-    parsed = [rule for rule in map(ros2_rule, rules) if rule is not None]
-    assert ros2_remapped(name, "n", "/r", parsed, kind) == expected
+    parsed = [rule for rule in map(parse_ros2_rule, rules) if rule is not None]
+    assert remap_ros2_name(name, "n", "/r", parsed, kind) == expected
 
 
 
 
 def test_small_ones():
-    assert [canonical(n) for n in ("", "/", "//", "a//b/", "/a/")] == ["", "/", "/", "a/b", "/a"]
-    assert [namespace_of(n) for n in ("/a/b", "/a", "/")] == ["/a", "/", "/"]
-    assert joined("/a", "b") == "/a/b"
-    assert joined("/a", "/b") == "/b"
-    assert joined("/", "b") == "/b"
-    assert joined("/a", "") == "/a"
+    assert [normalise(n) for n in ("", "/", "//", "a//b/", "/a/")] == ["", "/", "/", "a/b", "/a"]
+    assert [get_namespace(n) for n in ("/a/b", "/a", "/")] == ["/a", "/", "/"]
+    assert join_name("/a", "b") == "/a/b"
+    assert join_name("/a", "/b") == "/b"
+    assert join_name("/", "b") == "/b"
+    assert join_name("/a", "") == "/a"

@@ -3,8 +3,15 @@
 import pytest
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
-from rosimpact.impact.facts.words import words_of
-from rosimpact.impact.model.settings import NamedNode, Setting, in_launch, in_parameters, mentions_changing, named_in
+from rosimpact.impact.facts.words import list_words
+from rosimpact.impact.model.settings import (
+    NamedNode,
+    Setting,
+    list_launch_settings,
+    list_named_nodes,
+    list_settings,
+    mentions_changing,
+)
 from rosimpact.impact.model.undeclared_parameters import means
 
 CHANGING = {
@@ -61,12 +68,12 @@ def nobody(name, packages):
 
 @pytest.mark.parametrize(("text", "expected"), TABLE)
 def test_what_a_file_of_parameters_sets(text, expected):
-    found = in_parameters(parameters(text), CHANGING, nobody)
+    found = list_settings(parameters(text), CHANGING, nobody)
     assert [(one.name, one.package, one.plugin, one.node, one.line) for one in found] == expected
 
 
 def test_the_plugins_of_a_node_are_known_together():
-    assert {one.others for one in in_parameters(parameters(DRIVE), CHANGING, nobody)} == {
+    assert {one.others for one in list_settings(parameters(DRIVE), CHANGING, nobody)} == {
         ("other_follower", "path_follower")
     }
 
@@ -76,7 +83,7 @@ def test_a_launch_file_tells_whose_name_a_node_has():
         return NamedNode("base_driver", "driver", name) if (name, set(packages)) == ("base", {"base_driver"}) else None
 
     file = parameters(b"base:\n  ros__parameters:\n    old_rate: 1.0\n")
-    assert list(in_parameters(file, CHANGING, named)) == [
+    assert list(list_settings(file, CHANGING, named)) == [
         Setting("old_rate", "base_driver", "", "driver", 3, value=1.0)
     ]
 
@@ -84,7 +91,7 @@ def test_a_launch_file_tells_whose_name_a_node_has():
 def test_a_name_that_another_package_has_is_not_guessed():
     text = b"base:\n  ros__parameters:\n    old_rate: 1.0\n"
     assert (
-        list(in_parameters(parameters(text), CHANGING, lambda name, packages: NamedNode("other", "driver", name))) == []
+        list(list_settings(parameters(text), CHANGING, lambda name, packages: NamedNode("other", "driver", name))) == []
     )
 
 
@@ -136,12 +143,12 @@ ROS1 = b"""<launch>
     ],
 )
 def test_what_a_launch_file_sets(kind, data, expected):
-    found = in_launch(extract(data, kind), CHANGING)
+    found = list_launch_settings(extract(data, kind), CHANGING)
     assert [(one.name, one.package, one.plugin, one.node) for one in found] == expected
 
 
 def test_nodes_and_their_names():
-    assert list(named_in(extract(PYTHON, "launch_python")))[:2] == [
+    assert list(list_named_nodes(extract(PYTHON, "launch_python")))[:2] == [
         NamedNode("base_driver", "driver", "base"),
         NamedNode("other", "driver", "driver"),
     ]
@@ -157,7 +164,7 @@ def test_nodes_and_their_names():
     ],
 )
 def test_files_worth_reading(data, expected):
-    assert mentions_changing(set(words_of(data).split(' ')), CHANGING) is expected
+    assert mentions_changing(set(list_words(data).split(' ')), CHANGING) is expected
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 import yaml
 import zstandard
-from rosimpact.impact.targets.changes import all_rows, transitive_includes
+from rosimpact.impact.targets.changes import load_rows, load_transitive
 from rosimpact.impact.targets.snapshot import DATA
-from rosimpact.impact.targets.surface.store import shipped
+from rosimpact.impact.targets.surface.store import load_shipped
 
 CARD = (Path(__file__).parents[2] / "DATA.md").read_text(encoding="utf-8")
 SNAPSHOT = json.loads((DATA / "snapshot.json").read_text())
@@ -67,7 +67,7 @@ def test_counts_are_those_of_the_tables(tables, table, said):
 
 
 def test_surfaces_are_counted():
-    about = shipped().about
+    about = load_shipped().about
     said = re.search(
         r"`surfaces.sqlite` holds ([\d,]+) packages in ([\d,]+) versions, each that ([\w,\s]+?) released", CARD
     )
@@ -98,8 +98,8 @@ def test_library_versions_are_counted():
 @pytest.mark.parametrize(
     ("said", "count"),
     [
-        (r"About ([\d,]+) names of headers", lambda: len(all_rows())),
-        (r"about ([\d,]+) names whose header", lambda: len(transitive_includes())),
+        (r"About ([\d,]+) names of headers", lambda: len(load_rows())),
+        (r"about ([\d,]+) names whose header", lambda: len(load_transitive())),
     ],
 )
 def test_known_changes_are_about_as_many(said, count):

@@ -97,7 +97,7 @@ def team_hits():
 
 def report_of(hits, files, names=NAMES, **changes) -> Report:
     sources = SourceLines(files.get)
-    findings = merge_diagnostics(hits, targets=names, rules=RULES, line_text=sources.line)
+    findings = merge_diagnostics(hits, targets=names, rules=RULES, line_text=sources.read_line)
     targets = tuple(
         ReportedTarget(name, "humble" if name == "robot" else name, "2026-08-22", PLATFORMS[name], "rosimpact.toml")
         for name in names
@@ -112,7 +112,7 @@ def report_of(hits, files, names=NAMES, **changes) -> Report:
         packages=packages,
         rules=lambda: tuple(RULES.values()),
         seconds=0.42,
-        excerpt=sources.excerpt,
+        excerpt=sources.read_excerpt,
     )
     return report._replace(**changes)
 

@@ -3,13 +3,13 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.analysis.report import cells
-from rosimpact.impact.report.columns import UNBROKEN, LinePart, laid_out, shortened
+from rosimpact.impact.analysis.report import measure
+from rosimpact.impact.report.columns import UNBROKEN, LinePart, lay_out, shorten_path
 from rosimpact.impact.report.style import PLAIN
 
 
 def lines(pieces, width, indent=2, hang=4):
-    return list(laid_out(pieces, PLAIN._replace(width=width), indent, hang))
+    return list(lay_out(pieces, PLAIN._replace(width=width), indent, hang))
 
 
 PIECES = [
@@ -62,7 +62,7 @@ def test_a_piece_with_a_hang_begins_where_it_stands():
     ],
 )
 def test_a_path_loses_its_middle(path, room, said):
-    assert shortened(path, room) == said
+    assert shorten_path(path, room) == said
 
 
 WORDS = st.lists(st.sampled_from(("a", "of", "漢字漢字", "condition_12")), min_size=1, max_size=12).map(" ".join)
@@ -72,4 +72,4 @@ WORDS = st.lists(st.sampled_from(("a", "of", "漢字漢字", "condition_12")), m
 def test_no_word_is_lost_and_no_line_too_long(texts, width):
     found = lines(list(map(LinePart, texts)), width)
     assert " ".join(found).split() == " ".join(texts).split()
-    assert all(cells(line) <= width for line in found)
+    assert all(measure(line) <= width for line in found)

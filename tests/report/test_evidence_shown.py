@@ -59,7 +59,7 @@ ON = PAIR.targets
 )  # fmt: skip
 def test_lines(changes, expected):
     finding = Finding("r", "error", "p", "a.cpp", 1, 1, "x", (), "m", evidence=PAIR._replace(**changes))
-    assert [f"{label}: {line}" for label, line in evidence.lines(finding)] == expected
+    assert [f"{label}: {line}" for label, line in evidence.format_lines(finding)] == expected
 
 
 def resting_on(report, evidence):
@@ -76,7 +76,7 @@ def told(team):
 
 def test_json_has_it_whole(told):
     data = json.loads(json_report.render(told))
-    jsonschema.validate(data, json.loads(json_report.schema()))
+    jsonschema.validate(data, json.loads(json_report.render_schema()))
     (found,) = (finding["evidence"] for finding in data["findings"] if "evidence" in finding)
     assert found == {
         "package": "rclcpp",

@@ -50,7 +50,7 @@ def test_every_format_takes_any_text(findings, lines):
 
 @pytest.fixture(scope="module")
 def schema():
-    validator = jsonschema.Draft202012Validator(json.loads(findings_json.schema()))
+    validator = jsonschema.Draft202012Validator(json.loads(findings_json.render_schema()))
     validator.check_schema(validator.schema)
     return validator
 
@@ -60,14 +60,14 @@ def test_json_follows_the_published_schema(report, schema):
 
 
 def test_json_of_a_failed_run_is_valid(schema):
-    data = json.loads(findings_json.failure("0.1.0", "", "there is no folder `x`"))
+    data = json.loads(findings_json.render_failure("0.1.0", "", "there is no folder `x`"))
     schema.validate(data)
     assert data["failure"] == "there is no folder `x`"
     assert data["findings"] == []
 
 
 def test_the_documented_schema_is_the_shipped_one():
-    assert (ROOT / "docs/findings.schema.json").read_text() == findings_json.schema()
+    assert (ROOT / "docs/findings.schema.json").read_text() == findings_json.render_schema()
 
 
 def test_json_has_every_documented_field(team):
@@ -265,7 +265,7 @@ def test_markdown_counts_what_it_leaves_out(large):
     ],
 )
 def test_verdict(quiet, changes, verdict):
-    assert markdown.verdict(quiet._replace(**changes)) == verdict
+    assert markdown.format_verdict(quiet._replace(**changes)) == verdict
 
 
 @pytest.mark.parametrize(
@@ -279,14 +279,14 @@ def test_verdict(quiet, changes, verdict):
     ],
 )
 def test_escaped(text, expected):
-    assert markdown.escaped(text) == expected
+    assert markdown.escape_markdown(text) == expected
 
 
 @pytest.mark.parametrize(
     ("text", "expected"), [("a", "`a`"), ("a`b", "``a`b``"), ("`a`", "`` `a` ``"), ("a``b", "```a``b```")]
 )
 def test_code(text, expected):
-    assert markdown.code(text) == expected
+    assert markdown.quote(text) == expected
 
 
 def test_hostile_text_makes_no_markup_in_markdown(hostile):

@@ -10,8 +10,8 @@ from rosimpact.impact.analysis.downstream import Effect, Impact
 from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget
 from rosimpact.impact.model.flow.graph import Coverage as FlowCoverage
 from rosimpact.impact.report import github, markdown
-from rosimpact.impact.report.impact import markdown as impact_markdown
-from rosimpact.impact.report.markdown_text import cell, code, escaped
+from rosimpact.impact.report.impact import render_markdown as impact_markdown
+from rosimpact.impact.report.markdown_text import escape_markdown, format_cell, quote
 from rosimpact.impact.rules.rule import Finding
 
 COVERAGE = FlowCoverage(0, 0, 0, 0)
@@ -46,7 +46,7 @@ def nothing_of_theirs(text, ours=("<sub>", "</sub>")):
 
 @given(NAMES, NAMES)
 def test_text_stays_text(name, other):
-    line = f"- {escaped(f'`{name}` is gone in {other}, see `{other}`')} end"
+    line = f"- {escape_markdown(f'`{name}` is gone in {other}, see `{other}`')} end"
     nothing_of_theirs(line, ())
     kinds = [token.type for token in READER.parse(line)]
     assert kinds == ["bullet_list_open", "list_item_open", "paragraph_open", "inline", "paragraph_close",
@@ -57,13 +57,14 @@ def test_text_stays_text(name, other):
 
 @given(NAMES)
 def test_code_cannot_be_left(name):
-    line = f"a {code(name)} b"
+    line = f"a {quote(name)} b"
     assert [token.type for token in tokens(line)][2:-1] == ["text", "code_inline", "text"]
 
 
 @given(NAMES, NAMES)
 def test_a_cell_stays_one_cell(name, other):
-    table = f"| a | b |\n|---|---|\n| {cell(code(name))} | {cell(escaped(f'`{other}` is {name}'))} |\n"
+    cells = format_cell(quote(name)), format_cell(escape_markdown(f"`{other}` is {name}"))
+    table = f"| a | b |\n|---|---|\n| {cells[0]} | {cells[1]} |\n"
     assert sum(token.type == "td_open" for token in tokens(table)) == 2
     nothing_of_theirs(table, ())
 
@@ -83,9 +84,9 @@ def test_reports_have_nothing_of_theirs(name, other):
     report = report_of(name, other)
     shape = [token.type for token in READER.parse(markdown.render(report))]
     assert shape == [token.type for token in READER.parse(markdown.render(report_of("a", "b")))]
-    nothing_of_theirs(github.step_summary(report))
+    nothing_of_theirs(github.render_step_summary(report))
     nothing_of_theirs(markdown.render(report))
-    nothing_of_theirs(f"{markdown.verdict(report._replace(failure=name))}", ())
+    nothing_of_theirs(f"{markdown.format_verdict(report._replace(failure=name))}", ())
     effect = Effect("topic", "changed", name, name, other, 3, "", (), (), ())
     nothing_of_theirs(impact_markdown(Impact((effect,), (), 0, 0, COVERAGE)))
 
@@ -102,4 +103,4 @@ def test_reports_have_nothing_of_theirs(name, other):
     ],
 )
 def test_words_that_github_links_are_code(text, expected):
-    assert escaped(text) == expected
+    assert escape_markdown(text) == expected

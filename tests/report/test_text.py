@@ -5,9 +5,9 @@ import subprocess
 import sys
 
 import pytest
-from rosimpact.impact.analysis.report import Coverage, ReportedTarget, cells, pointed
+from rosimpact.impact.analysis.report import Coverage, ReportedTarget, locate_subject, measure
 from rosimpact.impact.report import text
-from rosimpact.impact.report.style import PLAIN, style_for
+from rosimpact.impact.report.style import PLAIN, choose_style
 from rosimpact.impact.rules.rule import Finding
 
 TEAM = """\
@@ -52,7 +52,7 @@ def test_team(team):
 
 
 def test_ascii_where_the_stream_is_ascii(team):
-    style = style_for(io.TextIOWrapper(io.BytesIO(), encoding="ascii"))
+    style = choose_style(io.TextIOWrapper(io.BytesIO(), encoding="ascii"))
     assert text.render(team, style).isascii()
 
 
@@ -144,7 +144,7 @@ POINTED = [
 
 @pytest.mark.parametrize(("line", "column", "subject", "expected"), POINTED)
 def test_pointed(line, column, subject, expected):
-    assert pointed(line, column, subject)[1:] == expected
+    assert locate_subject(line, column, subject)[1:] == expected
 
 
 @pytest.mark.parametrize(
@@ -158,9 +158,9 @@ def test_the_caret_stands_under_the_subject_whatever_is_before_it(quiet, line, c
     caret = next(index for index, row in enumerate(rows) if set(row.strip()) == set("| ^"))
     shown, under = rows[caret - 1], rows[caret]
     offset = under.index("^")
-    before = next(end for end in range(len(shown)) if cells(shown[:end]) == offset and shown[end : end + 1] == "x")
+    before = next(end for end in range(len(shown)) if measure(shown[:end]) == offset and shown[end : end + 1] == "x")
     assert shown[before] == "x"
-    assert cells(shown) <= 80
+    assert measure(shown) <= 80
 
 
 class Terminal(io.StringIO):
@@ -186,7 +186,7 @@ def test_colour_only_for_a_terminal(team, monkeypatch, stream, environment, colo
     monkeypatch.setenv("TERM", "xterm")
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    assert ("\x1b[" in text.render(team, style_for(stream))) is coloured
+    assert ("\x1b[" in text.render(team, choose_style(stream))) is coloured
 
 
 def test_the_text_report_loads_nothing_heavy():

@@ -20,13 +20,13 @@ def test_near_names_are_those_that_a_comparison_of_all_finds(namespaces):
     near = NearNames([(name, name) for name in names], namespaces=namespaces)
     for one in names:
         same = [n for n in names if is_slip_of_name(one, n) or (namespaces and is_in_namespace(one, n))]
-        assert list(near.near(one)) == same
+        assert list(near.find_near(one)) == same
 
 
 def test_very_long_names_are_near_to_nothing():
     near = NearNames([("a" * 1_000_000, 1), ("scan", 2)], namespaces=True)
-    assert list(near.near("a" * 999_999)) == []
-    assert list(near.near("scna")) == ([2] if is_slip_of_name("scna", "scan") else [])
+    assert list(near.find_near("a" * 999_999)) == []
+    assert list(near.find_near("scna")) == ([2] if is_slip_of_name("scna", "scan") else [])
 
 
 MANIFEST = """<package format="3"><name>{}</name><version>1.0.0</version><description>d</description>

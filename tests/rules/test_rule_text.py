@@ -5,7 +5,7 @@ import re
 import pytest
 from rosimpact.impact.analysis.findings import merge_diagnostics
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Diagnostic, Rule, all_rules
+from rosimpact.impact.rules.rule import Diagnostic, Rule, load_rules
 from rosimpact.impact.rules.severity import Doubt
 from rosimpact.impact.rules.text import Text, list_names, render_template
 
@@ -113,7 +113,7 @@ def test_diagnostics_are_merged_by_their_data(diagnostics, expected):
 )
 def test_doubts_lower_the_usual_severity(usual, doubts, expected):
     rule = RULE._replace(severity=usual)
-    assert rule.severity_of(Diagnostic(None, "f", doubts=doubts)) == expected
+    assert rule.compute_severity(Diagnostic(None, "f", doubts=doubts)) == expected
 
 
 @pytest.mark.parametrize(
@@ -130,7 +130,7 @@ def test_a_diagnostic_without_its_text_or_data_is_refused(diagnostic, complaint)
 
 
 def test_every_template_of_every_rule_can_be_rendered():
-    for rule in all_rules().values():
+    for rule in load_rules().values():
         for kind, text in rule.texts.items():
             names = re.findall(r"\{(\w+):[a-z ]{3,}\}", text.message + text.help)
             message, help = text.render([("", dict.fromkeys(text.fields, 1) | dict.fromkeys(names, ("x",)))])

@@ -17,8 +17,8 @@ import rule_cases
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.report import Report
 from rosimpact.impact.analysis.session import Options
-from rosimpact.impact.rules.rule import all_rules
-from rosimpact.impact.targets.machine.loader import own_machine
+from rosimpact.impact.rules.rule import load_rules
+from rosimpact.impact.targets.machine.loader import detect_machine
 from rule_cases import Case
 
 OTHERS = Path(__file__).parent / "other_rules.txt"
@@ -39,7 +39,7 @@ def run(tmp_path_factory, made_elf, cache) -> Run:
             machine, path, *needed = line.split()
             file = folder / "install" / path
             file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_bytes(made_elf(own_machine() if machine == "here" else machine, needed))
+            file.write_bytes(made_elf(detect_machine() if machine == "here" else machine, needed))
         return folder
 
     checked: dict[tuple[Path, str], Report] = {}
@@ -101,8 +101,8 @@ def test_other_rules_are_known_of_cases_that_exist():
 
 
 def test_every_rule_has_a_case_that_reports_and_one_that_does_not():
-    assert {case.rule for case in CASES if case.findings} == set(all_rules())
-    assert {case.rule for case in CASES if not case.findings} == set(all_rules())
+    assert {case.rule for case in CASES if case.findings} == set(load_rules())
+    assert {case.rule for case in CASES if not case.findings} == set(load_rules())
 
 
 def test_cases_in_which_nothing_is_reported_are_as_many_as_the_others():
@@ -112,7 +112,7 @@ def test_cases_in_which_nothing_is_reported_are_as_many_as_the_others():
 
 @each_case
 def test_a_case_lies_in_the_folder_of_its_rules_family(case: Case):
-    assert all_rules()[case.rule].family == case.family
+    assert load_rules()[case.rule].family == case.family
 
 
 def test_a_run_that_analysed_nothing_fails(run: Run):
@@ -123,7 +123,7 @@ def test_a_run_that_analysed_nothing_fails(run: Run):
 
 
 # As files of cases are called, so that `-k removed_header` selects all that is about a rule.
-@pytest.mark.parametrize("rule", all_rules().values(), ids=lambda rule: rule.name.replace("-", "_"))
+@pytest.mark.parametrize("rule", load_rules().values(), ids=lambda rule: rule.name.replace("-", "_"))
 def test_documentation_has_its_sections(rule):
     text = rule.documentation
     assert text.startswith(f"{rule.name}: ")

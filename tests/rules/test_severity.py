@@ -5,7 +5,7 @@ from typing import cast
 import pytest
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.model.view import TargetView
-from rosimpact.impact.rules.severity import Doubt, doubts_of_place, severity
+from rosimpact.impact.rules.severity import Doubt, limit_severity, list_place_doubts
 
 
 @pytest.mark.parametrize(
@@ -20,13 +20,13 @@ from rosimpact.impact.rules.severity import Doubt, doubts_of_place, severity
     ],
 )
 def test_lowest_counts(doubts, expected):
-    assert severity(*doubts) == expected
-    assert severity(*reversed(doubts)) == expected
+    assert limit_severity(*doubts) == expected
+    assert limit_severity(*reversed(doubts)) == expected
 
 
 def test_false_is_no_doubt():
     with pytest.raises(TypeError, match="known or"):
-        severity(False)
+        limit_severity(False)
 
 
 class _Place:
@@ -35,10 +35,10 @@ class _Place:
     def __init__(self, ros: int):
         self.ros = ros
 
-    def built(self, role):
+    def is_built(self, role):
         return role in ("build", "run") or (role == "test" and self.ros == 2)
 
-    def certain(self, conditions):
+    def is_sure(self, conditions):
         return all(condition.text.startswith("known") for condition in conditions)
 
 
@@ -60,4 +60,4 @@ _IF = Condition("cpp", "X_VERSION > 3")
     ],
 )
 def test_doubts_of_a_place(ros, role, conditions, expected):
-    assert doubts_of_place(cast(TargetView, _Place(ros)), role, conditions) == expected
+    assert list_place_doubts(cast(TargetView, _Place(ros)), role, conditions) == expected

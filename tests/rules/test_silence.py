@@ -13,7 +13,7 @@ import rule_cases
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
 from rosimpact.impact.cli.app import app
-from rosimpact.impact.rules.rule import all_rules
+from rosimpact.impact.rules.rule import load_rules
 from rule_cases import Case
 from typer.testing import CliRunner
 
@@ -1126,7 +1126,7 @@ def test_what_is_left_alone(row: Silent, cache: Path):
     def reports(files: Files) -> bool:
         """Whether the rule reports something, for most rules above a note."""
         options = Options(targets=row.targets, preview=True, cache=cache, select=(row.rule,))
-        quiet = () if all_rules()[row.rule].severity == "note" else ("note",)
+        quiet = () if load_rules()[row.rule].severity == "note" else ("note",)
         return any(finding.severity not in quiet for finding in rule_cases.check_files(files, options).findings)
 
     assert not reports(row.files)

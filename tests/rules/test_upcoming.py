@@ -23,7 +23,7 @@ def severities(*upcoming, packages=("dock",)):
     yielded = [("r", each._replace(package=name)) for name in packages for each in rate_upcoming(upcoming)]
     lowered = lower_repeats(yielded, {"r": rule})
     lowered.sort(key=lambda each: (packages.index(each[1].package), each[1].at.line))
-    return [rule.severity_of(diagnostic) for _, diagnostic in lowered]
+    return [rule.compute_severity(diagnostic) for _, diagnostic in lowered]
 
 
 def test_the_first_of_a_kind_is_a_warning():

@@ -57,7 +57,7 @@ def worker(pipe, address, name, folder, hold, digest):
 
     jobs.run = run
     if digest:
-        cluster.code_digest = lambda: digest
+        cluster.compute_code_digest = lambda: digest
     asyncio.run(work())
 
 

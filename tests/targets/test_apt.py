@@ -1,9 +1,9 @@
 """The graph of apt packages and what CMake's find modules look for: how both are built and read."""
 
 import pytest
-from rosimpact.databuild.apt import condensed, graph, inferred
-from rosimpact.databuild.find_modules import looked_for
-from rosimpact.impact.targets.providers.apt import Apt, apt_of
+from rosimpact.databuild.apt import build_graph, infer_packages, reduce_dependencies
+from rosimpact.databuild.find_modules import find_requirements
+from rosimpact.impact.targets.providers.apt import Apt, load_apt
 
 BOOKWORM = {
     "libsled-dev": ("libsled1", "libdog-dev"),
@@ -26,12 +26,12 @@ KEYS = frozenset({"libsled-dev", "libdog-dev", "libqt4-dev", "libpyside-dev"})
     ],
 )
 def test_packages_in_between_are_left_out(wanted, found):
-    assert condensed(BOOKWORM, frozenset(wanted)) == found
+    assert reduce_dependencies(BOOKWORM, frozenset(wanted)) == found
 
 
 def test_a_package_brings_another_when_all_of_its_names_come_along():
     names = [("libqt4-dev", "libpyside-dev"), ("libqt4-dev", "libpyside-dev", "libx"), ("libqt4-dev", "libpyside-dev")]
-    assert inferred([*names, ("libx",), ("libx", "libqt4-dev")]) == {"libpyside-dev": {"libqt4-dev"}}
+    assert infer_packages([*names, ("libx",), ("libx", "libqt4-dev")]) == {"libpyside-dev": {"libqt4-dev"}}
 
 
 @pytest.mark.parametrize(
@@ -46,15 +46,15 @@ def test_a_package_brings_another_when_all_of_its_names_come_along():
     ],
 )
 def test_a_platform_without_an_index_takes_what_any_suite_says(platform, package, brought):
-    made = graph({"debian bookworm": BOOKWORM, "debian trixie": TRIXIE}, KEYS, {"libpyside-dev": {"libqt4-dev"}})
-    assert Apt(made, platform).brought_by(package) == brought
+    made = build_graph({"debian bookworm": BOOKWORM, "debian trixie": TRIXIE}, KEYS, {"libpyside-dev": {"libqt4-dev"}})
+    assert Apt(made, platform).list_added(package) == brought
 
 
 def test_what_builds_is_everywhere():
-    made = graph({"debian bookworm": BOOKWORM}, KEYS, {})
+    made = build_graph({"debian bookworm": BOOKWORM}, KEYS, {})
     assert Apt(made, "debian bookworm").base == {"build-essential", "gcc"}
-    assert {"g++", "make", "patch", "libc6-dev"} <= apt_of("ubuntu jammy").base
-    assert not {"git", "pkg-config", "cmake"} & apt_of("ubuntu jammy").base
+    assert {"g++", "make", "patch", "libc6-dev"} <= load_apt("ubuntu jammy").base
+    assert not {"git", "pkg-config", "cmake"} & load_apt("ubuntu jammy").base
 
 
 @pytest.mark.parametrize(
@@ -71,4 +71,4 @@ def test_what_builds_is_everywhere():
     ],
 )  # fmt: skip
 def test_what_a_find_module_requires(text, found):
-    assert looked_for(text.encode()) == found
+    assert find_requirements(text.encode()) == found

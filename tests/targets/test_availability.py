@@ -1,7 +1,7 @@
 """Is it there, on this target? One answer for all kinds of names, from what is shipped."""
 
 import pytest
-from rosimpact.impact.targets.availability import Availabilities, Symbol, coming_changes, horizons
+from rosimpact.impact.targets.availability import Availabilities, Symbol, find_coming_changes, list_horizons
 from rosimpact.impact.targets.distro.distro import DistroTarget
 
 OLD, NEW = "tf2_geometry_msgs/tf2_geometry_msgs.h", "tf2_geometry_msgs/tf2_geometry_msgs.hpp"
@@ -43,7 +43,7 @@ TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
     ],
 )  # fmt: skip
 def test_how_a_target_stands_to_a_symbol(distro, symbol, state, since, replacement):
-    found = Availabilities(DistroTarget(distro)).of(symbol)
+    found = Availabilities(DistroTarget(distro)).find_availability(symbol)
     assert found.state == state
     assert since is None or state == "present" or found.since == since
     assert replacement is None or state == "present" or found.replacement == replacement
@@ -52,19 +52,19 @@ def test_how_a_target_stands_to_a_symbol(distro, symbol, state, since, replaceme
 def test_what_will_go_is_upcoming_on_the_nearest_horizon():
     field = Symbol("field", "srv/SwitchController.Request.start_asap", ("controller_manager_msgs",))
     there = Symbol("c++", "CV_LOAD_IMAGE_COLOR")
-    melodic = Availabilities(DistroTarget("melodic")).on_horizon(there)
+    melodic = Availabilities(DistroTarget("melodic")).find_on_horizon(there)
     assert (melodic.state, melodic.library) == ("upcoming", True)
     assert melodic.horizon is not None and (melodic.horizon.name, melodic.horizon.platform) == ("noetic", True)
     assert melodic.evidence is not None and melodic.evidence.ahead
     # What packages of the newest distro lack is no matter of an update.
-    humble = Availabilities(DistroTarget("humble")).on_horizon(Symbol("header", OLD, TF2))
+    humble = Availabilities(DistroTarget("humble")).find_on_horizon(Symbol("header", OLD, TF2))
     assert humble.state == "deprecated"
     # But a command of CMake that warns already is left in time.
     command = Symbol("command", "ament_target_dependencies", ("ament_cmake_target_dependencies",))
     distros = (DistroTarget(name) for name in ("jazzy", "kilted", "lyrical"))
-    ahead = [Availabilities(distro).on_horizon(command).state for distro in distros]
+    ahead = [Availabilities(distro).find_on_horizon(command).state for distro in distros]
     assert ahead == ["present", "upcoming", "removed"]
-    assert Availabilities(DistroTarget("noetic")).on_horizon(field).state == "unknown"
+    assert Availabilities(DistroTarget("noetic")).find_on_horizon(field).state == "unknown"
 
 
 @pytest.mark.parametrize(
@@ -77,28 +77,28 @@ def test_what_will_go_is_upcoming_on_the_nearest_horizon():
     ],
 )
 def test_the_newest_distro_is_a_horizon_for_its_platform(target, asked, expected):
-    found = [one for one in horizons(target, asked) if not one.soon]
+    found = [one for one in list_horizons(target, asked) if not one.soon]
     assert [(one.name, one.platform, one.far) for one in found] == expected
 
 
 def test_a_date_has_a_next_sync_and_an_update():
-    soon, later, newest = horizons(DistroTarget("iron", "2023-06-04"))
+    soon, later, newest = list_horizons(DistroTarget("iron", "2023-06-04"))
     assert (soon.name, soon.soon) == ("the next sync of iron", True)
     assert later.name.startswith("iron of 20") and not later.soon and not later.platform
     assert newest.platform
 
 
 def test_a_target_answers_itself():
-    assert DistroTarget("jazzy").availability(Symbol("package", "rclcpp")).state == "present"
+    assert DistroTarget("jazzy").find_availability(Symbol("package", "rclcpp")).state == "present"
 
 
 def test_what_the_next_sync_removes_is_asked_of_the_packages_that_wait_for_it():
     target = DistroTarget("rolling", "2023-04-05")
     assert "SHARED_PTR_DEFINITIONS" not in {change.old for change in target.changes()}
-    (soon,) = (ahead for ahead in horizons(target) if ahead.soon)
-    coming = coming_changes(target, soon)
+    (soon,) = (ahead for ahead in list_horizons(target) if ahead.soon)
+    coming = find_coming_changes(target, soon)
     assert "SHARED_PTR_DEFINITIONS" in {change.old for change in coming}
     # What is gone already does not go again.
     assert not {(change.kind, change.package, change.old) for change in coming} & target.changes().removed.keys()
     assert target.changes().removed
-    assert soon.target.identity() != target.identity()
+    assert soon.target.compute_identity() != target.compute_identity()

@@ -3,13 +3,13 @@
 import re
 
 import pytest
-from rosimpact.impact.facts.usage import places_of_use
-from rosimpact.impact.targets.changes import DISTROS, all_uses, behaves_differently
+from rosimpact.impact.facts.usage import find_use_places
+from rosimpact.impact.targets.changes import DISTROS, behaves_differently, load_uses
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.distro.known import releases
-from rosimpact.impact.targets.version import at_least
+from rosimpact.impact.targets.distro.known import list_releases
+from rosimpact.impact.targets.version import is_at_least
 
-ROWS = all_uses("behaviour")
+ROWS = load_uses("behaviour")
 
 # label: a use that is found, and one like it that is not
 EXAMPLES = {
@@ -101,7 +101,7 @@ EXAMPLES = {
 
 
 def found(label: str, code: str) -> int:
-    return len(list(places_of_use(code.encode(), ROWS[label].pattern)))
+    return len(list(find_use_places(code.encode(), ROWS[label].pattern)))
 
 
 def test_every_row_has_an_example():
@@ -120,14 +120,14 @@ def test_each_row_says_who_says_so_and_what_is_other_now(label):
     assert re.match(r"https://[\w./#-]+\Z", row.source)
     assert row.pattern.clause and not row.pattern.clause.endswith(".") and len(row.pattern.clause) < 140
     assert (row.pattern.language == "python") == bool(row.pattern.imports)
-    assert label not in all_uses()
+    assert label not in load_uses()
 
 
 @pytest.mark.parametrize("label", [label for label, row in ROWS.items() if not row.library])
 def test_versions_of_ros_packages_lie_between_released_ones(label):
     row = ROWS[label]
-    versions = [version for _, version in releases(row.package)]
-    assert row.removed_in in DISTROS or {at_least(version, row.removed_in) for version in versions} == {True, False}
+    versions = [version for _, version in list_releases(row.package)]
+    assert row.removed_in in DISTROS or {is_at_least(version, row.removed_in) for version in versions} == {True, False}
 
 
 def test_a_target_has_it_or_not_or_has_not_the_package():

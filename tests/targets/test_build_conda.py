@@ -31,7 +31,7 @@ def test_pins_of_a_linux_build(text, pins):
      ("cxx_compiler_version", "gcc"), ("yaml", ""), ("yaml_cpp", "yaml-cpp")],
 )  # fmt: skip
 def test_the_library_of_a_pin(pin, library):
-    assert conda.library_of(pin, ["boost", "eigen3", "gcc", "opencv", "qt6", "tinyxml", "yaml-cpp"]) == library
+    assert conda.find_library(pin, ["boost", "eigen3", "gcc", "opencv", "qt6", "tinyxml", "yaml-cpp"]) == library
 
 
 RELEASES = {"2024-01-01": "3.9.1", "2024-02-01": "3.10.0", "2024-03-01": "4.0.0"}
@@ -43,7 +43,7 @@ RELEASES = {"2024-01-01": "3.9.1", "2024-02-01": "3.10.0", "2024-03-01": "4.0.0"
      ("2.1", "2024-01-15", "2.1"), ("2022", "2024-01-15", "2022"), ("any", "2024-01-15", "")],
 )  # fmt: skip
 def test_what_a_pin_means_on_a_day(pin, day, version):
-    assert conda.exact_version(pin, day, RELEASES) == version
+    assert conda.resolve_version(pin, day, RELEASES) == version
 
 
 def commit(repository, path, text, day):

@@ -8,14 +8,14 @@ import tarfile
 import pytest
 from rosimpact.databuild import debian
 from rosimpact.databuild.libraries import Packaged, Run, read_packages
-from rosimpact.impact.targets.changes import all_rows, all_uses, changes_in_force
+from rosimpact.impact.targets.changes import changes_in_force, load_rows, load_uses
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.evidence import evidence_of, holds_on
-from rosimpact.impact.targets.providers.libraries import system_libraries
-from rosimpact.impact.targets.providers.providers import default_providers
+from rosimpact.impact.targets.evidence import holds_on, make_evidence
+from rosimpact.impact.targets.providers.libraries import load_libraries
+from rosimpact.impact.targets.providers.providers import load_providers
 from rosimpact.impact.targets.snapshot import DATA
 from rosimpact.impact.targets.target import ChangeInForce
-from rosimpact.impact.targets.version import at_least, parts
+from rosimpact.impact.targets.version import is_at_least, parse
 
 OLD = """#pragma once
 #define YAML_OLD_MACRO_NAME 1
@@ -72,7 +72,7 @@ def put(folder, release, package, files):
 @pytest.fixture
 def archive(tmp_path, monkeypatch):
     # What some ROS package has is not told of; reading all that is shipped would take its time.
-    monkeypatch.setattr(debian, "_of_ros_packages", lambda: frozenset({"YAML::Taken", "yaml-cpp/taken.h"}))
+    monkeypatch.setattr(debian, "_collect_ros_names", lambda: frozenset({"YAML::Taken", "yaml-cpp/taken.h"}))
     folder = tmp_path / "debian"
     away = "namespace YAML { class Faraway {}; }"
     first = {"yaml-cpp/all.h": OLD, "yaml-cpp/old.h": "namespace YAML { class Holder {}; class Keeper {}; }"}
@@ -143,7 +143,7 @@ def tagged(folder, tags):
 
 
 def test_versions_before_the_first_packaged_one_are_read_at_their_tags(archive, tmp_path, monkeypatch):
-    monkeypatch.setattr(debian, "platform_versions", lambda name: frozenset({"1.0.1", "1.3.1"}))
+    monkeypatch.setattr(debian, "list_platform_versions", lambda name: frozenset({"1.0.1", "1.3.1"}))
     early = {
         "include/yaml-cpp/all.h": OLD + "namespace YAML { class Ancient {}; class Holder {}; }",
         "include/yaml-cpp/lost.h": "",
@@ -187,7 +187,7 @@ def test_a_folder_in_which_nothing_was_read_is_refused(tmp_path, capsys):
     ],
 )
 def test_the_version_of_the_library_itself(version, expected):
-    assert debian.upstream(version) == expected
+    assert debian.extract_upstream_version(version) == expected
 
 
 # -- what is shipped ---------------------------------------------------------------------------------------------------
@@ -195,24 +195,24 @@ def test_the_version_of_the_library_itself(version, expected):
 
 def test_shipped_rows_name_the_interval_and_a_library_whose_version_platforms_tell():
     platforms = (DATA / "platform_versions.yaml").read_text()
-    derived = [row for row in (*all_rows(), *all_uses().values()) if row.last_in]
+    derived = [row for row in (*load_rows(), *load_uses().values()) if row.last_in]
     assert len(derived) > 300
     for row in derived:
-        assert row.library and parts(row.last_in) < parts(row.removed_in) and at_least(row.removed_in, row.last_in)
-        known = f"\n    {row.package}: {{version:" in platforms or system_libraries().versions(row.package)
+        assert row.library and parse(row.last_in) < parse(row.removed_in) and is_at_least(row.removed_in, row.last_in)
+        known = f"\n    {row.package}: {{version:" in platforms or load_libraries().list_versions(row.package)
         assert known, row.package
         assert row.last_in in row.source and row.removed_in in row.source
 
 
 def test_what_people_reviewed_comes_before_what_was_derived():
-    derived = {row.old for row in all_rows() if row.last_in}
-    reviewed = {row.old for row in all_rows() if not row.last_in and row.library}
+    derived = {row.old for row in load_rows() if row.last_in}
+    reviewed = {row.old for row in load_rows() if not row.last_in and row.library}
     assert not derived & reviewed
 
 
 def test_the_evidence_gives_the_interval():
-    row = next(row for row in all_rows() if row.last_in and row.kind == "api-removed")
-    evidence = evidence_of(
+    row = next(row for row in load_rows() if row.last_in and row.kind == "api-removed")
+    evidence = make_evidence(
         ChangeInForce(row.kind, row.package, row.old, row.new, "removed", row.removed_in, "", row.source, True)
     )
     assert (evidence.last, evidence.first) == (row.last_in, row.removed_in)
@@ -224,9 +224,9 @@ def test_the_evidence_gives_the_interval():
     [("noetic", False), ("humble", None), ("jazzy", True)],
 )
 def test_of_a_version_between_two_packaged_ones_nothing_is_said(distro, expected):
-    use = all_uses()["cv::aruco::detectMarkers with 8 arguments"]
+    use = load_uses()["cv::aruco::detectMarkers with 8 arguments"]
     change = ChangeInForce(use.kind, use.package, use.old, "", "removed", "4.6.0", "", use.source, True)
-    assert holds_on(evidence_of(change), DistroTarget(distro), default_providers()) is expected
+    assert holds_on(make_evidence(change), DistroTarget(distro), load_providers()) is expected
 
 
 @pytest.mark.parametrize(

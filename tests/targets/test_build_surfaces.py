@@ -7,7 +7,7 @@ import pytest
 from rosimpact.databuild import surfaces as build_surfaces
 from rosimpact.databuild.jobs import Job, run
 from rosimpact.databuild.surface.clones import Clones
-from rosimpact.databuild.surfaces import all_distros, build, plan
+from rosimpact.databuild.surfaces import build, list_distros, plan
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
 from rosimpact.impact.targets.surface.changes import Line
 from rosimpact.impact.targets.surface.store import StoredSurfacesError, SurfaceHistory, Surfaces
@@ -50,7 +50,7 @@ def clones(tmp_path, monkeypatch):
     monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
     for repository, name in (("ros2+rclcpp", "rclcpp"), ("ros-perception+vision_opencv", "cv_bridge")):
         for distro in ("humble", "jazzy"):
-            version = DistroTarget(distro).version(name)
+            version = DistroTarget(distro).find_version(name)
             release(tmp_path / "clones" / repository, name, version, f"void of_{distro}();")
     return Clones(tmp_path / "clones")
 
@@ -58,14 +58,14 @@ def clones(tmp_path, monkeypatch):
 def test_each_clone_is_one_job_that_can_be_sent_away(clones):
     jobs, missing = plan(clones, ("humble", "jazzy"), ("rclcpp", "cv_bridge", "nav2_core"))
     assert [(job.name, [(s.revision.rpartition("/")[2], s.approximate) for s in job.states]) for job in jobs] == [
-        (name, [(DistroTarget(distro).version(package), False) for distro in ("humble", "jazzy")])
+        (name, [(DistroTarget(distro).find_version(package), False) for distro in ("humble", "jazzy")])
         for name, package in (("ros-perception/vision_opencv", "cv_bridge"), ("ros2/rclcpp", "rclcpp"))
     ]
     assert missing == tuple(
-        f"nav2_core {DistroTarget(distro).version('nav2_core')} {distro}" for distro in ("humble", "jazzy")
+        f"nav2_core {DistroTarget(distro).find_version('nav2_core')} {distro}" for distro in ("humble", "jazzy")
     )
     again: Job = pickle.loads(pickle.dumps(jobs[1]))
-    assert again.key() == jobs[1].key()
+    assert again.compute_key() == jobs[1].compute_key()
     assert run(again) == run(jobs[1])
 
 
@@ -75,9 +75,9 @@ def test_what_is_written(clones, tmp_path):
     built = build(clones, ("humble", "jazzy"), file, jobs=1, progress=lambda *told: seen.append(told))
     assert (built.packages, built.versions, built.approximate) == (2, 4, 0)
     assert [told[1:] for told in seen] == [(1, 2), (2, 2)]
-    history = Surfaces(file).history("rclcpp", 2)
-    old, new = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
-    assert history.names() == {"of_humble": (old,), "of_jazzy": (new,), "rclcpp/a.hpp": (old, new)}
+    history = Surfaces(file).find_history("rclcpp", 2)
+    old, new = (DistroTarget(distro).find_version("rclcpp") for distro in ("humble", "jazzy"))
+    assert history.index_names() == {"of_humble": (old,), "of_jazzy": (new,), "rclcpp/a.hpp": (old, new)}
     assert [path.name for path in file.parent.iterdir()] == ["surfaces.sqlite"]
     # Packages of the same repositories that this clone does not have are told.
     assert any(line.startswith("rclcpp_action ") for line in built.failed)
@@ -90,8 +90,8 @@ def test_packages_of_another_file_are_written_too(clones, tmp_path):
     built = build(clones, ("humble",), second, jobs=1, onto=first)
     assert (built.packages, built.versions) == (2, 3)
     written = Surfaces(second)
-    assert len(written.history("rclcpp", 2).versions) == 2
-    assert len(written.history("cv_bridge", 2).versions) == 1
+    assert len(written.find_history("rclcpp", 2).versions) == 2
+    assert len(written.find_history("cv_bridge", 2).versions) == 1
     assert written.about.distros == "humble jazzy"
     (tmp_path / "text").write_text("no file of surfaces")
     with pytest.raises(StoredSurfacesError, match=r"text: no file of surfaces .*surface build"):
@@ -123,14 +123,14 @@ def test_a_stopped_run_goes_on(clones, tmp_path, monkeypatch):
 def test_a_moved_tag_is_read_again(clones, tmp_path):
     file = tmp_path / "surfaces.sqlite"
     build(clones, ("humble",), file, ("rclcpp",), 1)
-    version = DistroTarget("humble").version("rclcpp")
+    version = DistroTarget("humble").find_version("rclcpp")
     git(clones.folder / "ros2+rclcpp", "tag", "-f", version, "HEAD")
     build(Clones(clones.folder), ("humble",), file, ("rclcpp",), 1)
-    assert "of_jazzy" in Surfaces(file).history("rclcpp", 2).names()
+    assert "of_jazzy" in Surfaces(file).find_history("rclcpp", 2).index_names()
 
 
 def test_versions_of_one_package_in_two_clones_are_one_job(clones, tmp_path):
-    older, newer = (DistroTarget(distro).version("rclcpp") for distro in ("jazzy", "kilted"))
+    older, newer = (DistroTarget(distro).find_version("rclcpp") for distro in ("jazzy", "kilted"))
     release(clones.folder / "ros2-gbp+any-release", "rclcpp", f"release/kilted/rclcpp/{newer}-1", "void of_kilted();")
     (job,), missing = plan(Clones(clones.folder), ("jazzy", "kilted"), ("rclcpp",))
     assert [(state.clone, state.version) for state in job.states] == [
@@ -145,7 +145,7 @@ def test_versions_of_one_package_in_two_clones_are_one_job(clones, tmp_path):
 
 def test_all_versions_that_a_distro_ever_had(clones):
     folder = clones.folder / "ros2+rclcpp"
-    had = list(dict.fromkeys(version for _, version in DistroTarget("humble").history("rclcpp")))
+    had = list(dict.fromkeys(version for _, version in DistroTarget("humble").list_releases("rclcpp")))
     for version in had[:2]:
         release(folder, "rclcpp", version, f"int of_{version.replace('.', '_')};")
     git(folder, "branch", "humble")
@@ -168,7 +168,7 @@ def test_all_versions_that_a_distro_ever_had(clones):
 def test_a_version_belongs_to_the_generations_of_ros_that_had_it(tmp_path, monkeypatch):
     monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
     for distro in ("noetic", "jazzy"):
-        release(tmp_path / "clones" / "ros+angles", "angles", DistroTarget(distro).version("angles"), "void f();")
+        release(tmp_path / "clones" / "ros+angles", "angles", DistroTarget(distro).find_version("angles"), "void f();")
     (job,), _ = plan(Clones(tmp_path / "clones"), ("noetic", "jazzy"), ("angles",))
     assert [state.generations for state in job.states] == [(1,), (2,)]
 
@@ -189,14 +189,15 @@ def test_one_version_of_two_repositories_is_two_states(tmp_path, monkeypatch):
     ]
     packages = run(job).packages
     has = {
-        ros: SurfaceHistory("", packed.data, packed.includes).names().keys() for (_, ros), packed in packages.items()
+        ros: SurfaceHistory("", packed.data, packed.includes).index_names().keys()
+        for (_, ros), packed in packages.items()
     }
     assert ["one" in has[1], "two" in has[1], "one" in has[2], "two" in has[2]] == [True, False, False, True]
 
 
 def test_a_package_of_ros_1_is_no_state_of_a_ros_2_version(tmp_path, monkeypatch):
     monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
-    version = DistroTarget("jazzy").version("angles")
+    version = DistroTarget("jazzy").find_version("angles")
     release(tmp_path / "clones" / "ros+angles", "angles", version, "void f();", "catkin")
     (job,), _ = plan(Clones(tmp_path / "clones"), ("jazzy",), ("angles",))
     result = run(job)
@@ -206,4 +207,4 @@ def test_a_package_of_ros_1_is_no_state_of_a_ros_2_version(tmp_path, monkeypatch
 
 def test_an_unknown_distro():
     with pytest.raises(TargetError, match="`jazy` is no distro; known are "):
-        all_distros(("jazy",))
+        list_distros(("jazy",))

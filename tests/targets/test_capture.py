@@ -10,14 +10,14 @@ import socket
 import pytest
 from rosimpact.impact.targets.capture import (
     CapturedMachine,
-    as_target,
     capture,
-    differences,
-    from_dpkg,
+    dump_capture,
+    find_differences,
     load_capture,
-    plain,
+    make_target,
     read,
-    to_json,
+    read_dpkg_rows,
+    strip_version,
 )
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
 
@@ -76,8 +76,8 @@ def test_the_distro(tmp_path, listing, environment, distro):
 
 
 def test_the_file_is_sorted_and_free_of_names_and_paths(tmp_path):
-    text = to_json(machine_of(tmp_path, AMENT_PREFIX_PATH=str(tmp_path)))
-    assert text == to_json(machine_of(tmp_path, AMENT_PREFIX_PATH=str(tmp_path)))
+    text = dump_capture(machine_of(tmp_path, AMENT_PREFIX_PATH=str(tmp_path)))
+    assert text == dump_capture(machine_of(tmp_path, AMENT_PREFIX_PATH=str(tmp_path)))
     data = json.loads(text)
     assert list(data) == sorted(data) and list(data["packages"]) == sorted(data["packages"])
     for secret in (str(tmp_path), getpass.getuser() + "@", socket.gethostname()):
@@ -86,11 +86,15 @@ def test_the_file_is_sorted_and_free_of_names_and_paths(tmp_path):
 
 def test_written_and_read_back(tmp_path):
     machine = machine_of(tmp_path)
-    (tmp_path / "laptop.json").write_text(to_json(machine))
+    (tmp_path / "laptop.json").write_text(dump_capture(machine))
     assert read(tmp_path / "laptop.json") == machine
     target = load_capture(tmp_path / "laptop.json")
-    assert target.name == "laptop" and target.version("rclcpp") == "16.0.8" and target.library("opencv") == "4.5.4"
-    assert target.version("nav2_core") is not None, "what is not installed can still be installed"
+    assert (
+        target.name == "laptop"
+        and target.find_version("rclcpp") == "16.0.8"
+        and target.find_library("opencv") == "4.5.4"
+    )
+    assert target.find_version("nav2_core") is not None, "what is not installed can still be installed"
 
 
 @pytest.mark.parametrize(
@@ -134,9 +138,9 @@ def test_a_file_larger_than_its_limit_is_named(tmp_path):
 @pytest.mark.parametrize("date", ["0001-01-01", "9999-12-31"])
 def test_the_first_and_the_last_day_of_all(date):
     target = DistroTarget("humble", date, versions={"opencv": "9" * 5000, "rclcpp": "9" * 5000 + ".1"})
-    assert target.version("rclcpp")
-    assert target.library("opencv") == "9" * 5000
-    assert differences(DistroTarget("humble"), target)
+    assert target.find_version("rclcpp")
+    assert target.find_library("opencv") == "9" * 5000
+    assert find_differences(DistroTarget("humble"), target)
 
 
 @pytest.mark.parametrize(
@@ -144,34 +148,34 @@ def test_the_first_and_the_last_day_of_all(date):
     [("1:4.5.4+dfsg-9", "4.5.4"), ("3.10.6-1~22.04", "3.10.6"), ("16.0.8", "16.0.8"), ("4:11.2.0-1ubuntu1", "11.2.0")],
 )
 def test_plain_versions(version, expected):
-    assert plain(version) == expected
+    assert strip_version(version) == expected
 
 
 def test_the_first_package_that_tells_a_library_counts():
     rows = [("libvtk7-dev", "7.1.1"), ("libvtk9-dev", "9.1.0"), ("libboost-dev", "1.74.0.3ubuntu7")]
-    _, _, libraries, matter = from_dpkg(rows)
+    _, _, libraries, matter = read_dpkg_rows(rows)
     assert libraries["vtk"] == "9.1.0" and matter["libvtk9-dev"] == "9.1.0" and "libvtk7-dev" not in matter
 
 
 def test_packages_of_ros_in_debian_are_of_no_distro():
     own = [("ros-image-proc", "1.17.0-6"), ("ros-image-publisher", "1.17.0-6")]
-    assert from_dpkg(own)[:2] == ("", {})
-    assert from_dpkg([*own, ("ros-noetic-roscpp", "1.16.0-1focal")])[:2] == ("noetic", {"roscpp": "1.16.0"})
+    assert read_dpkg_rows(own)[:2] == ("", {})
+    assert read_dpkg_rows([*own, ("ros-noetic-roscpp", "1.16.0-1focal")])[:2] == ("noetic", {"roscpp": "1.16.0"})
 
 
 def test_differences():
     humble = DistroTarget("humble", "2024-03-01")
-    other = humble.changed(versions={"opencv": "4.9", "rclcpp": "99.0"}, name="other")
-    found = {(d.kind, d.name): (d.first, d.second) for d in differences(humble, other)}
+    other = humble.copy_with_changes(versions={"opencv": "4.9", "rclcpp": "99.0"}, name="other")
+    found = {(d.kind, d.name): (d.first, d.second) for d in find_differences(humble, other)}
     assert found[("library", "opencv")][1] == "4.9"
     assert found[("package", "rclcpp")][1] == "99.0"
     assert len(found) == 2
-    assert differences(humble, humble) == []
+    assert find_differences(humble, humble) == []
     assert ("platform", "ubuntu jammy", "ubuntu noble") in {
-        (d.name, d.first, d.second) for d in differences(humble, DistroTarget("jazzy"))
+        (d.name, d.first, d.second) for d in find_differences(humble, DistroTarget("jazzy"))
     }
 
 
 def test_a_machine_without_a_distro_is_no_target():
     with pytest.raises(TargetError, match="names no ROS distro"):
-        as_target(CapturedMachine("", "", "", {}, {}, {}, {}, {}), "x", "x.json")
+        make_target(CapturedMachine("", "", "", {}, {}, {}, {}, {}), "x", "x.json")

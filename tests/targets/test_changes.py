@@ -6,14 +6,14 @@ import re
 import pytest
 from rosimpact.impact.targets.changes import (
     DISTROS,
-    all_rows,
     changes_in_force,
-    excuses,
-    transitive_includes,
+    list_excuses,
+    load_rows,
+    load_transitive,
 )
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.snapshot import DATA
-from rosimpact.impact.targets.version import parts
+from rosimpact.impact.targets.version import parse
 
 
 def states(target, old):
@@ -84,14 +84,14 @@ def test_a_change_says_what_instead_and_where_from():
     (change,) = (c for c in changes_in_force(DistroTarget("noetic", versions={"opencv": "4.2"})) if c.old == "CV_AA")
     assert (change.kind, change.package, change.new, change.version) == ("api-removed", "opencv", "cv::LINE_AA", "4.2")
     assert "OpenCV 4.0" in change.source
-    assert "imgproc/imgproc_c.h" in excuses(change)
+    assert "imgproc/imgproc_c.h" in list_excuses(change)
 
 
 def reviewed_rows():
     """The rows of data/changes.json, without those that other files of the folder derive from release tags."""
     groups = json.loads((DATA / "changes.json").read_text())["changes"]
     names = {(group["kind"], group["package"], name) for group in groups for name in group["names"]}
-    return [row for row in all_rows() if (row.kind, row.package, row.old) in names]
+    return [row for row in load_rows() if (row.kind, row.package, row.old) in names]
 
 
 def test_every_row_is_complete():
@@ -102,7 +102,7 @@ def test_every_row_is_complete():
             wrong.append((row, "incomplete"))
         if not (row.removed_in or row.deprecated_in or row.new_since or row.kind.startswith(("header", "msg"))):
             wrong.append((row, "never in force"))
-        if any(b not in DISTROS and b != "ros2" and not parts(b) for b in bounds):
+        if any(b not in DISTROS and b != "ros2" and not parse(b) for b in bounds):
             wrong.append((row, "no version and no distro"))
         if row.library and any(b in DISTROS for b in bounds):
             wrong.append((row, "a library has versions, no distros"))
@@ -129,13 +129,13 @@ def test_no_name_twice_for_one_package():
 
 
 def test_transitive_includes_are_complete():
-    assert not [row for row in transitive_includes() if not (row.name and row.headers and row.since and row.source)]
-    by_name = {row.name: row for row in transitive_includes()}
+    assert not [row for row in load_transitive() if not (row.name and row.headers and row.since and row.source)]
+    by_name = {row.name: row for row in load_transitive()}
     assert by_name["uint32_t"].headers[0] == "cstdint"
     assert by_name["uint32_t"].since == "13"
 
 
 def test_what_one_table_does_not_say_of_a_name_is_taken_from_the_other():
     # ceres/manifold.h came with 2.1 and local_parameterization.h went with 2.2; the special table tells the latter.
-    (row,) = [row for row in all_rows() if (row.kind, row.old) == ("header-removed", "ceres/local_parameterization.h")]
+    (row,) = [row for row in load_rows() if (row.kind, row.old) == ("header-removed", "ceres/local_parameterization.h")]
     assert (row.removed_in, row.new_since) == ("2.2", "2.1")

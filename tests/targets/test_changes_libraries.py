@@ -2,10 +2,10 @@
 
 import msgspec
 import pytest
-from rosimpact.impact.targets.changes import all_rows, changes_in_force, transitive_includes
+from rosimpact.impact.targets.changes import changes_in_force, load_rows, load_transitive
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.snapshot import DATA
-from rosimpact.impact.targets.version import at_least, parts
+from rosimpact.impact.targets.version import is_at_least, parse
 
 
 class Machine(DistroTarget):
@@ -16,10 +16,10 @@ class Machine(DistroTarget):
         self.distro, self.ros, self.python_major = "noetic", 1, python_major
         self.libraries = {name.replace("_", "-"): version for name, version in libraries.items()}
 
-    def version(self, package):
+    def find_version(self, package):
         return None
 
-    def library(self, name):
+    def find_library(self, name):
         return self.libraries.get(name)
 
 
@@ -96,13 +96,13 @@ def test_states(machine: Machine, kind: str, name: str, expected: str) -> None:
 
 
 def test_constants_of_the_c_api_are_excused_by_its_headers() -> None:
-    rows = {row.old: row for row in all_rows() if row.package == "opencv"}
+    rows = {row.old: row for row in load_rows() if row.package == "opencv"}
     assert "imgproc/types_c.h" in rows["CV_BGR2GRAY"].unless
     assert any(ending.endswith("highgui_c.h") for ending in rows["CV_WINDOW_AUTOSIZE"].unless)
 
 
 def test_standard_names_are_told_by_the_header_that_defines_them_first() -> None:
-    rows = {row.name: row for row in transitive_includes() if row.library == "gcc"}
+    rows = {row.name: row for row in load_transitive() if row.library == "gcc"}
     assert rows["uint32_t"].since == "13" and rows["uint32_t"].headers[0] == "cstdint"
     assert rows["std::mutex"].headers[0] == "mutex"
     assert rows["std::condition_variable"].headers == ("condition_variable",)
@@ -116,6 +116,6 @@ def test_every_row_of_the_file_states_its_source_and_orders_its_versions() -> No
         assert any(group.get(key) for key in ("removed_in", "deprecated_in", "new_since")), group["source"]
         for earlier, later in (("deprecated_in", "removed_in"), ("removed_in", "back_in")):
             if group.get(earlier) and group.get(later):
-                assert parts(group[earlier]) != parts(group[later])
-                assert at_least(group[later], group[earlier]), (group["source"], earlier, later)
+                assert parse(group[earlier]) != parse(group[later])
+                assert is_at_least(group[later], group[earlier]), (group["source"], earlier, later)
         assert all(old != new for old, new in group["names"].items()), group["source"]

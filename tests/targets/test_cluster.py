@@ -9,7 +9,7 @@ import cluster_process
 import pytest
 from late import Late
 from rosimpact.databuild import cluster
-from rosimpact.databuild.cluster import ClusterError, done_by
+from rosimpact.databuild.cluster import ClusterError, run_on_cluster
 from rosimpact.databuild.surface.clones import Clones
 from rosimpact.databuild.surfaces import build, plan
 from rosimpact.impact.targets.distro.distro import DistroTarget
@@ -105,7 +105,7 @@ def start(tmp_path, monkeypatch):
 def clones(tmp_path):
     """Clones of eight repositories, each with the version that humble has."""
     for package, repository in PACKAGES.items():
-        version = DistroTarget("humble").version(package)
+        version = DistroTarget("humble").find_version(package)
         release(tmp_path / "clones" / repository, package, version, f"void of_{package}();")
     return Clones(tmp_path / "clones")
 
@@ -210,7 +210,7 @@ def test_a_job_that_its_workers_do_not_survive_is_named(start, clones):
     cluster.ready(2)
     jobs, _ = plan(clones, ("humble",), ("rclcpp",))
     deadly = jobs[0]._replace(name="deadly")
-    results = {job.name: result for job, result in done_by(cluster.address, [deadly, jobs[0]])}
+    results = {job.name: result for job, result in run_on_cluster(cluster.address, [deadly, jobs[0]])}
     assert results["deadly"] == ({}, ("deadly: every worker that reads it dies, so it is left out",))
     assert set(results["ros2/rclcpp"].packages) == {("rclcpp", 2)}
 
@@ -221,7 +221,7 @@ def test_workers_that_cannot_do_it(start, clones, tmp_path, monkeypatch):
 
     def refused(job=job):
         with pytest.raises(ClusterError) as error:
-            list(done_by(cluster_.address, [job]))
+            list(run_on_cluster(cluster_.address, [job]))
         assert cluster_.journal("end") == []
         return str(error.value).removeprefix(f"--dask {cluster_.address}: ")
 
@@ -239,7 +239,7 @@ def test_workers_that_cannot_do_it(start, clones, tmp_path, monkeypatch):
     # One of two has other code.
     cluster_.worker("other", digest="0123456789")
     cluster_.ready(2)
-    here = cluster.CodeState.here()
+    here = cluster.CodeState.detect()
     other = f"has {here._replace(digest='0123456789')}, and here is {here}; install there what is installed here"
     assert other in refused()
 
@@ -253,10 +253,10 @@ def test_there_is_no_cluster(clones, monkeypatch):
         "nothing://127.0.0.1:1": "unknown address scheme",
     }.items():
         with pytest.raises(ClusterError, match=f"--dask {address}: {reason}"):
-            next(done_by(address, [job]))
+            next(run_on_cluster(address, [job]))
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(ClusterError, match=r"pip install 'rosimpact\[cluster\]'"):
-        next(done_by("tcp://127.0.0.1:1", [job]))
+        next(run_on_cluster("tcp://127.0.0.1:1", [job]))
 
 
 def test_what_is_done_needs_no_cluster(clones, tmp_path):
@@ -269,4 +269,4 @@ def test_what_is_done_needs_no_cluster(clones, tmp_path):
     with pytest.raises(KeyboardInterrupt):
         build(clones, *asked, 1, stop)
     assert build(clones, *asked, dask="tcp://127.0.0.1:1").packages == 8
-    assert "of_rclcpp" in Surfaces(tmp_path / "surfaces").history("rclcpp", 2).names()
+    assert "of_rclcpp" in Surfaces(tmp_path / "surfaces").find_history("rclcpp", 2).index_names()

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from rosimpact.databuild.commands import find_commands
-from rosimpact.impact.targets.providers.providers import default_providers
+from rosimpact.impact.targets.providers.providers import load_providers
 
 AMENT = "<export><build_type>ament_cmake</build_type></export>"
 
@@ -30,7 +30,7 @@ def test_functions_of_packages(tmp_path: Path):
 
 def test_shipped_commands():
     """What every workspace calls is known, and what CMake defines itself is nobody's."""
-    commands = default_providers().commands
+    commands = load_providers().commands
     assert commands[1]["catkin_package"] == "catkin" and commands[1]["catkin_add_gtest"] == "catkin"
     assert commands[2]["ament_package"] == "ament_cmake_core"
     assert "add_library" not in commands[1] and "pkg_check_modules" not in commands[1]

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.databuild import keys, manifests, releases
 from rosimpact.databuild.git import BuildError
-from rosimpact.databuild.snapshot import build, status, update
+from rosimpact.databuild.snapshot import build, read_status, update
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.snapshot import Snapshot
-from rosimpact.impact.targets.surface.store import shipped
+from rosimpact.impact.targets.surface.store import load_shipped
 
 INDEX = """\
 %YAML 1.1
@@ -200,7 +200,7 @@ STATES = [
 @pytest.mark.parametrize(("distro", "day", "expected"), STATES)
 def test_what_is_released_when(built, distro, day, expected):
     target = DistroTarget(distro, day, data=built[2])
-    assert {name: target.version(name) for name in target.released_names()} == expected
+    assert {name: target.find_version(name) for name in target.list_released()} == expected
 
 
 def test_the_result_says_what_was_read(built):
@@ -218,7 +218,7 @@ def test_the_result_says_what_was_read(built):
 )
 def test_manifests_of_every_branch(built, day, expected):
     target = DistroTarget("humble", day, data=built[2])
-    found = target.dependencies("rclcpp")
+    found = target.list_dependencies("rclcpp")
     assert {d.name for d in found} == expected
     assert {d.bounds for d in found if d.name == "gtest"} == {(("version_gte", "1.2"),)}
     assert target.build_type("rclcpp") == "ament_cmake"
@@ -242,7 +242,7 @@ def test_rosdep_rules_over_time(built, day, platform, key, expected):
 def test_platforms_and_sources(built):
     target = DistroTarget("humble", "2022-06-10", data=built[2])
     assert target.platform == "ubuntu jammy"
-    assert target.repository("rclcpp") == ("rclcpp", "https://r", "main")
+    assert target.find_repository("rclcpp") == ("rclcpp", "https://r", "main")
 
 
 def test_a_second_build_gives_the_same_bytes(built, rosdistro, meta_ros):
@@ -311,16 +311,19 @@ def test_update_adds_newer_syncs_and_rules(built, online, tmp_path):
     assert found.syncs == ("humble/2022-10-01",)
     after = Snapshot(tmp_path / "up", tmp_path / "cache")
     target = DistroTarget("humble", "2022-10-01", data=after)
-    assert {name: target.version(name) for name in target.released_names()} == {"rclcpp": "3.0.0", "brand_new": "3.0.0"}
-    assert not DistroTarget("humble", "2022-09-30", data=after).released_names()
+    assert {name: target.find_version(name) for name in target.list_released()} == {
+        "rclcpp": "3.0.0",
+        "brand_new": "3.0.0",
+    }
+    assert not DistroTarget("humble", "2022-09-30", data=after).list_released()
     today = DistroTarget("humble", data=after)
     assert today.resolve("boost").packages == ("libboost-new",)
     assert today.resolve("new-key").packages == ("new",)
     assert today.resolve("b-pip") is None
-    assert DistroTarget("groovy", data=after).version("roscpp") == "1.2.0"
-    assert status(after).updated
-    assert status(after).last_syncs == {"humble": "2022-10-01"}
-    assert status(after).surfaces == shipped().about._asdict()
+    assert DistroTarget("groovy", data=after).find_version("roscpp") == "1.2.0"
+    assert read_status(after).updated
+    assert read_status(after).last_syncs == {"humble": "2022-10-01"}
+    assert read_status(after).surfaces == load_shipped().about._asdict()
 
 
 def test_update_tells_what_failed_and_keeps_the_rest(built, online, tmp_path):

@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 from rosimpact.impact.targets.distro.distro import DistroTarget, TargetError
-from rosimpact.impact.targets.distro.known import known_distros
+from rosimpact.impact.targets.distro.known import list_known_distros
 
 
 def target(text, **more):
@@ -31,7 +31,7 @@ VERSIONS = [
 
 @pytest.mark.parametrize(("text", "package", "version"), VERSIONS)
 def test_version(text, package, version):
-    assert target(text).version(package) == version
+    assert target(text).find_version(package) == version
 
 
 COUNTS = [  # packages in the distribution file of the last sync or, without syncs, of the last commit
@@ -45,12 +45,12 @@ COUNTS = [  # packages in the distribution file of the last sync or, without syn
 
 @pytest.mark.parametrize(("text", "count"), COUNTS)
 def test_released_names(text, count):
-    assert len(target(text).released_names()) == count
+    assert len(target(text).list_released()) == count
 
 
 def test_a_release_counts_from_the_sync_that_brought_it():
     day_before, day = DistroTarget("humble", "2026-08-06"), DistroTarget("humble", "2026-08-07")
-    assert day_before.released_names() != day.released_names()
+    assert day_before.list_released() != day.list_released()
     assert not day_before.approximate
     assert not day.approximate
 
@@ -67,27 +67,27 @@ def test_a_date_before_the_first_release_is_moved_with_a_note():
     early = target("jazzy@2020-01-01")
     assert early.date == "2024-04-19"
     assert early.notes == ("jazzy had no release on 2020-01-01: moved to its first, 2024-04-19",)
-    assert early.version("rclcpp")
+    assert early.find_version("rclcpp")
 
 
 def test_a_date_after_the_data_is_answered_with_a_note():
     late = target("jazzy@2199-01-01")
-    assert late.version("rclcpp") == target("jazzy").version("rclcpp")
+    assert late.find_version("rclcpp") == target("jazzy").find_version("rclcpp")
     assert "ends on" in late.notes[0]
 
 
-@pytest.mark.parametrize("known", known_distros(), ids=lambda known: known.name)
+@pytest.mark.parametrize("known", list_known_distros(), ids=lambda known: known.name)
 def test_every_distro_answers(known):
     found = DistroTarget(known.name)
-    assert found.released_names()
+    assert found.list_released()
     assert found.platform
-    assert found.library("cmake")
+    assert found.find_library("cmake")
     assert found.resolve("boost")
     assert found.ros == known.ros
 
 
 def test_distros_are_listed_by_age():
-    names = [known.name for known in known_distros()]
+    names = [known.name for known in list_known_distros()]
     assert names.index("kinetic") < names.index("melodic") < names.index("noetic")
     assert [n for n in names if n in ("humble", "jazzy", "lyrical")] == ["humble", "jazzy", "lyrical"]
     assert len(names) == 21
@@ -144,7 +144,7 @@ LIBRARIES = [
 
 @pytest.mark.parametrize(("text", "library", "version"), LIBRARIES)
 def test_library(text, library, version):
-    assert target(text).library(library) == version
+    assert target(text).find_library(library) == version
 
 
 RESOLVED = [
@@ -167,8 +167,8 @@ def test_resolve(text, platform, key, packages):
 
 
 def test_keys_of_a_debian_package():
-    assert "libopencv-dev" in target("jazzy").keys_of("libopencv-dev")
-    assert target("jazzy").keys_of("no-such-package") == ()
+    assert "libopencv-dev" in target("jazzy").find_keys("libopencv-dev")
+    assert target("jazzy").find_keys("no-such-package") == ()
 
 
 def names(found, kind):
@@ -176,15 +176,15 @@ def names(found, kind):
 
 
 def test_declared_dependencies_with_kinds():
-    found = target("jazzy").dependencies("cv_bridge")
+    found = target("jazzy").list_dependencies("cv_bridge")
     assert {"rclcpp", "sensor_msgs", "libopencv-dev"} <= names(found, "build") & names(found, "exec")
     assert "ament_cmake_gtest" in names(found, "test")
     assert "ament_cmake_gtest" not in names(found, "exec")
 
 
 def test_conditions_are_evaluated_for_the_target():
-    assert "python3-rospkg" in names(target("noetic").dependencies("rosbag"), "exec")
-    assert "python-rospkg" in names(target("melodic").dependencies("rosbag"), "exec")
+    assert "python3-rospkg" in names(target("noetic").list_dependencies("rosbag"), "exec")
+    assert "python-rospkg" in names(target("melodic").list_dependencies("rosbag"), "exec")
 
 
 CONDITIONS = [
@@ -224,99 +224,101 @@ def test_single_comparisons_agree_with_catkin_pkg(text, compare, value):
 
 
 def test_version_bounds_are_kept():
-    bounds = {d.name: d.bounds for d in target("noetic").dependencies("bondcpp")}
+    bounds = {d.name: d.bounds for d in target("noetic").list_dependencies("bondcpp")}
     assert bounds["cmake_modules"] == (("version_gte", "0.3.2"),)
     assert bounds["roscpp"] == ()
 
 
 def test_unknown_manifests():
     assert target("jazzy").knows_manifests is True
-    assert target("jazzy").dependencies("no_such_package") is None
+    assert target("jazzy").list_dependencies("no_such_package") is None
 
 
 def test_manifests_of_distros_without_a_cache():
-    assert "rosconsole" in {d.name for d in target("kinetic").dependencies("roscpp")}
-    assert "boost" in {d.name for d in target("hydro").dependencies("console_bridge")}  # bloom's release repository
+    assert "rosconsole" in {d.name for d in target("kinetic").list_dependencies("roscpp")}
+    assert "boost" in {
+        d.name for d in target("hydro").list_dependencies("console_bridge")
+    }  # bloom's release repository
     # pcl_ros passed the headers of PCL on from 1.1.8 on
     early, late = target("hydro@2014-01-10"), target("hydro@2014-06-01")
-    assert (early.version("pcl_ros"), late.version("pcl_ros")) == ("1.1.7", "1.1.8")
-    passed_on = [{d.name for d in t.dependencies("pcl_ros") if d.kind == "exec"} for t in (early, late)]
+    assert (early.find_version("pcl_ros"), late.find_version("pcl_ros")) == ("1.1.7", "1.1.8")
+    passed_on = [{d.name for d in t.list_dependencies("pcl_ros") if d.kind == "exec"} for t in (early, late)]
     assert ["libpcl-all-dev" in names for names in passed_on] == [False, True]
 
 
 def test_what_a_package_may_bring_in_any_distro():
     jazzy = target("jazzy")
-    assert jazzy.dependencies("orocos_kdl") is None
-    assert "eigen" in jazzy.possible_dependencies("orocos_kdl")
-    assert jazzy.possible_dependencies("no_such_package") == jazzy.possible_dependencies("eigen") == frozenset()
+    assert jazzy.list_dependencies("orocos_kdl") is None
+    assert "eigen" in jazzy.list_possible("orocos_kdl")
+    assert jazzy.list_possible("no_such_package") == jazzy.list_possible("eigen") == frozenset()
     # what only builds it does not come along
-    assert "message_generation" not in target("noetic").possible_dependencies("std_msgs")
+    assert "message_generation" not in target("noetic").list_possible("std_msgs")
 
 
 def test_what_the_next_known_manifest_brings_where_this_version_has_none():
     rolling = target("rolling@2022-12-12")
-    assert "diagnostic_updater" not in {d.name for d in rolling.dependencies("controller_manager")}
-    assert "diagnostic_updater" in rolling.later_dependencies("controller_manager")
-    assert target("rolling").later_dependencies("controller_manager") == frozenset()  # its own is known
-    assert rolling.later_dependencies("no_such_package") == rolling.later_dependencies("eigen") == frozenset()
+    assert "diagnostic_updater" not in {d.name for d in rolling.list_dependencies("controller_manager")}
+    assert "diagnostic_updater" in rolling.list_later_dependencies("controller_manager")
+    assert target("rolling").list_later_dependencies("controller_manager") == frozenset()  # its own is known
+    assert rolling.list_later_dependencies("no_such_package") == rolling.list_later_dependencies("eigen") == frozenset()
 
 
 def test_packages_of_the_other_ros():
-    assert target("rolling").other_generation("eigen_conversions")
-    assert not target("noetic").other_generation("eigen_conversions")
-    assert not target("rolling").other_generation("no_such_package")
+    assert target("rolling").is_other_generation("eigen_conversions")
+    assert not target("noetic").is_other_generation("eigen_conversions")
+    assert not target("rolling").is_other_generation("no_such_package")
 
 
 def test_every_build_type_of_a_package():
-    assert target("groovy").known_build_types("orocos_kdl") == {"cmake"}
-    assert target("noetic").known_build_types("roscpp") == {""}
-    assert target("noetic").known_build_types("no_such_package") == frozenset()
+    assert target("groovy").list_build_types("orocos_kdl") == {"cmake"}
+    assert target("noetic").list_build_types("roscpp") == {""}
+    assert target("noetic").list_build_types("no_such_package") == frozenset()
 
 
 def test_closure_follows_exports_and_ends_at_keys():
-    found = target("jazzy").transitive_dependencies("nav2_bringup", ("exec", "build_export"))
+    found = target("jazzy").list_transitive("nav2_bringup", ("exec", "build_export"))
     assert {"nav2_controller", "rclcpp", "rcl", "tinyxml2_vendor"} <= found
     assert "nav2_bringup" not in found
-    assert target("jazzy").transitive_dependencies("no_such_package") == frozenset()
+    assert target("jazzy").list_transitive("no_such_package") == frozenset()
 
 
 def test_dependencies_of_the_nearest_distro_that_knows_a_package():
     jazzy = target("jazzy")
-    assert jazzy.dependencies("orocos_kdl") is None
-    assert {d.name for d in jazzy.similar_dependencies("orocos_kdl")} >= {"cmake", "eigen"}
-    assert jazzy.similar_dependencies("eigen") is None and jazzy.similar_dependencies("no_such_package") is None
+    assert jazzy.list_dependencies("orocos_kdl") is None
+    assert {d.name for d in jazzy.list_similar("orocos_kdl")} >= {"cmake", "eigen"}
+    assert jazzy.list_similar("eigen") is None and jazzy.list_similar("no_such_package") is None
 
 
 def test_history_and_since():
     jazzy = target("jazzy")
-    steps = jazzy.history("cv_bridge")
-    assert steps[0] == (jazzy.since("cv_bridge"), "4.0.0")
+    steps = jazzy.list_releases("cv_bridge")
+    assert steps[0] == (jazzy.find_first_day("cv_bridge"), "4.0.0")
     assert [day for day, _ in steps] == sorted(day for day, _ in steps)
-    assert jazzy.history("no_such_package") == ()
-    assert jazzy.since("no_such_package") == ""
+    assert jazzy.list_releases("no_such_package") == ()
+    assert jazzy.find_first_day("no_such_package") == ""
 
 
 def test_repository_of_a_package():
-    assert target("humble").repository("rclcpp") == ("rclcpp", "https://github.com/ros2/rclcpp.git", "humble")
+    assert target("humble").find_repository("rclcpp") == ("rclcpp", "https://github.com/ros2/rclcpp.git", "humble")
 
 
 def test_overrides_change_libraries_and_packages():
     robot = target("humble", versions={"opencv": "4.9", "rclcpp": "99.0.0", "own_package": "1.0", "nav2_core": ""})
-    assert robot.library("opencv") == "4.9"
-    assert robot.version("rclcpp") == "99.0.0"
-    assert robot.version("own_package") == "1.0"
-    assert "own_package" in robot.released_names()
-    assert robot.version("nav2_core") is None
-    assert "nav2_core" not in robot.released_names()
-    assert robot.version("opencv") is None  # a library, not a package
-    assert robot.dependencies("rclcpp")
+    assert robot.find_library("opencv") == "4.9"
+    assert robot.find_version("rclcpp") == "99.0.0"
+    assert robot.find_version("own_package") == "1.0"
+    assert "own_package" in robot.list_released()
+    assert robot.find_version("nav2_core") is None
+    assert "nav2_core" not in robot.list_released()
+    assert robot.find_version("opencv") is None  # a library, not a package
+    assert robot.list_dependencies("rclcpp")
 
 
 def test_a_target_travels_between_processes():
     robot = target("humble@2024-03-01", versions={"opencv": "4.9"}, name="robot")
     copy = pickle.loads(pickle.dumps(robot))
-    assert (copy.name, copy.date, copy.library("opencv")) == ("robot", "2024-03-01", "4.9")
-    assert copy.released_names() == robot.released_names()
+    assert (copy.name, copy.date, copy.find_library("opencv")) == ("robot", "2024-03-01", "4.9")
+    assert copy.list_released() == robot.list_released()
 
 
 @pytest.mark.parametrize(
@@ -327,8 +329,8 @@ def test_end_of_life(name, ended):
 
 
 def test_ever_released():
-    assert target("jazzy").ever_released("roscpp")
-    assert not target("jazzy").ever_released("no_such_package")
+    assert target("jazzy").was_ever_released("roscpp")
+    assert not target("jazzy").was_ever_released("no_such_package")
 
 
 @pytest.mark.parametrize(
@@ -343,7 +345,7 @@ def test_ever_released():
     ],
 )
 def test_the_newest_long_term_distro(text, distro):
-    newest = target(text).newest()
+    newest = target(text).find_newest()
     assert (newest.distro if newest is not None else None) == distro
 
 
@@ -358,7 +360,7 @@ def test_the_newest_long_term_distro(text, distro):
 )
 def test_build_type(text, package, here, near):
     machine = target(text)
-    assert (machine.build_type(package), machine.similar_build_type(package)) == (here, near)
+    assert (machine.build_type(package), machine.find_similar_build_type(package)) == (here, near)
 
 
 @pytest.mark.parametrize(
@@ -378,7 +380,7 @@ def test_rosdep_says_nothing_of_systems_that_it_does_not_know(platform, expected
 )  # fmt: skip
 def test_conda_forge_and_robostack_have_versions_by_day(text, platform, library, version):
     distro, day = text.split("@")
-    assert DistroTarget(distro, day, platform).library(library) == version
+    assert DistroTarget(distro, day, platform).find_library(library) == version
 
 
 @pytest.mark.parametrize(
@@ -387,4 +389,4 @@ def test_conda_forge_and_robostack_have_versions_by_day(text, platform, library,
      ("jazzy", "gazebo", ""), ("jazzy", "no-such-key", "")],
 )  # fmt: skip
 def test_keys_that_install_the_same_instead(distro, key, first):
-    assert next(iter(target(distro).keys_instead(key)), "") == first
+    assert next(iter(target(distro).find_replacement_keys(key)), "") == first

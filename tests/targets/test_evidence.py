@@ -4,13 +4,19 @@ import pytest
 from rosimpact.impact.targets import evidence as module
 from rosimpact.impact.targets.changes import changes_in_force
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.distro.known import releases
-from rosimpact.impact.targets.evidence import evidence_of, from_surfaces, of_offered, released_before, seen_on
+from rosimpact.impact.targets.distro.known import list_releases
+from rosimpact.impact.targets.evidence import (
+    add_surfaces,
+    add_target_states,
+    find_release_before,
+    make_evidence,
+    make_offer_evidence,
+)
 from rosimpact.impact.targets.evidence_record import Evidence
-from rosimpact.impact.targets.providers.providers import default_providers
+from rosimpact.impact.targets.providers.providers import load_providers
 from rosimpact.impact.targets.surface.changes import ChangeEvent, ComparedThing, Line
 from rosimpact.impact.targets.surface.offers import Offered
-from rosimpact.impact.targets.version import at_least
+from rosimpact.impact.targets.version import is_at_least
 
 
 def change(target, kind, package, old):
@@ -18,7 +24,7 @@ def change(target, kind, package, old):
 
 
 def seen(evidence, *targets, spoken_of):
-    found = seen_on(evidence, targets, spoken_of, default_providers())
+    found = add_target_states(evidence, targets, spoken_of, load_providers())
     assert found is not None
     return found, [(one.target, one.holds, one.since) for one in found.targets]
 
@@ -26,11 +32,11 @@ def seen(evidence, *targets, spoken_of):
 def test_a_name_of_the_table_tells_between_which_versions_it_went_and_since_when_on_each_target():
     humble, jazzy = DistroTarget("humble"), DistroTarget("jazzy")
     found, on = seen(
-        evidence_of(change(jazzy, "api-removed", "rclcpp", "RCLCPP_SCOPE_EXIT")), humble, jazzy, spoken_of=["jazzy"]
+        make_evidence(change(jazzy, "api-removed", "rclcpp", "RCLCPP_SCOPE_EXIT")), humble, jazzy, spoken_of=["jazzy"]
     )
     assert (found.change, found.package, found.name, found.instead) == (
         "removed", "rclcpp", "RCLCPP_SCOPE_EXIT", "RCPPUTILS_SCOPE_EXIT")  # fmt: skip
-    assert not at_least(found.last, found.first) and found.source
+    assert not is_at_least(found.last, found.first) and found.source
     assert on == [("humble", False, ""), ("jazzy", True, "2024-05-23")]
 
 
@@ -38,7 +44,7 @@ def test_a_day_before_the_change_says_when_it_comes():
     """message_filters/subscriber.hpp came to jazzy within its life."""
     early, late = DistroTarget("jazzy", "2024-08-01"), DistroTarget("jazzy")
     row = next(c for c in changes_in_force(early) if c.new == "message_filters/subscriber.hpp" and c.state == "absent")
-    _, on = seen(evidence_of(row), early, late, spoken_of=["jazzy@2024-08-01"])
+    _, on = seen(make_evidence(row), early, late, spoken_of=["jazzy@2024-08-01"])
     (name, before, coming), (_, after, since) = on
     assert (name, before, after) == ("jazzy@2024-08-01", False, True)
     assert coming == since > "2024-08-01"
@@ -57,7 +63,7 @@ def test_what_the_versions_contradict_is_not_shown():
     rumour = Evidence("rclcpp", "removed", "rclcpp::nothing", first="99.0.0", source="hearsay")
     found, on = seen(rumour, humble, spoken_of=["humble"])
     assert (found.first, found.last, on, found.source) == ("", "", [], "hearsay")
-    assert seen_on(rumour._replace(source=""), [humble], ["humble"], default_providers()) is None
+    assert add_target_states(rumour._replace(source=""), [humble], ["humble"], load_providers()) is None
 
 
 def test_of_what_is_to_come_the_targets_do_not_have_it_yet():
@@ -69,10 +75,10 @@ def test_of_what_is_to_come_the_targets_do_not_have_it_yet():
 def test_libraries_come_with_the_distro():
     noetic = DistroTarget("noetic")
     row = next(c for c in changes_in_force(noetic) if c.package == "opencv" and c.library and c.old == "CV_BGR2GRAY")
-    _, on = seen(evidence_of(row), noetic, spoken_of=["noetic"])
+    _, on = seen(make_evidence(row), noetic, spoken_of=["noetic"])
     assert on == [("noetic", True, "2020-05-23")]
     robot = DistroTarget("noetic", versions={"opencv": "4.9"}, name="robot")
-    assert seen(evidence_of(row), robot, spoken_of=["robot"])[1] == [("robot", True, "")]
+    assert seen(make_evidence(row), robot, spoken_of=["robot"])[1] == [("robot", True, "")]
 
 
 def test_a_version_that_was_given_has_no_day():
@@ -85,17 +91,17 @@ def test_a_use_has_its_label_and_bound():
     rolling = DistroTarget("rolling")
     known = [c for c in changes_in_force(rolling) if c.kind == "call-changed"]
     use = next(c for c in known if c.package == "message_filters" and c.state == "removed")
-    found = evidence_of(use)
+    found = make_evidence(use)
     assert (found.change, found.name, found.first[:1].isdigit()) == ("removed", use.old, True)
 
 
 def test_the_version_before_is_one_of_the_same_generation():
-    both = {ros for ros, _ in releases("tf2")}
+    both = {ros for ros, _ in list_releases("tf2")}
     assert both == {1, 2}
-    first = sorted((v for ros, v in releases("tf2") if ros == 2 and v.startswith("0.36.")), key=len)[0]
-    before = released_before("tf2", first)
-    assert (2, before) in releases("tf2") and not at_least(before, first)
-    assert released_before("tf2", "123.4.5") == ""
+    first = sorted((v for ros, v in list_releases("tf2") if ros == 2 and v.startswith("0.36.")), key=len)[0]
+    before = find_release_before("tf2", first)
+    assert (2, before) in list_releases("tf2") and not is_at_least(before, first)
+    assert find_release_before("tf2", "123.4.5") == ""
 
 
 def line(*versions, approximate=(), **names):
@@ -112,17 +118,17 @@ class Store:
     def __init__(self, one):
         self.one = one
 
-    def line(self, package, ros):
+    def find_line(self, package, ros):
         return self.one if ros == 2 else None
 
-    def history(self, package, ros):
+    def find_history(self, package, ros):
         return None
 
 
 @pytest.fixture
 def stored(monkeypatch):
     def put(one):
-        monkeypatch.setattr(module, "shipped", lambda: Store(one))
+        monkeypatch.setattr(module, "load_shipped", lambda: Store(one))
 
     return put
 
@@ -140,14 +146,14 @@ def stored(monkeypatch):
 )
 def test_stored_versions_tell_what_no_person_did(stored, change, events, expected):
     stored(line("2.4.3", "16.0.19", "28.1.21", "31.0.3", name=events))
-    found = from_surfaces(Evidence("rclcpp", change, "name", side="c++"), DistroTarget("jazzy"))
+    found = add_surfaces(Evidence("rclcpp", change, "name", side="c++"), DistroTarget("jazzy"))
     assert (found.stored, (found.last, found.first)) == ((True, expected) if expected else (False, ("", "")))
 
 
 def test_a_bound_that_a_person_found_is_finer_than_the_stored_versions(stored):
     stored(line("16.0.19", "28.1.21", name=[(1, "removed")]))
     asked = Evidence("rclcpp", "removed", "name", side="c++", last="19.3.0", first="20.0.0")
-    found = from_surfaces(asked, DistroTarget("jazzy"))
+    found = add_surfaces(asked, DistroTarget("jazzy"))
     assert (found.last, found.first, found.stored) == ("19.3.0", "20.0.0", False)
 
 
@@ -163,7 +169,7 @@ def test_between_stored_versions_nothing_is_claimed(stored):
 
 def test_a_branch_that_stood_for_a_version_tells_no_version(stored):
     stored(line("16.0.19", "28.1.21", approximate=("28.1.21",), name=[(1, "removed")]))
-    found = from_surfaces(Evidence("rclcpp", "removed", "name", side="c++", source="who knows"), DistroTarget("jazzy"))
+    found = add_surfaces(Evidence("rclcpp", "removed", "name", side="c++", source="who knows"), DistroTarget("jazzy"))
     assert (found.last, found.first, found.stored) == ("", "", False)
 
 
@@ -171,6 +177,6 @@ def test_what_a_target_offers_is_evidence(stored):
     stored(line("16.0.19", "21.0.8", "28.1.21", name=[(2, "removed")]))
     offered = Offered("rclcpp", "c++", "name", "function", "removed", "28.1.21", None, None, "21.0.8", "28.1.21", None,
                       "", "", (), "other", "", True)  # fmt: skip
-    found, on = seen(of_offered(offered), DistroTarget("humble"), DistroTarget("jazzy"), spoken_of=["jazzy"])
+    found, on = seen(make_offer_evidence(offered), DistroTarget("humble"), DistroTarget("jazzy"), spoken_of=["jazzy"])
     assert (found.change, found.instead, found.last, found.first) == ("removed", "other", "21.0.8", "28.1.21")
     assert [target[:2] for target in on] == [("humble", False), ("jazzy", True)]

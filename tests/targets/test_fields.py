@@ -2,8 +2,8 @@
 
 import pygit2
 import pytest
-from rosimpact.databuild.fields import read_repository, table
-from rosimpact.impact.targets.surface.fields import FieldsHistory, before, default_fields, there
+from rosimpact.databuild.fields import build_table, read_repository
+from rosimpact.impact.targets.surface.fields import FieldsHistory, covers, load_fields, was_there_before
 
 MANIFEST = """<package format="3"><name>arm_msgs</name><version>{}</version>
 <buildtool_depend>{}</buildtool_depend></package>"""
@@ -35,7 +35,7 @@ def released(folder, versions: dict[str, tuple[str, str, dict[str, str]]]) -> di
         named = {f"arm_msgs/{path}": text for path, text in files.items()}
         made = commit(repository, {**named, "arm_msgs/package.xml": MANIFEST.format(version, tool)})
         repository.references.create(f"refs/tags/{tag}", made)
-    return table(read_repository(repository, frozenset({"arm_msgs"})))
+    return build_table(read_repository(repository, frozenset({"arm_msgs"})))
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def history(tmp_path) -> FieldsHistory:
     [("1.9.9", None), ("2.0.0", 0), ("2.5.0", 0), ("3.0.0", 1), ("9.9.9", 1), ("10.0.0", 2), ("11.0.0", 2)],
 )
 def test_a_version_has_the_state_of_the_last_change_before_it(history, version, state):
-    assert history.state(version) == state
+    assert history.find_state(version) == state
 
 
 @pytest.mark.parametrize(
@@ -76,24 +76,24 @@ def test_a_version_has_the_state_of_the_last_change_before_it(history, version, 
     ],
 )
 def test_where_a_member_is(history, interface, section, member, states, successor):
-    (row,) = history.definition(interface).members(section, member)
-    assert ([s for s in range(3) if there(row.spans, s)], row.successor) == (states, successor)
+    (row,) = history.find_definition(interface).list_members(section, member)
+    assert ([s for s in range(3) if covers(row.spans, s)], row.successor) == (states, successor)
 
 
 def test_where_an_interface_is(history):
-    spans = {name: [s for s in range(3) if there(history.spans(name), s)] for name in history.interfaces}
+    spans = {name: [s for s in range(3) if covers(history.find_spans(name), s)] for name in history.interfaces}
     assert spans == {"msg/Old": [0], "msg/New": [1, 2], "msg/State": [0, 1, 2], "srv/Start": [0, 1, 2]}
-    assert before(history.spans("msg/Old"), 1)
-    assert not before(history.spans("msg/New"), 0)
+    assert was_there_before(history.find_spans("msg/Old"), 1)
+    assert not was_there_before(history.find_spans("msg/New"), 0)
 
 
 def test_nested_types_are_kept(history):
-    (states,) = history.definition("msg/New").members("message", "states")
+    (states,) = history.find_definition("msg/New").list_members("message", "states")
     assert (states.nested, states.array) == ("arm_msgs/State", True)
 
 
 def test_what_changes(history):
-    assert history.definition("srv/Start").changing == {
+    assert history.find_definition("srv/Start").changing == {
         *("start_arms", "start_now", "use_arms", "use_now", "STRICT", "text"),
     }
 
@@ -117,7 +117,7 @@ def test_what_was_brought_to_an_older_line_may_be_in_its_later_releases(tmp_path
     contents = {"2.0.0": ONE, "2.0.1": TWO, "2.1.0": ONE, "3.0.0": TWO}
     made = released(tmp_path, {v: (v, "ament_cmake", files) for v, files in contents.items()})
     history = FieldsHistory(made["arm_msgs 2"])
-    assert history.may_be_back(history.spans("msg/New"), version) == back
+    assert history.may_be_back(history.find_spans("msg/New"), version) == back
 
 
 @pytest.mark.parametrize(
@@ -151,23 +151,23 @@ KNOWN = [
 
 @pytest.mark.parametrize(("package", "ros", "interface", "section", "member", "having", "lacking"), KNOWN)
 def test_the_shipped_table(package, ros, interface, section, member, having, lacking):
-    history = default_fields().history(package, ros)
-    rows = history.definition(interface).members(section, member)
+    history = load_fields().find_history(package, ros)
+    rows = history.find_definition(interface).list_members(section, member)
     found = {
-        version: any(there(row.spans, history.state(version)) for row in rows)
+        version: any(covers(row.spans, history.find_state(version)) for row in rows)
         for version in (*having.split(), *lacking.split())
     }
     assert found == {**dict.fromkeys(having.split(), True), **dict.fromkeys(lacking.split(), False)}
 
 
 def test_the_shipped_table_is_whole():
-    table = default_fields()
-    for key in table.packages():
+    table = load_fields()
+    for key in table.list_packages():
         package, ros = key.split(" ")
-        history = table.history(package, int(ros))
+        history = table.find_history(package, int(ros))
         states = len(history.starts)
         for interface in history.interfaces:
-            definition = history.definition(interface)
+            definition = history.find_definition(interface)
             spans = [
                 definition.spans,
                 *(r.spans for m in definition.sections.values() for rows in m.values() for r in rows),

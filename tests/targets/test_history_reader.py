@@ -35,7 +35,7 @@ def surfaces(tmp_path):
     for path, text in FILES.items():
         index.add(pygit2.IndexEntry(path, repository.create_blob(text.encode()), pygit2.enums.FileMode.BLOB))
     tree = repository[index.write_tree(repository)]
-    return {surface.name: surface for surface in SurfaceReader(repository).packages(tree)}
+    return {surface.name: surface for surface in SurfaceReader(repository).read_packages(tree)}
 
 
 def test_packages_as_colcon_finds_them(surfaces):

@@ -5,18 +5,18 @@ from __future__ import annotations
 import pytest
 from rosimpact.databuild.extract.cpp import extract as header
 from rosimpact.databuild.includes import Header as Read
-from rosimpact.databuild.includes import beside, defined, direct, included, onto, table_of
+from rosimpact.databuild.includes import build_table, drop_stored, extend_table, find_types, list_direct, list_includes
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
-from rosimpact.databuild.surface.headers import compiled
+from rosimpact.databuild.surface.headers import keep_compiled_includes
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.targets.providers.includes import (
     HeadersOfMachine,
     Includes,
     IncludesTable,
-    default,
-    machine_of,
-    offered,
+    load_includes,
+    load_machine,
+    load_offered,
 )
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
@@ -40,7 +40,7 @@ from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface
     ],
 )
 def test_what_a_header_brings_along(distro, header, brought, expected):
-    assert (brought in machine_of(distro, 2).brought(header).headers) == expected
+    assert (brought in load_machine(distro, 2).find_brought(header).headers) == expected
 
 
 @pytest.mark.parametrize(
@@ -56,18 +56,18 @@ def test_what_a_header_brings_along(distro, header, brought, expected):
     ],
 )
 def test_what_a_header_of_ros_1_brings_along(distro, header, brought, expected):
-    assert (brought in machine_of(distro, 1).brought(header).headers) == expected
+    assert (brought in load_machine(distro, 1).find_brought(header).headers) == expected
 
 
 def test_a_header_that_nothing_is_known_of_is_outside():
-    brought = machine_of("humble", 2).brought("winch/winch.hpp")
-    assert brought.outside == {"winch/winch.hpp"} and machine_of("humble", 2).owner("winch/winch.hpp") is None
+    brought = load_machine("humble", 2).find_brought("winch/winch.hpp")
+    assert brought.outside == {"winch/winch.hpp"} and load_machine("humble", 2).find_owner("winch/winch.hpp") is None
 
 
 def test_names_are_offered_by_headers_that_are_known():
-    assert {"tf2_ros/buffer.h", "tf2_ros/buffer.hpp"} <= set(offered()["tf2_ros::Buffer"])
-    known = machine_of("humble", 2)
-    assert all(any(map(known.knows, headers)) for headers in default().table.names.values())
+    assert {"tf2_ros/buffer.h", "tf2_ros/buffer.hpp"} <= set(load_offered()["tf2_ros::Buffer"])
+    known = load_machine("humble", 2)
+    assert all(any(map(known.knows, headers)) for headers in load_includes().table.names.values())
 
 
 def test_the_table_has_only_what_surfaces_do_not_tell(tmp_path):
@@ -84,11 +84,11 @@ def test_the_table_has_only_what_surfaces_do_not_tell(tmp_path):
     packing = Packing()
     for version, code in (("1.0", "namespace arm { class A {}; }"), ("2.0", "")):
         code += "namespace arm { class A; }" if version == "2.0" else ""
-        new = tuple((f"arm/{name}.h", compiled(header(code.encode()))) for name in "ab")
+        new = tuple((f"arm/{name}.h", keep_compiled_includes(header(code.encode()))) for name in "ab")
         one = Surface("arm", version, BuildSurface("arm"), PythonSurface("arm"), new)
         packing.add("arm", version, (2,), RepositorySurfaces({"arm": one}))
-    write(tmp_path / "x", packing.packed())
-    kept = beside(Surfaces(tmp_path / "x"), table)
+    write(tmp_path / "x", packing.pack_packages())
+    kept = drop_stored(Surfaces(tmp_path / "x"), table)
     assert kept.owners == {
         "arm": {"arm/a.h": "0.5 0", "arm/made.h": "0.5 1;2.0 -"},
         "rope": {"rope/rope.h": "1.0 2"},
@@ -104,8 +104,8 @@ def _includes(sparse=()):
         "1.4": {"winch/all.h": header("vector")},
     }
     versions["1.0"]["winch/hook.h"] = header()
-    states = {"winch": {v: direct(state, lambda path: "/detail/" not in path) for v, state in versions.items()}}
-    return Includes(table_of(states, {"winch"}, sparse))
+    states = {"winch": {v: list_direct(state, lambda path: "/detail/" not in path) for v, state in versions.items()}}
+    return Includes(build_table(states, {"winch"}, sparse))
 
 
 @pytest.mark.parametrize(
@@ -120,24 +120,24 @@ def _includes(sparse=()):
     ],
 )
 def test_versions_between_those_read(version, sparse, expected):
-    assert _includes(sparse).included("winch", "winch/all.h", version) == expected
+    assert _includes(sparse).list_included("winch", "winch/all.h", version) == expected
 
 
 def test_versions_are_added_to_a_table_that_keeps_what_it_tells():
-    known = table_of({"pcl": {"1.0": {"a.h": ("b.h",), "c.h": ()}, "1.2": {"a.h": ()}}}, {"pcl"}, set())
+    known = build_table({"pcl": {"1.0": {"a.h": ("b.h",), "c.h": ()}, "1.2": {"a.h": ()}}}, {"pcl"}, set())
     known = IncludesTable(known.paths, known.owners, known.libraries, known.sparse, names={"pcl::A": ("a.h",)})
     more = {"pcl": {"1.1": {"a.h": ("d.h",), "c.h": ()}}, "boost": {"1.74": {"e.h": ("a.h",)}}}
-    both = Includes(onto(known, more, {"boost"}, {"boost"}))
-    assert both.states("pcl", "a.h") == (((1, 0), ("b.h",)), ((1, 1), ("d.h",)), ((1, 2), ()))
-    assert both.states("pcl", "c.h") == (((1, 0), ()), ((1, 2), None))
-    assert both.states("boost", "e.h") == (((1, 74), ("a.h",)),)
+    both = Includes(extend_table(known, more, {"boost"}, {"boost"}))
+    assert both.list_states("pcl", "a.h") == (((1, 0), ("b.h",)), ((1, 1), ("d.h",)), ((1, 2), ()))
+    assert both.list_states("pcl", "c.h") == (((1, 0), ()), ((1, 2), None))
+    assert both.list_states("boost", "e.h") == (((1, 74), ("a.h",)),)
     assert both.table.libraries == {"pcl", "boost"} and both.table.sparse == {"boost": ("1.74",)}
     assert both.table.names == known.names and both.table.versions["humble"]["boost"] == "1.74.0"
 
 
 def test_a_header_may_be_gone_in_a_version():
     machine = HeadersOfMachine(2, lambda owner, library: "1.4" if library else None, _includes())
-    assert machine.includes("winch/hook.h") is None and machine.owner("winch/all.h") == ("winch", "1.4")
+    assert machine.includes("winch/hook.h") is None and machine.find_owner("winch/all.h") == ("winch", "1.4")
 
 
 @pytest.mark.parametrize(
@@ -160,7 +160,7 @@ def test_a_header_may_be_gone_in_a_version():
     ],
 )
 def test_include_lines(text, expected):
-    assert included(text) == expected
+    assert list_includes(text) == expected
 
 
 @pytest.mark.parametrize(
@@ -174,7 +174,7 @@ def test_include_lines(text, expected):
     ],
 )
 def test_types_of_a_header(text, names, announced):
-    assert defined(text) == (names, announced)
+    assert find_types(text) == (names, announced)
 
 
 @pytest.mark.parametrize(
@@ -200,9 +200,9 @@ def test_types_of_a_header(text, names, announced):
     ],
 )
 def test_names_of_the_standard_library_that_a_header_brings_along(distro, header, name, year, expected):
-    assert machine_of(distro, 2).brings(name, frozenset((header,)), year) is expected
+    assert load_machine(distro, 2).brings(name, frozenset((header,)), year) is expected
 
 
 @pytest.mark.parametrize("header", ["rclcpp/version.h", "rclcpp/logging.hpp", "sensor_msgs/msg/image.h"])
 def test_headers_that_a_package_writes_while_it_is_built_are_known(header):
-    assert header not in machine_of("jazzy", 2).brought(header).outside
+    assert header not in load_machine("jazzy", 2).find_brought(header).outside

@@ -5,17 +5,17 @@ from rosimpact.databuild.libraries import (
     HeaderFile,
     HeaderText,
     LibraryFacts,
-    below,
-    library_of_source,
-    pkgconfig_of,
+    derive_library_name,
+    find_include_path,
+    find_refusal,
+    parse_pkgconfig,
     read_cmake,
-    refusal,
 )
 from rosimpact.databuild.library_file import write
 from rosimpact.impact.facts.cpp.lexical import Include
 from rosimpact.impact.facts.surface import HeaderSurface
-from rosimpact.impact.targets.platform import neighbours
-from rosimpact.impact.targets.providers.libraries import SystemLibraries, system_libraries
+from rosimpact.impact.targets.platform import find_neighbours
+from rosimpact.impact.targets.providers.libraries import SystemLibraries, load_libraries
 from rosimpact.impact.targets.snapshot import SnapshotError
 
 
@@ -31,7 +31,7 @@ from rosimpact.impact.targets.snapshot import SnapshotError
     ],
 )
 def test_a_library_is_a_source_package_without_its_version(source, library):
-    assert library_of_source(source, {"boost1.74", "boost1.81", "libusb", "libusb-1.0", "tinyxml"}) == library
+    assert derive_library_name(source, {"boost1.74", "boost1.81", "libusb", "libusb-1.0", "tinyxml"}) == library
 
 
 @pytest.mark.parametrize(
@@ -46,12 +46,12 @@ def test_a_library_is_a_source_package_without_its_version(source, library):
     ],
 )
 def test_a_header_of_nothing_but_error_refuses_who_includes_it(text, message):
-    assert refusal(text) == message
+    assert find_refusal(text) == message
 
 
 def test_a_pkg_config_file_names_what_it_links_and_where_headers_lie():
     text = b"prefix=/usr\nincludedir=${prefix}/include\nLibs: -L/usr/lib -lSDL2 -lm\nCflags: -I${includedir}/SDL2 -DX\n"
-    assert pkgconfig_of("usr/lib/x86_64-linux-gnu/pkgconfig/sdl2.pc", text) == ("sdl2", ("SDL2", "m"), ("SDL2",))
+    assert parse_pkgconfig("usr/lib/x86_64-linux-gnu/pkgconfig/sdl2.pc", text) == ("sdl2", ("SDL2", "m"), ("SDL2",))
 
 
 def test_cmake_files_name_configurations_targets_and_variables():
@@ -75,7 +75,7 @@ def test_cmake_files_name_configurations_targets_and_variables():
     ],
 )
 def test_headers_are_included_below_the_folders_that_flags_name(path, roots, include):
-    assert below((path,), roots) == include
+    assert find_include_path((path,), roots) == include
 
 
 DEBIAN = ("debian bullseye", "debian bookworm", "debian trixie")
@@ -92,7 +92,7 @@ DEBIAN = ("debian bullseye", "debian bookworm", "debian trixie")
     ],
 )
 def test_ubuntu_lies_between_two_releases_of_debian(platform, expected):
-    assert neighbours(platform, DEBIAN) == expected
+    assert find_neighbours(platform, DEBIAN) == expected
 
 
 class Headers:
@@ -126,17 +126,22 @@ def written(tmp_path_factory):
 
 
 def test_a_written_file_tells_of_each_header_which_versions_have_it(written, monkeypatch):
-    monkeypatch.setattr(SystemLibraries, "of_header", lambda self, header: "arm" if self.has("arm", header) else "")
-    assert written.versions("arm") == {
+    monkeypatch.setattr(
+        SystemLibraries, "find_by_header", lambda self, header: "arm" if self.has("arm", header) else ""
+    )
+    assert written.list_versions("arm") == {
         "debian bullseye": "1.0", "debian bookworm": "1.2", "debian trixie": "2.0", "debian sid": "2.0"
     }  # fmt: skip
     assert written.build("arm", "1.2").include_dirs == ("arm-1.2",)
     names = ("arm/arm.h", "arm/part299.h", "arm-1.2/arm/core.h", "arm/new.h", "arm/part300.h", "arm.h", "zzz")
     assert [name for name in names if written.has("arm", name)] == list(names[:4])
     old, between = "debian bullseye", "ubuntu jammy"
-    assert written.included("arm/arm.h", old).paths == ("arm/part000.h", "arm/part001.h")
-    assert written.included("arm/arm.h", between).paths == ("arm/part000.h", "arm/part001.h", "arm/core.h")
-    assert written.included("arm/old.h", between).paths == () and written.included("arm/old.h", "debian trixie") is None
+    assert written.find_included("arm/arm.h", old).paths == ("arm/part000.h", "arm/part001.h")
+    assert written.find_included("arm/arm.h", between).paths == ("arm/part000.h", "arm/part001.h", "arm/core.h")
+    assert (
+        written.find_included("arm/old.h", between).paths == ()
+        and written.find_included("arm/old.h", "debian trixie") is None
+    )
 
 
 def test_a_file_that_cannot_be_read_is_named(tmp_path):
@@ -159,14 +164,14 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path):
     ],
 )
 def test_a_target_is_there_where_the_releases_around_a_platform_agree(target, platform, here, lost):
-    found = system_libraries().target(target, platform, lambda library: None)
+    found = load_libraries().find_target(target, platform, lambda library: None)
     assert found is not None and (found.here, found.lost) == (here, lost)
 
 
 def test_a_version_that_was_read_tells_more_than_those_around_it():
-    found = system_libraries().target("yaml-cpp::yaml-cpp", "ubuntu noble", {"yaml-cpp": "0.8.0"}.get)
+    found = load_libraries().find_target("yaml-cpp::yaml-cpp", "ubuntu noble", {"yaml-cpp": "0.8.0"}.get)
     assert found is not None and found.here
 
 
 def test_headers_of_ros_and_of_the_compiler_are_of_no_library():
-    assert system_libraries().of_header("rclcpp/rclcpp.hpp") == system_libraries().of_header("stdio.h") == ""
+    assert load_libraries().find_by_header("rclcpp/rclcpp.hpp") == load_libraries().find_by_header("stdio.h") == ""

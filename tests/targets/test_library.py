@@ -3,12 +3,12 @@
 import pytest
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.providers.library import (
-    compiled_component,
-    gone_component,
-    not_answering,
-    versioned_folder,
+    find_compiled_component,
+    find_gone_component,
+    find_misspelled_version,
+    find_versioned_folder,
 )
-from rosimpact.impact.targets.providers.providers import default_providers
+from rosimpact.impact.targets.providers.providers import load_providers
 
 
 @pytest.mark.parametrize(
@@ -35,7 +35,7 @@ from rosimpact.impact.targets.providers.providers import default_providers
     ],
 )
 def test_the_compiled_library_of_a_header(header, boost, component):
-    assert compiled_component(header, boost) == component
+    assert find_compiled_component(header, boost) == component
 
 
 @pytest.mark.parametrize(
@@ -51,10 +51,10 @@ def test_the_compiled_library_of_a_header(header, boost, component):
 )
 def test_a_component_that_is_gone(distro, component, gone):
     target = DistroTarget(distro)
-    assert (gone_component(target, "Boost", component) is not None) is gone
-    known = default_providers()
-    if target.platform in known.cmake_platforms("boost_regex"):  # Boost brings configurations since 1.70
-        assert (target.platform not in known.cmake_platforms(f"boost_{component}")) is gone
+    assert (find_gone_component(target, "Boost", component) is not None) is gone
+    known = load_providers()
+    if target.platform in known.list_cmake_platforms("boost_regex"):  # Boost brings configurations since 1.70
+        assert (target.platform not in known.list_cmake_platforms(f"boost_{component}")) is gone
 
 
 @pytest.mark.parametrize(
@@ -71,7 +71,7 @@ def test_a_component_that_is_gone(distro, component, gone):
     ],
 )
 def test_the_folder_of_a_version_in_a_path(distro, path, expected):
-    folder = versioned_folder(DistroTarget(distro), path)
+    folder = find_versioned_folder(DistroTarget(distro), path)
     assert (folder and (folder.library, folder.there, folder.path)) == expected
 
 
@@ -86,4 +86,4 @@ def test_the_folder_of_a_version_in_a_path(distro, path, expected):
     ],
 )
 def test_a_spelling_to_which_a_version_does_not_answer(distro, name, version):
-    assert not_answering(DistroTarget(distro), name) == version
+    assert find_misspelled_version(DistroTarget(distro), name) == version

@@ -1,7 +1,7 @@
 """Types of C++ that are made from interfaces, and the headers that define them."""
 
 import pytest
-from rosimpact.impact.targets.providers.message_headers import type_in
+from rosimpact.impact.targets.providers.message_headers import parse_type
 
 
 @pytest.mark.parametrize(
@@ -18,11 +18,11 @@ from rosimpact.impact.targets.providers.message_headers import type_in
     ],
 )
 def test_the_type_that_a_name_begins_with(written, type_, header):
-    found = type_in(written)
+    found = parse_type(written)
     assert found is not None
     assert (found.name, found.headers[0]) == (type_, header)
 
 
 @pytest.mark.parametrize("written", ["tf2_ros::Buffer", "nav_msgs::msg::detail::Path", "nav_msgs::msg", "cv::Mat"])
 def test_other_names(written):
-    assert type_in(written) is None
+    assert parse_type(written) is None

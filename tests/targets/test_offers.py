@@ -9,7 +9,7 @@ from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.targets.surface.offers import Offers
-from rosimpact.impact.targets.surface.offers_cpp import availability_of_use
+from rosimpact.impact.targets.surface.offers_cpp import check_use
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import (
     BuildSurface,
@@ -36,7 +36,7 @@ def surface(package, version, code="", python="", programs=(), path="", launches
 
 
 def target(ros=2, **versions):
-    return SimpleNamespace(ros=ros, version=versions.get)
+    return SimpleNamespace(ros=ros, find_version=versions.get)
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def store(tmp_path):
             for one in together.surfaces.values():
                 packing.add(one.package, one.version, generations, together, one.version in approximate)
         file = tmp_path / "surfaces.sqlite"
-        write(file, packing.packed())
+        write(file, packing.pack_packages())
         return Surfaces(file)
 
     return made
@@ -64,21 +64,21 @@ def test_gone_not_there_yet_and_everywhere(store):
         surface("arm", "2.0.0", "void always(); void old();"),
         surface("arm", "3.0.0", "void always(); void fresh();"),
     )
-    early, late = (Offers(target(arm=v), surfaces).package("arm") for v in ("2.0.0", "3.0.0"))
+    early, late = (Offers(target(arm=v), surfaces).find_package("arm") for v in ("2.0.0", "3.0.0"))
     gone = late.get("c++", "old")
     assert (gone.state, gone.last, gone.first, gone.version, gone.sure) == ("removed", "2.0.0", "3.0.0", "3.0.0", True)
     assert (early.get("c++", "old").state, early.get("c++", "old").gone_in) == ("changed", "3.0.0")
     awaited = early.get("c++", "fresh")
     assert (awaited.state, awaited.first, awaited.here) == ("absent", "3.0.0", None)
     assert early.get("c++", "always") is None and early.get("c++", "never") is None
-    assert [one.name for one in late.every("c++")] == ["fresh", "old"]
+    assert [one.name for one in late.list_offered("c++")] == ["fresh", "old"]
 
 
 def test_what_goes_and_comes_back_is_there(store):
     surfaces = store(
         *(surface("arm", f"{n}.0.0", code) for n, code in enumerate(("", "void f();", "", "void f();"), 1))
     )
-    states = [Offers(target(arm=f"{n}.0.0"), surfaces).package("arm").get("c++", "f").state for n in (1, 2, 3, 4)]
+    states = [Offers(target(arm=f"{n}.0.0"), surfaces).find_package("arm").get("c++", "f").state for n in (1, 2, 3, 4)]
     assert states == ["absent", "changed", "removed", "changed"]
 
 
@@ -87,17 +87,17 @@ def test_forms_say_how_a_function_is_called(store):
         surface("arm", "1.0.0", "struct A { void f(int a, double b = 0); };"),
         surface("arm", "2.0.0", "struct A { void f(int a, double b, bool c); };"),
     )
-    old, new = (Offers(target(arm=v), surfaces).package("arm").get("c++", "A::f") for v in ("1.0.0", "2.0.0"))
+    old, new = (Offers(target(arm=v), surfaces).find_package("arm").get("c++", "A::f") for v in ("1.0.0", "2.0.0"))
     assert [(o.fewest, o.most, o.types) for o in new.here.overloads] == [(3, 3, ("int", "double", "bool"))]
     assert [(o.fewest, o.most) for o in new.before.overloads] == [(1, 2)]
     assert old.here == new.before and old.after == new.here and (old.coming, new.last) == ("2.0.0", "1.0.0")
-    package = Offers(target(arm="2.0.0"), surfaces).package("arm")
-    assert package.declarations("c++", "A::f", "1.0.0") == ("void A::f(int, double = 0)",)
+    package = Offers(target(arm="2.0.0"), surfaces).find_package("arm")
+    assert package.list_declared("c++", "A::f", "1.0.0") == ("void A::f(int, double = 0)",)
 
 
 def test_an_overload_that_goes_leaves_the_name(store):
     surfaces = store(surface("arm", "1.0.0", "void f(); void f(int);"), surface("arm", "2.0.0", "void f(int);"))
-    found = Offers(target(arm="2.0.0"), surfaces).package("arm").get("c++", "f")
+    found = Offers(target(arm="2.0.0"), surfaces).find_package("arm").get("c++", "f")
     assert (found.state, [o.fewest for o in found.here.overloads]) == ("changed", [1])
 
 
@@ -115,7 +115,7 @@ def test_deprecated_until_it_goes(store):
         surface("arm", "2.0.0", warning),
         surface("arm", "3.0.0", "void g();"),
     )
-    found = Offers(target(arm="2.0.0"), surfaces).package("arm").get("c++", "f")
+    found = Offers(target(arm="2.0.0"), surfaces).find_package("arm").get("c++", "f")
     assert (found.state, found.here.deprecated, found.gone_in) == ("deprecated", "use g", "3.0.0")
 
 
@@ -124,12 +124,12 @@ def test_python_and_programs(store):
         surface("arm", "1.0.0", python="def move(x): ...\ndef rest(): ...\n", programs=("drive",)),
         surface("arm", "2.0.0", python="def move(x, *, speed): ...\n", programs=()),
     )
-    package = Offers(target(arm="2.0.0"), surfaces).package("arm")
+    package = Offers(target(arm="2.0.0"), surfaces).find_package("arm")
     assert package.get("python", "arm.rest").state == "removed"
     moved = package.get("python", "arm.move")
     assert (moved.state, moved.last, moved.first) == ("changed", "1.0.0", "2.0.0")
     assert package.get("executable", "drive").state == "removed"
-    assert package.declarations("python", "arm.move", "2.0.0") == ("arm.move(x, *, speed)",)
+    assert package.list_declared("python", "arm.move", "2.0.0") == ("arm.move(x, *, speed)",)
 
 
 def test_what_another_package_has_now_is_moved(store):
@@ -137,7 +137,7 @@ def test_what_another_package_has_now_is_moved(store):
         (surface("arm", "1.0.0", "void f();"), surface("leg", "1.0.0")),
         (surface("arm", "2.0.0"), surface("leg", "2.0.0", "void f();")),
     )
-    found = Offers(target(arm="2.0.0", leg="2.0.0"), surfaces).package("arm").get("c++", "f")
+    found = Offers(target(arm="2.0.0", leg="2.0.0"), surfaces).find_package("arm").get("c++", "f")
     assert (found.state, found.moved_to) == ("moved", "leg")
 
 
@@ -147,15 +147,15 @@ def test_a_launch_file_of_another_package_is_not_the_one_that_is_gone(store):
         (surface("arm", "1.0.0", launches=file), surface("leg", "1.0.0", launches=file)),
         (surface("arm", "2.0.0"), surface("leg", "2.0.0", launches=file)),
     )
-    found = Offers(target(arm="2.0.0", leg="2.0.0"), surfaces).package("arm").get("launch file", *file)
+    found = Offers(target(arm="2.0.0", leg="2.0.0"), surfaces).find_package("arm").get("launch file", *file)
     assert (found.state, found.moved_to) == ("removed", "")
 
 
 def test_declarations_of_python_modules_and_values(store):
     surfaces = store(surface("arm", "1.0.0", python="SPEED = 2\n"))
-    package = Offers(target(arm="1.0.0"), surfaces).package("arm")
-    assert package.declarations("python", "arm", "1.0.0") == ()
-    assert package.declarations("python", "arm.SPEED", "1.0.0") == ("arm.SPEED = 2",)
+    package = Offers(target(arm="1.0.0"), surfaces).find_package("arm")
+    assert package.list_declared("python", "arm", "1.0.0") == ()
+    assert package.list_declared("python", "arm.SPEED", "1.0.0") == ("arm.SPEED = 2",)
 
 
 def test_what_another_repository_has_is_moved_where_the_target_has_that(store):
@@ -163,8 +163,8 @@ def test_what_another_repository_has_is_moved_where_the_target_has_that(store):
         surface("arm", "1.0.0", "void f();"), surface("arm", "2.0.0"), surface("leg", "5.0.0", "void f();")
     )
     with_leg, without = target(arm="2.0.0", leg="5.0.0"), target(arm="2.0.0")
-    assert Offers(with_leg, surfaces).package("arm").get("c++", "f").moved_to == "leg"
-    assert Offers(without, surfaces).package("arm").get("c++", "f").state == "removed"
+    assert Offers(with_leg, surfaces).find_package("arm").get("c++", "f").moved_to == "leg"
+    assert Offers(without, surfaces).find_package("arm").get("c++", "f").state == "removed"
 
 
 def test_a_version_that_is_not_stored_is_sure_only_between_equal_ones(store):
@@ -173,26 +173,26 @@ def test_a_version_that_is_not_stored_is_sure_only_between_equal_ones(store):
         surface("arm", "2.0.0", "void g();"),
         surface("arm", "4.0.0"),
     )
-    package = Offers(target(arm="3.0.0"), surfaces).package("arm")
+    package = Offers(target(arm="3.0.0"), surfaces).find_package("arm")
     assert (package.stored, package.exact) == ("2.0.0", False)
     assert (package.get("c++", "f").state, package.get("c++", "f").sure) == ("removed", True)
     assert not package.get("c++", "g").sure
-    newer = Offers(target(arm="5.0.0"), surfaces).package("arm")
+    newer = Offers(target(arm="5.0.0"), surfaces).find_package("arm")
     assert newer.get("c++", "f").sure  # patches bring nothing back
-    assert Offers(target(arm="0.1.0"), surfaces).package("arm") is None
+    assert Offers(target(arm="0.1.0"), surfaces).find_package("arm") is None
 
 
 def test_a_branch_answers_for_no_release(store):
     surfaces = store(surface("arm", "1.0.0", "void f();"), surface("arm", "2.0.0"), approximate=("2.0.0",))
-    package = Offers(target(arm="2.0.0"), surfaces).package("arm")
+    package = Offers(target(arm="2.0.0"), surfaces).find_package("arm")
     assert (package.stored, package.exact) == ("1.0.0", False)
     assert (package.get("c++", "f").state, package.get("c++", "f").sure) == ("changed", False)
 
 
 def test_generations_of_ros_have_lines_of_their_own(store):
     surfaces = store(surface("arm", "1.0.0", "void f();"), surface("arm", "2.0.0"), generations=(1,))
-    assert Offers(target(ros=1, arm="2.0.0"), surfaces).package("arm").get("c++", "f").state == "removed"
-    assert Offers(target(ros=2, arm="2.0.0"), surfaces).package("arm") is None
+    assert Offers(target(ros=1, arm="2.0.0"), surfaces).find_package("arm").get("c++", "f").state == "removed"
+    assert Offers(target(ros=2, arm="2.0.0"), surfaces).find_package("arm") is None
 
 
 def test_a_method_that_moved_to_a_base_is_judged_as_the_base_has_it(store):
@@ -202,7 +202,7 @@ def test_a_method_that_moved_to_a_base_is_judged_as_the_base_has_it(store):
 
     def override(version):
         offers = Offers(target(arm=version), surfaces)
-        return availability_of_use(offers, "arm", "arm::Arm::tick", "override", 0, ("const",))
+        return check_use(offers, "arm", "arm::Arm::tick", "override", 0, ("const",))
 
     assert override("2.0.0").form == "override"
     assert override("3.0.0") is None
@@ -214,7 +214,7 @@ def test_an_override_of_what_moved_to_a_base_and_changed_there_is_judged_by_the_
     code = "namespace arm {{ struct Part {{ {} }}; struct Arm : Part {{ {} }}; }}"
     surfaces = store(*(surface("arm", f"{n}.0.0", code.format(*form)) for n, form in enumerate(forms, 1)))
     found = [
-        availability_of_use(Offers(target(arm=f"{n}.0.0"), surfaces), "arm", "arm::Arm::tick", "override", 1,
+        check_use(Offers(target(arm=f"{n}.0.0"), surfaces), "arm", "arm::Arm::tick", "override", 1,
                             ("int", "override"))
         for n in (1, 2, 3, 4)
     ]  # fmt: skip
@@ -230,7 +230,7 @@ def test_a_call_of_what_a_base_has_is_judged_by_the_base(store):
     surfaces = store(*(surface("arm", f"{n}.0.0", f"namespace arm {{ {code} }}") for n, code in enumerate(codes, 1)))
 
     def call(version):
-        return availability_of_use(Offers(target(arm=version), surfaces), "arm", "arm::Arm::move", "call", 1, ())
+        return check_use(Offers(target(arm=version), surfaces), "arm", "arm::Arm::move", "call", 1, ())
 
     assert (call("2.0.0").form, call("2.0.0").symbol.name) == ("arguments", "arm::Arm::move")
     assert call("4.0.0") is None
@@ -242,7 +242,7 @@ def test_a_call_is_judged_by_every_change_of_the_function_not_by_the_last_alone(
     surfaces = store(*(surface("arm", f"{n}.0.0", code) for n, code in enumerate(codes, 1)))
 
     def call(version, *given):
-        found = availability_of_use(Offers(target(arm=version), surfaces), "arm", "f", "call", len(given), given)
+        found = check_use(Offers(target(arm=version), surfaces), "arm", "f", "call", len(given), given)
         return found and (found.form, found.since, found.earlier, found.evidence.last)
 
     assert call("4.0.0", "integer") == ("arguments", "2.0.0", True, "1.0.0")
@@ -283,7 +283,7 @@ def test_what_is_made_of_a_use(codes, how, arguments, given, kinds, store):
     code = "namespace arm {{ class Arm {{ public: {} }}; }}"
     surfaces = store(*(surface("arm", f"{n}.0.0", code.format(each)) for n, each in enumerate(codes, 1)))
     found = (
-        availability_of_use(Offers(target(arm=version), surfaces), "arm", "arm::Arm::stop", how, arguments, given)
+        check_use(Offers(target(arm=version), surfaces), "arm", "arm::Arm::stop", how, arguments, given)
         for version in ("1.0.0", "2.0.0")
     )
     assert tuple(one.form if one is not None else None for one in found) == kinds

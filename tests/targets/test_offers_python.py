@@ -9,7 +9,12 @@ from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.python.uses import CallArguments, PythonUse
 from rosimpact.impact.targets.surface.offers import Offers
-from rosimpact.impact.targets.surface.offers_python import PythonOffers, read_parameters, refused, unlike
+from rosimpact.impact.targets.surface.offers_python import (
+    PythonOffers,
+    explain_difference,
+    explain_refusal,
+    read_parameters,
+)
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, InstalledModule, PythonSurface, Surface
 
@@ -32,8 +37,8 @@ def offers(tmp_path):
             packing.add("arm", one.version, (2,), RepositorySurfaces({"arm": one}), one.version in approximate)
         drums = Surface("drums", "1.0.0", BuildSurface("drums", "1.0.0"), PythonSurface("drums", ()))  # without Python
         packing.add("drums", drums.version, (2,), RepositorySurfaces({"drums": drums}), False)
-        write(tmp_path / "surfaces.sqlite", packing.packed())
-        target = SimpleNamespace(ros=2, version={"arm": version, "drums": "1.0.0"}.get)
+        write(tmp_path / "surfaces.sqlite", packing.pack_packages())
+        target = SimpleNamespace(ros=2, find_version={"arm": version, "drums": "1.0.0"}.get)
         return PythonOffers(Offers(target, Surfaces(tmp_path / "surfaces.sqlite")))
 
     return made
@@ -197,7 +202,7 @@ def test_between_two_stored_versions_only_what_both_say_is_told(offers):
     ],
 )
 def test_whether_a_call_fits(parameters, positional, keywords, expected):
-    assert refused(CallArguments(positional, keywords), read_parameters(parameters)) == expected
+    assert explain_refusal(CallArguments(positional, keywords), read_parameters(parameters)) == expected
 
 
 @pytest.mark.parametrize(
@@ -214,4 +219,4 @@ def test_whether_a_call_fits(parameters, positional, keywords, expected):
     ],
 )
 def test_whether_a_method_can_stand_for_anothers(own, base, fits):
-    assert (unlike(read_parameters(own), read_parameters(base)) == "") is fits
+    assert (explain_difference(read_parameters(own), read_parameters(base)) == "") is fits

@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.targets.platform import library_name, normal_platform, python_minor
+from rosimpact.impact.targets.platform import normalize_library_name, normalize_platform, parse_python_minor
 
 
 @pytest.mark.parametrize(
@@ -23,19 +23,19 @@ from rosimpact.impact.targets.platform import library_name, normal_platform, pyt
     ],
 )
 def test_one_spelling(text, expected):
-    assert normal_platform(text) == expected
+    assert normalize_platform(text) == expected
 
 
 @given(st.text(max_size=30))
 def test_a_spelling_stays(text):
-    assert normal_platform(normal_platform(text)) == normal_platform(text)
+    assert normalize_platform(normalize_platform(text)) == normalize_platform(text)
 
 
 @pytest.mark.parametrize(("version", "minor"), [("3.10.4", 10), ("3.8", 8), ("", None), (None, None), ("x", None)])
 def test_python_minor(version, minor):
-    assert python_minor(version) == minor
+    assert parse_python_minor(version) == minor
 
 
 @pytest.mark.parametrize(("name", "expected"), [("python3", "python"), ("OpenCV", "opencv"), ("Eigen", "eigen3")])
 def test_library_aliases(name, expected):
-    assert library_name(name) == expected
+    assert normalize_library_name(name) == expected

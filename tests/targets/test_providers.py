@@ -5,16 +5,16 @@ import sqlite3
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.databuild.providers import SCHEMA, cmake_names, include_paths, module_names
-from rosimpact.databuild.surface.releases import plain_url, tag_of
-from rosimpact.impact.targets.providers.providers import Providers, add_facts, default_providers
-from rosimpact.impact.targets.providers.stdlib import ever_stdlib, stdlib
+from rosimpact.databuild.providers import SCHEMA, include_paths, list_cmake, list_modules
+from rosimpact.databuild.surface.releases import normalize_url, tag_of
+from rosimpact.impact.targets.providers.providers import Providers, add_facts, load_providers
+from rosimpact.impact.targets.providers.stdlib import is_in_stdlib, was_ever_in_stdlib
 from rosimpact.impact.targets.snapshot import SnapshotError
 
 
 @pytest.fixture(scope="module")
 def providers():
-    return default_providers()
+    return load_providers()
 
 
 @pytest.mark.parametrize(
@@ -44,16 +44,16 @@ def providers():
     ],
 )
 def test_header_is_provided_by(providers, path, first):
-    assert providers.header(path)[0].name == first
+    assert providers.find_header(path)[0].name == first
 
 
 @pytest.mark.parametrize("path", ["config.h", "utils.h", "no/such/header.hpp", ""])
 def test_header_that_says_nothing_about_its_owner(providers, path):
-    assert providers.header(path) == ()
+    assert providers.find_header(path) == ()
 
 
 def test_header_of_a_reviewed_folder_is_not_sure(providers):
-    (found,) = providers.header("gz/math/Some_new_header.hh")
+    (found,) = providers.find_header("gz/math/Some_new_header.hh")
     assert (found.kind, found.name, found.sure) == ("ros", "gz_math_vendor", False)
 
 
@@ -85,7 +85,7 @@ def test_whether_a_release_has_headers_at_all(providers, package, distro, versio
     ],
 )
 def test_cmake_name_is_provided_by(providers, name, first, sure):
-    found = providers.cmake(name)[0]
+    found = providers.find_cmake(name)[0]
     assert (found.name, found.sure) == (first, sure)
 
 
@@ -101,17 +101,17 @@ def test_cmake_name_is_provided_by(providers, name, first, sure):
     ],
 )
 def test_module_is_provided_by(providers, module, names):
-    found = [provider.name for provider in providers.module(module)]
+    found = [provider.name for provider in providers.find_module(module)]
     assert set(names) <= set(found[: len(names) + 1])
 
 
 @pytest.mark.parametrize(("name", "first"), [("xterm", "xterm"), ("bash", ""), ("make", ""), ("ros2", "ros2cli")])
 def test_executable_is_provided_by(providers, name, first):
-    assert providers.executable(name)[0].name == first
+    assert providers.find_executable(name)[0].name == first
 
 
 def test_pkgconfig_is_provided_by(providers):
-    assert providers.pkgconfig("libusb-1.0")[0].name == "libusb-1.0-dev"
+    assert providers.find_pkgconfig("libusb-1.0")[0].name == "libusb-1.0-dev"
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,7 @@ def test_pkgconfig_is_provided_by(providers):
     ],
 )
 def test_system_header_on_a_platform(providers, header, platform, has):
-    assert providers.system_has(header, platform) is has
+    assert providers.has_system_header(header, platform) is has
 
 
 @pytest.mark.parametrize(
@@ -148,15 +148,15 @@ def test_header_history(providers, package, header, distro, version, has):
 
 
 def test_every_reviewed_fact_names_something(providers):
-    for kind, name, entries in providers._rows("SELECT kind, name, entries FROM fact"):
+    for kind, name, entries in providers._query("SELECT kind, name, entries FROM fact"):
         assert kind in ("cmake", "pkgconfig", "module", "program", "header", "vendor", "folder"), name
         assert all(entry == entry.strip() for entry in entries.split("\n")), name
 
 
 @given(st.text(max_size=40))
 def test_any_text_is_answered(text):
-    table = default_providers()
-    for lookup in (table.header, table.cmake, table.module, table.executable, table.pkgconfig):
+    table = load_providers()
+    for lookup in (table.find_header, table.find_cmake, table.find_module, table.find_executable, table.find_pkgconfig):
         assert all(provider.kind in ("ros", "system") for provider in lookup(text))
 
 
@@ -165,20 +165,20 @@ def test_damaged_table_is_named(tmp_path):
     (tmp_path / "providers.yaml").write_text("cmake: {}\n")
     (tmp_path / "providers.sqlite.zst").write_bytes(b"no database")
     with pytest.raises(SnapshotError, match="install rosimpact again"):
-        Providers(tmp_path, tmp_path / "cache").header("a.h")
+        Providers(tmp_path, tmp_path / "cache").find_header("a.h")
 
 
 def test_no_place_for_a_cache(tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("")
-    assert Providers(cache=blocked / "below").header("ros/ros.h")[0].name == "roscpp"
+    assert Providers(cache=blocked / "below").find_header("ros/ros.h")[0].name == "roscpp"
 
 
 def test_truncated_cache_is_unpacked_again(tmp_path):
-    Providers(cache=tmp_path).header("a.h")
+    Providers(cache=tmp_path).find_header("a.h")
     (file,) = tmp_path.glob("providers-*.sqlite")
     file.write_bytes(file.read_bytes()[:5000])
-    assert Providers(cache=tmp_path).header("ros/ros.h")[0].name == "roscpp"
+    assert Providers(cache=tmp_path).find_header("ros/ros.h")[0].name == "roscpp"
 
 
 def test_facts_are_read_in_their_order():
@@ -223,7 +223,7 @@ def test_include_paths(path, names):
     ],
 )
 def test_cmake_names(path, names):
-    assert cmake_names(path) == names
+    assert list_cmake(path) == names
 
 
 @pytest.mark.parametrize(
@@ -239,12 +239,12 @@ def test_cmake_names(path, names):
     ],
 )
 def test_module_names(path, names):
-    assert module_names(path) == names
+    assert list_modules(path) == names
 
 
 @given(st.text(alphabet=st.sampled_from("usr/include/lib-0.a+h"), max_size=60))
 def test_paths_never_raise(path):
-    assert all(isinstance(name, str) for name in (*include_paths(path), *cmake_names(path), *module_names(path)))
+    assert all(isinstance(name, str) for name in (*include_paths(path), *list_cmake(path), *list_modules(path)))
 
 
 @pytest.mark.parametrize(
@@ -266,7 +266,7 @@ def test_tag_of_a_version(version, name, tag):
     ["https://github.com/Ros/geometry2.git", "git@github.com:ros/geometry2.git", "https://github.com/ros/geometry2/"],
 )
 def test_plain_url(url):
-    assert plain_url(url) == "ros/geometry2"
+    assert normalize_url(url) == "ros/geometry2"
 
 
 # Python's standard library
@@ -294,16 +294,16 @@ def test_plain_url(url):
     ],
 )
 def test_standard_library(module, minor, major, there):
-    assert stdlib(module, minor, major) is there
+    assert is_in_stdlib(module, minor, major) is there
 
 
 @pytest.mark.parametrize(("module", "ever"), [("imp", True), ("urllib2", True), ("tomllib", True), ("rospy", False)])
 def test_ever_in_the_standard_library(module, ever):
-    assert ever_stdlib(module) is ever
+    assert was_ever_in_stdlib(module) is ever
 
 
 @pytest.mark.parametrize(
     ("name", "spelled"), [("eigen", {"Eigen"}), ("zlib", {"ZLIB"}), ("ZLIB", {"ZLIB"}), ("NoSuchThing", set())]
 )
 def test_spellings_of_a_cmake_name(name, spelled):
-    assert set(default_providers().spellings(name)) == spelled
+    assert set(load_providers().list_spellings(name)) == spelled

@@ -17,7 +17,7 @@ from rosimpact.impact.targets.snapshot import DATA, Snapshot, SnapshotError
 
 
 def answers(snapshot):
-    return DistroTarget("humble", "2024-03-01", data=snapshot).version("rclcpp") == "16.0.8"
+    return DistroTarget("humble", "2024-03-01", data=snapshot).find_version("rclcpp") == "16.0.8"
 
 
 def test_it_is_unpacked_once(tmp_path):
@@ -35,7 +35,7 @@ def test_it_is_unpacked_once(tmp_path):
 def test_a_broken_file_is_made_again(tmp_path, damage):
     snapshot = Snapshot(cache=tmp_path)
     assert answers(snapshot)
-    path = snapshot.path()
+    path = snapshot.get_path()
     whole = path.read_bytes()
     if damage == "empty":
         path.write_bytes(b"")
@@ -55,7 +55,7 @@ def test_a_changed_byte_is_noticed_whatever_it_says(tmp_path):
     """SQLite notices damage of its tables, and none of what they hold."""
     snapshot = Snapshot(cache=tmp_path)
     assert answers(snapshot)
-    path = snapshot.path()
+    path = snapshot.get_path()
     whole = path.read_bytes()
     changed = whole.replace(b"16.0.8", b"16.0.9")
     assert changed != whole
@@ -68,7 +68,7 @@ def test_a_changed_byte_is_noticed_whatever_it_says(tmp_path):
 def test_times_that_changed_cost_a_look_and_nothing_else(tmp_path):
     snapshot = Snapshot(cache=tmp_path)
     assert answers(snapshot)
-    path = snapshot.path()
+    path = snapshot.get_path()
     inode = path.stat().st_ino
     os.utime(path, (1_000_000_000, 1_000_000_000))
     assert answers(Snapshot(cache=tmp_path))
@@ -92,26 +92,26 @@ SUMS = {
 def test_whatever_lies_where_the_sum_is_kept(tmp_path, damage):
     snapshot = Snapshot(cache=tmp_path)
     assert answers(snapshot)
-    damage(Path(f"{snapshot.path()}.sum"))
+    damage(Path(f"{snapshot.get_path()}.sum"))
     assert answers(Snapshot(cache=tmp_path))
     assert answers(Snapshot(cache=tmp_path))
 
 
 @pytest.mark.parametrize("make", [os.mkfifo, lambda path: path.symlink_to("/dev/zero"), os.mkdir])
 def test_what_is_no_file_in_place_of_the_data(tmp_path, make):
-    make(Snapshot(cache=tmp_path).path())
+    make(Snapshot(cache=tmp_path).get_path())
     assert answers(Snapshot(cache=tmp_path))
 
 
 def test_a_file_that_breaks_while_it_is_read(tmp_path):
     snapshot = Snapshot(cache=tmp_path)
     assert answers(snapshot)
-    path = snapshot.path()
+    path = snapshot.get_path()
     with open(path, "r+b") as file:
         file.seek(4096)
         file.write(os.urandom(path.stat().st_size - 4096))
-    snapshot.rows("PRAGMA shrink_memory")
-    assert {answers(snapshot), len(snapshot.rows("SELECT * FROM release")) > 1000} == {True}
+    snapshot.fetch("PRAGMA shrink_memory")
+    assert {answers(snapshot), len(snapshot.fetch("SELECT * FROM release")) > 1000} == {True}
 
 
 def test_a_bomb_in_place_of_an_update(tmp_path, monkeypatch):
@@ -144,7 +144,7 @@ def test_without_a_writable_folder_it_lives_in_memory(tmp_path):
 
 def test_without_deserialize_it_lives_in_memory_too(tmp_path, monkeypatch):
     """Python 3.10's sqlite3 cannot open bytes."""
-    monkeypatch.setattr(unpacked, "_deserializer", lambda connection: None)
+    monkeypatch.setattr(unpacked, "_find_deserializer", lambda connection: None)
     (tmp_path / "file").write_text("a file where a folder is wanted")
     assert answers(Snapshot(cache=tmp_path / "file"))
 
@@ -179,7 +179,7 @@ def test_two_runs_at_once_both_answer(tmp_path):
     ]
     said = {run.communicate()[0].strip() for run in runs}
     assert all(run.returncode == 0 for run in runs)
-    assert said == {DistroTarget("jazzy").version("rclcpp")}
+    assert said == {DistroTarget("jazzy").find_version("rclcpp")}
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".sqlite", ".sum"]
 
 
@@ -193,18 +193,18 @@ def test_what_an_update_made_is_used_while_it_is_newer_and_whole(tmp_path, monke
         (updated / "snapshot.json").write_text(json.dumps({**info, "date": date}))
 
     write("2199-01-01")
-    assert snapshots._newest_folder() == DATA  # its database is missing
+    assert snapshots._find_newest_folder() == DATA  # its database is missing
     (updated / "distros.sqlite.zst").write_bytes((DATA / "distros.sqlite.zst").read_bytes())
-    assert snapshots._newest_folder() == updated
+    assert snapshots._find_newest_folder() == updated
     assert answers(Snapshot(updated))
     write("2001-01-01")
-    assert snapshots._newest_folder() == DATA
+    assert snapshots._find_newest_folder() == DATA
     for text in ("{", "[" * 100_000, json.dumps({**info, "date": "tomorrow"}), json.dumps({**info, "sha256": "../x"})):
         (updated / "snapshot.json").write_text(text)
-        assert snapshots._newest_folder() == DATA
+        assert snapshots._find_newest_folder() == DATA
     (updated / "snapshot.json").unlink()
     os.mkfifo(updated / "snapshot.json")
-    assert snapshots._newest_folder() == DATA
+    assert snapshots._find_newest_folder() == DATA
 
 
 def test_a_broken_update_is_passed_over(tmp_path, monkeypatch):
@@ -240,7 +240,7 @@ def test_every_library_cell_is_a_version_with_a_source():
 
 def test_every_distro_has_its_facts():
     facts = yaml.safe_load((DATA / "distros.yaml").read_text())["distros"]
-    names = {name for (name,) in Snapshot().rows("SELECT name FROM distro")}
+    names = {name for (name,) in Snapshot().fetch("SELECT name FROM distro")}
     assert set(facts) == names
     for name, fact in facts.items():
         assert fact["end_of_life"] is None or fact["released"] < fact["end_of_life"], name

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from rosimpact.databuild.sonames import Suite, libraries_of, symbols_of, table_of
+from rosimpact.databuild.sonames import Suite, build_table, parse_libraries, parse_symbols
 from rosimpact.impact.facts.elf import AskedSymbolVersions, Elf
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.machine.loader import Loader
 from rosimpact.impact.targets.machine.shared_libraries import DescribedShelf, MachineShelf
-from rosimpact.impact.targets.machine.sonames import default_sonames, numbers_of
+from rosimpact.impact.targets.machine.sonames import load_sonames, parse_numbers
 
-SONAMES = default_sonames()
+SONAMES = load_sonames()
 ASKER = Elf(machine="EM_X86_64", bits=64)
 DEBIAN = ("debian bullseye", "debian bookworm", "debian trixie")
 
@@ -54,11 +54,11 @@ def test_makers_libraries_are_not_mistaken_for_debians_own(soname):
 
 
 def test_what_is_there_instead_comes_shortest_first():
-    assert SONAMES.others("debian bookworm", "libpcl_common.so.1.11") == [
+    assert SONAMES.list_others("debian bookworm", "libpcl_common.so.1.11") == [
         "libpcl_common.so.1.13",
         "libpcl_common.so.1.13.0",
     ]
-    assert SONAMES.package("libpcl_common.so.1.13") == "libpcl-common1.13"
+    assert SONAMES.find_package("libpcl_common.so.1.13") == "libpcl-common1.13"
 
 
 @pytest.mark.parametrize("library", SONAMES.reviewed.libraries)
@@ -66,13 +66,13 @@ def test_what_is_there_instead_comes_shortest_first():
 def test_reviewed_libraries_count_as_the_file_lists_do(library, platform):
     """Every soname that Debian has of such a library fits the version that it has of it, and those of other releases
     fit it only where the numbers agree: so platforms without a file list may be judged by the version alone."""
-    version = DistroTarget("noetic", None, platform).library(library)
+    version = DistroTarget("noetic", None, platform).find_library(library)
     assert version
-    own = [name for name in SONAMES.names(platform) if SONAMES.family(name) == library]
+    own = [name for name in SONAMES.list_names(platform) if SONAMES.find_family(name) == library]
     assert own and [name for name in own if SONAMES.fits(name, version) is False] == []
     for other in DEBIAN:
-        for name in SONAMES.names(other):
-            if SONAMES.family(name) == library and SONAMES.fits(name, version) is False:
+        for name in SONAMES.list_names(other):
+            if SONAMES.find_family(name) == library and SONAMES.fits(name, version) is False:
                 assert SONAMES.has(platform, name) is False
 
 
@@ -80,7 +80,7 @@ def test_reviewed_libraries_count_as_the_file_lists_do(library, platform):
     ("version", "numbers"), [("1.12", [1, 12]), ("4.5d", [4, 5]), ("406", [4, 6]), ("410", [4, 10]), ("2", [2])]
 )
 def test_numbers_of_a_soname(version, numbers):
-    assert numbers_of(version) == numbers
+    assert parse_numbers(version) == numbers
 
 
 REACH = [*zip(DEBIAN, ("2.31", "2.36", "2.41"), ("3.4.28", "3.4.30", "3.4.33"), strict=True), ("ubuntu jammy", "", "")]
@@ -200,8 +200,8 @@ def test_a_library_for_another_kind_of_machine_is_none(root, made_elf):
 
 def test_what_can_be_installed_is_named():
     shelf = MachineShelf("robot", Loader((), Path("/nowhere"), {}, lambda c: ""), "", "debian bookworm", SONAMES)
-    assert shelf.package("libpcl_common.so.1.13") == "libpcl-common1.13"
-    assert shelf.package("libpcl_common.so.1.11") == ""
+    assert shelf.find_package("libpcl_common.so.1.13") == "libpcl-common1.13"
+    assert shelf.find_package("libpcl_common.so.1.11") == ""
 
 
 # How the table is made
@@ -218,7 +218,7 @@ usr/share/gdb/auto-load/usr/lib/libropes.so.7-gdb.py    libs/libropes7
 
 
 def test_versioned_libraries_of_an_index():
-    assert libraries_of(CONTENTS.splitlines()) == {
+    assert parse_libraries(CONTENTS.splitlines()) == {
         "libz.so.1": "zlib1g", "libropes.so.7": "libropes7", "libknot.so.2": "libknot2",
     }  # fmt: skip
 
@@ -230,11 +230,11 @@ def test_how_far_symbols_reach_is_told_by_the_package_and_the_file():
         "libstdc++.so.6.0.99": "gcc-snapshot",
         "libstdc++.so.6": "libstdc++6",
     }
-    assert symbols_of(libraries, packages.splitlines()) == {"GLIBC": "2.36", "GLIBCXX": "3.4.30"}
+    assert parse_symbols(libraries, packages.splitlines()) == {"GLIBC": "2.36", "GLIBCXX": "3.4.30"}
 
 
 def test_a_table_says_which_platforms_have_a_library():
-    table = table_of(
+    table = build_table(
         [Suite("one", {"a.so.1": "a1"}, {}), Suite("two", {"a.so.1": "a1x", "b.so.2": "b2"}, {"GLIBC": "2"})]
     )
     assert table.names.splitlines() == ["a.so.1 3 a1x", "b.so.2 2 b2"]

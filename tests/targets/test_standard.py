@@ -4,18 +4,18 @@ import pytest
 from rosimpact.databuild import std_names
 from rosimpact.impact.targets.providers.standard import (
     DEFINED_IN,
-    bit_of,
-    brought_by,
-    named_by,
-    names,
-    offering,
+    find_named,
+    get_bit,
+    index_headers,
+    list_brought,
+    load_names,
 )
 
 
 def reaches(headers, name, gcc):
     """Whether any of these standard headers brings the definition of a name in a GCC; None for an unknown name."""
     wanted = DEFINED_IN.get(name)
-    return None if wanted is None else any(not brought_by(header, gcc).isdisjoint(wanted) for header in headers)
+    return None if wanted is None else any(not list_brought(header, gcc).isdisjoint(wanted) for header in headers)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ def test_reaches(headers, name, gcc, there):
 
 @pytest.mark.parametrize(("gcc", "same_as"), [(4, 5), (6, 5), (8, 7), (99, 15)])
 def test_an_unknown_version_is_answered_as_its_neighbour(gcc, same_as):
-    assert brought_by("string", gcc) == brought_by("string", same_as)
+    assert list_brought("string", gcc) == list_brought("string", same_as)
 
 
 def test_the_public_header_brings_its_names():
@@ -89,34 +89,34 @@ def test_the_public_header_brings_its_names():
     ],
 )
 def test_names_that_a_header_brings_alone(header, name, gcc, year, there):
-    told = named_by(header, gcc, year)
-    assert told is not None and bool(told & bit_of(name)) is there
+    told = find_named(header, gcc, year)
+    assert told is not None and bool(told & get_bit(name)) is there
 
 
 def test_headers_and_names_that_are_not_told_of():
-    assert named_by("winch/winch.hpp", 13, 2017) is None
-    assert bit_of("std::winch") == 0
+    assert find_named("winch/winch.hpp", 13, 2017) is None
+    assert get_bit("std::winch") == 0
 
 
 @pytest.mark.parametrize(
     ("gcc", "year", "gcc_told", "year_told"), [(12, 2017, 11, 2017), (99, 2023, 15, 2020), (13, 2011, 13, 2017)]
 )
 def test_versions_and_standards_that_are_not_told_of_are_answered_as_their_neighbours(gcc, year, gcc_told, year_told):
-    assert named_by("memory", gcc, year) == named_by("memory", gcc_told, year_told)
+    assert find_named("memory", gcc, year) == find_named("memory", gcc_told, year_told)
 
 
 def test_the_table_has_the_names_that_its_builder_asks_for():
-    assert names().names == std_names.home()
+    assert load_names().names == std_names.find_home_headers()
 
 
 def test_each_name_is_brought_by_the_header_that_is_said_to_offer_it():
-    late = {name for name, header in names().names.items() if header in ("span", "charconv")}
-    told = {n: h for n, (h, *_) in offering().items() if bit_of(n) and n not in late}
-    assert [n for n, h in told.items() if not (named_by(h, 13, 2017) or 0) & bit_of(n)] == []
+    late = {name for name, header in load_names().names.items() if header in ("span", "charconv")}
+    told = {n: h for n, (h, *_) in index_headers().items() if get_bit(n) and n not in late}
+    assert [n for n, h in told.items() if not (find_named(h, 13, 2017) or 0) & get_bit(n)] == []
 
 
 def test_probes_refuse_types_that_are_only_announced():
-    lines = dict(std_names.probes())
+    lines = dict(std_names.list_probes())
     assert lines["std::vector"] == "enum { size = sizeof(std::vector<int>) };"
     assert lines["std::mutex"] == "enum { size = sizeof(std::mutex) };"
     assert lines["std::sort"] == "using std::sort;" and lines["memcpy"] == "using ::memcpy;"

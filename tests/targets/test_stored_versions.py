@@ -11,8 +11,8 @@ from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 
-HUMBLE, JAZZY = (DistroTarget(distro).version("rclcpp") for distro in ("humble", "jazzy"))
-EARLY = DistroTarget("humble", "2024-03-01").version("rclcpp")
+HUMBLE, JAZZY = (DistroTarget(distro).find_version("rclcpp") for distro in ("humble", "jazzy"))
+EARLY = DistroTarget("humble", "2024-03-01").find_version("rclcpp")
 """What humble had then, and has now, are not the same."""
 
 
@@ -36,7 +36,7 @@ def versions(tmp_path):
         for name in state.surfaces:
             packing.add(name, version, (2,), state, version == JAZZY)
     file = tmp_path / "surfaces.sqlite"
-    write(file, packing.packed())
+    write(file, packing.pack_packages())
     return StoredVersions(Surfaces(file))
 
 
@@ -50,7 +50,7 @@ def versions(tmp_path):
         (JAZZY, (JAZZY, JAZZY, True)),
         # The newest before what it has.
         ("jazzy", (JAZZY, HUMBLE, True)),
-        ("kilted", (DistroTarget("kilted").version("rclcpp"), HUMBLE, True)),
+        ("kilted", (DistroTarget("kilted").find_version("rclcpp"), HUMBLE, True)),
     ],
 )
 def test_what_stands_for_what(versions, asked, found):
@@ -73,12 +73,12 @@ def test_what_does_not(versions, package, asked, why):
 
 
 def test_packages_that_were_released_together_are_seen_together(versions):
-    (_, before), (_, after) = (versions.surface("rclcpp", asked) for asked in ("humble", JAZZY))
+    (_, before), (_, after) = (versions.find_surface("rclcpp", asked) for asked in ("humble", JAZZY))
     changes = compare(before.surfaces["rclcpp"], after.surfaces["rclcpp"], before, after)
     assert [(c.kind, c.name, c.moved_to) for c in changes] == [("moved", "f", "rclcpp_action")]
 
 
 def test_the_newest_distro_that_has_it(versions):
-    assert versions.newest("roscpp") == "noetic"
+    assert versions.find_newest("roscpp") == "noetic"
     with pytest.raises(VersionError, match="no distro ever had `no_such_thing`"):
-        versions.newest("no_such_thing")
+        versions.find_newest("no_such_thing")

@@ -6,7 +6,7 @@ import textwrap
 import pytest
 from rosimpact.databuild.surface.clones import Clone, Clones, VersionError
 from rosimpact.databuild.surface.compare import RepositorySurfaces, compare, compare_states
-from rosimpact.databuild.surface.package import surfaces_of
+from rosimpact.databuild.surface.package import build_surfaces
 from rosimpact.impact.facts.extract import kinds
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.targets.distro.distro import DistroTarget
@@ -56,7 +56,7 @@ def state(tmp_path_factory):
         folder = tmp_path_factory.mktemp("ws")
         write(folder, *parts)
         with Store(tmp_path_factory.mktemp("cache")) as store:
-            return RepositorySurfaces(surfaces_of(WorkingTree(folder), store, 1))
+            return RepositorySurfaces(build_surfaces(WorkingTree(folder), store, 1))
 
     return make
 
@@ -370,7 +370,7 @@ def test_a_version_is_found_by_its_tag(clone, store):
     clones = Clones(clone.parent)
     versions = {}
     for asked in ("16.0.0", "28.1.0"):
-        version, state = clones.surface("rclcpp", asked, store, 1)
+        version, state = clones.find_surface("rclcpp", asked, store, 1)
         versions[asked] = (version.revision, version.approximate, state.surfaces["rclcpp"].version)
     assert versions == {
         "16.0.0": ("refs/tags/16.0.0", False, "16.0.0"),
@@ -379,7 +379,7 @@ def test_a_version_is_found_by_its_tag(clone, store):
 
 
 def test_a_branch_stands_for_a_tag_that_is_missing(clone, store):
-    version, _ = Clones(clone.parent).surface("rclcpp", "humble", store, 1)
+    version, _ = Clones(clone.parent).find_surface("rclcpp", "humble", store, 1)
     assert (version.revision, version.approximate) == ("refs/heads/humble", True)
 
 
@@ -391,9 +391,9 @@ def test_the_same_tag_of_another_repository_that_once_had_the_package_is_not_tak
     write(place, files("topic_tools"))
     git(place, "add", "-A")
     git(place, "commit", "-qm", "x")
-    git(place, "tag", DistroTarget("humble").version("topic_tools"))
+    git(place, "tag", DistroTarget("humble").find_version("topic_tools"))
     with pytest.raises(VersionError, match="of which there is no clone"):
-        Clones(place.parent).surface("topic_tools", "humble", store, 1)
+        Clones(place.parent).find_surface("topic_tools", "humble", store, 1)
 
 
 def test_tags_of_release_repositories(clone):
@@ -409,14 +409,14 @@ def test_tags_of_release_repositories(clone):
 
 
 def test_a_release_repository_has_what_its_tags_say_whatever_it_is_called(clone, store):
-    version = DistroTarget("jazzy").version("rclcpp")
+    version = DistroTarget("jazzy").find_version("rclcpp")
     git(clone, "tag", f"release/jazzy/rclcpp/{version}-1", "v28.1.0")
     clone.rename(clone.parent / "ros2-gbp+cpp_client-release")
-    found, state = Clones(clone.parent).surface("rclcpp", "jazzy", store, 1)
+    found, state = Clones(clone.parent).find_surface("rclcpp", "jazzy", store, 1)
     assert (found.clone.name, found.version, found.approximate) == ("ros2-gbp/cpp_client-release", version, False)
     assert "rclcpp" in state.surfaces
     with pytest.raises(VersionError, match="of which there is no clone"):
-        Clones(clone.parent).surface("rclcpp", "kilted", store, 1)
+        Clones(clone.parent).find_surface("rclcpp", "kilted", store, 1)
 
 
 @pytest.mark.parametrize(
@@ -430,12 +430,12 @@ def test_a_release_repository_has_what_its_tags_say_whatever_it_is_called(clone,
 )
 def test_what_cannot_be_read_is_told(clone, store, package, asked, why):
     with pytest.raises(VersionError, match=why):
-        Clones(clone.parent).surface(package, asked, store, 1)
+        Clones(clone.parent).find_surface(package, asked, store, 1)
 
 
 def test_what_is_equal_in_two_tags_is_read_once(clone, store, monkeypatch):
-    first = Clone(clone).surfaces("16.0.0", store, 1)
+    first = Clone(clone).read_surfaces("16.0.0", store, 1)
     read = []
     monkeypatch.setattr(kinds, "extract", lambda kind, data: read.append(kind))
-    assert Clone(clone).surfaces("humble", store, 1) == first
+    assert Clone(clone).read_surfaces("humble", store, 1) == first
     assert read == []

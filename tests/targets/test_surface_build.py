@@ -3,10 +3,10 @@
 import textwrap
 
 import pytest
-from rosimpact.databuild.surface.build import KINDS, surface_of
+from rosimpact.databuild.surface.build import KINDS, build_surface
 from rosimpact.databuild.surface.compare_build import compare
-from rosimpact.impact.facts.extract import gather
-from rosimpact.impact.facts.kinds import kind_of
+from rosimpact.impact.facts.extract import extract_all
+from rosimpact.impact.facts.kinds import find_kind
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.package import Watched
 from rosimpact.impact.model.workspace import link
@@ -18,7 +18,7 @@ MANIFEST = """<package format="3"><name>arm</name><version>1.2.3</version><descr
 
 
 def wanted(path):
-    kind = kind_of(path)
+    kind = find_kind(path)
     return kind if kind in KINDS else None
 
 
@@ -38,9 +38,9 @@ def surface(tmp_path_factory):
             (folder / "arm" / path).write_text(textwrap.dedent(text))
         tree = WorkingTree(folder)
         with Store(tmp_path_factory.mktemp("cache")) as store:
-            gathered = gather(tree, store, jobs=1, kind_of=wanted)
+            gathered = extract_all(tree, store, jobs=1, kind_of=wanted)
             workspace = link(tree, gathered, store, None, Watched(), 1)
-            return surface_of(workspace, workspace.packages["arm"])
+            return build_surface(workspace, workspace.packages["arm"])
 
     return make
 

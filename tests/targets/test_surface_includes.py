@@ -4,7 +4,7 @@ import pytest
 from rosimpact.databuild.extract.cpp import extract as header
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
-from rosimpact.databuild.surface.headers import compiled
+from rosimpact.databuild.surface.headers import keep_compiled_includes
 from rosimpact.databuild.surface_file import Including, write
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp.lexical import Include
@@ -28,7 +28,7 @@ from rosimpact.impact.targets.unpacked import read_packed
     ],
 )
 def test_includes_that_some_linux_compiles(code, expected):
-    assert compiled(header(code.encode())).includes == tuple(
+    assert keep_compiled_includes(header(code.encode())).includes == tuple(
         Include(path, angled, 0, 0, conditions) for path, angled, conditions in expected
     )
 
@@ -43,11 +43,11 @@ def test_includes_that_some_linux_compiles(code, expected):
     ],
 )
 def test_types_that_a_header_only_announces(code, announced):
-    assert compiled(header(code.encode())).announced == announced
+    assert keep_compiled_includes(header(code.encode())).announced == announced
 
 
 def _header(code):
-    return compiled(header(code.encode()))
+    return keep_compiled_includes(header(code.encode()))
 
 
 def test_each_version_includes_what_it_did():
@@ -55,16 +55,19 @@ def test_each_version_includes_what_it_did():
     including.add("1.0.0", [("arm/a.h", _header("#include <x>\n#include <y>")), ("arm/b.h", _header("class B;"))])
     including.add("2.0.0", [("arm/a.h", _header("#include <y>\n#include <x>"))])
     including.add("3.0.0", [("arm/a.h", _header("#include <x>\n#include <y>"))], True)
-    included = read_packed(including.packed(), Included)
-    written = {version: included.written("arm/a.h", version) for version in ("1.0.0", "2.0.0", "3.0.0", "4.0.0")}
+    included = read_packed(including.pack_versions(), Included)
+    written = {version: included.list_includes("arm/a.h", version) for version in ("1.0.0", "2.0.0", "3.0.0", "4.0.0")}
     assert {version: None if told is None else [one.path for one in told] for version, told in written.items()} == {
         "1.0.0": ["x", "y"],
         "2.0.0": ["y", "x"],
         "3.0.0": ["x", "y"],
         "4.0.0": None,
     }
-    assert included.written("arm/b.h", "1.0.0") == () and included.written("arm/b.h", "2.0.0") is None
-    assert included.announced("arm/b.h", "1.0.0") == ("B",) and included.announced("arm/b.h", "2.0.0") == ()
+    assert included.list_includes("arm/b.h", "1.0.0") == () and included.list_includes("arm/b.h", "2.0.0") is None
+    assert (
+        included.list_announced_types("arm/b.h", "1.0.0") == ("B",)
+        and included.list_announced_types("arm/b.h", "2.0.0") == ()
+    )
     # A branch stands for no other version.
     stands = {version: included.stands_for(version) for version in ("0.5.0", "1.5.0", "3.5.0")}
     assert stands == {"0.5.0": None, "1.5.0": "1.0.0", "3.5.0": "2.0.0"}
@@ -87,7 +90,7 @@ def machine(tmp_path):
             for version, headers in each.items():
                 one = _surface(package, version, headers, (messages or {}).get(package, {}))
                 packing.add(package, version, (ros,), RepositorySurfaces({package: one}))
-        write(tmp_path / "x", packing.packed())
+        write(tmp_path / "x", packing.pack_packages())
         generators = {"gencpp": "<gencpp>", "rosidl_generator_cpp": "<rosidl_generator_cpp>"}
         owners = {owner: {pattern: "0 0"} for owner, pattern in generators.items()}
         table = IncludesTable(
@@ -121,26 +124,26 @@ ARM = {
     ],
 )
 def test_what_a_header_brings_along_through_packages(machine, version, brought, outside):
-    told = machine(ARM, {"arm": version, "leg": "0.5.0"}).brought("arm/all.hpp")
+    told = machine(ARM, {"arm": version, "leg": "0.5.0"}).find_brought("arm/all.hpp")
     assert brought <= told.headers and "arm/all.hpp" in told.headers
     assert ("leg/leg.hpp" in told.headers) == (version < "2")
     assert told.outside == outside
 
 
 def test_a_package_that_is_not_there_is_outside(machine):
-    told = machine(ARM, {"arm": "1.0.0"}).brought("arm/all.hpp")
+    told = machine(ARM, {"arm": "1.0.0"}).find_brought("arm/all.hpp")
     assert told.outside == {"leg/leg.hpp"} and "rope/rope.h" in told.headers
 
 
 def test_versions_older_than_all_are_not_known(machine):
     known = machine(ARM, {"arm": "0.9.0"})
-    assert known.brought("arm/all.hpp").outside == {"arm/all.hpp"}
-    assert known.owner("arm/all.hpp") is None and known.knows("arm/all.hpp") and not known.knows("arm/none.hpp")
+    assert known.find_brought("arm/all.hpp").outside == {"arm/all.hpp"}
+    assert known.find_owner("arm/all.hpp") is None and known.knows("arm/all.hpp") and not known.knows("arm/none.hpp")
 
 
 def test_whose_a_header_is(machine):
     known = machine(ARM, {"arm": "2.3.0"})
-    assert [known.owner(header) for header in ("arm/all.hpp", "hand/hand.h", "rope/rope.h", "leg/leg.hpp")] == [
+    assert [known.find_owner(header) for header in ("arm/all.hpp", "hand/hand.h", "rope/rope.h", "leg/leg.hpp")] == [
         ("arm", "2.3.0"),
         ("arm", "2.3.0"),
         ("rope", "1.2"),
@@ -193,7 +196,7 @@ GRIP = "arm_msgs/msg/detail/grip"
 )
 def test_what_headers_of_messages_bring_along(machine, ros, header, expected):
     stored = {package: {"1.0.0": {}} for package in MESSAGES}
-    told = machine(stored, dict.fromkeys(MESSAGES, "1.0.0"), ros, MESSAGES).brought(header)
+    told = machine(stored, dict.fromkeys(MESSAGES, "1.0.0"), ros, MESSAGES).find_brought(header)
     assert expected <= told.headers and not told.outside
     # A header that a field's type has for its users is not taken in by ROS 2's.
     assert "hand_msgs/msg/finger.hpp" not in told.headers

@@ -8,8 +8,8 @@ import tarfile
 import pytest
 from rosimpact.databuild.surface.clones import VersionError
 from rosimpact.databuild.surface.compare import RepositorySurfaces, compare
-from rosimpact.databuild.surface.installed import is_installed, surface_at
-from rosimpact.databuild.surface.package import surfaces_of
+from rosimpact.databuild.surface.installed import is_installed, read_surface
+from rosimpact.databuild.surface.package import build_surfaces
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.tree import WorkingTree
 
@@ -130,9 +130,9 @@ EXPECTED = {
 
 
 def test_a_prefix_is_read_package_by_package(installed):
-    surface, _ = surface_at("arm", str(installed))
+    surface, _ = read_surface("arm", str(installed))
     assert (surface.package, surface.version, told(surface)) == ("arm", "1.2.0", EXPECTED)
-    assert [path for path, _ in surface_at("leg", str(installed))[0].headers] == ["leg/knee.hpp"]
+    assert [path for path, _ in read_surface("leg", str(installed))[0].headers] == ["leg/knee.hpp"]
 
 
 @pytest.mark.parametrize(
@@ -142,15 +142,15 @@ def test_so_are_debian_packages_and_links_in_them(tmp_path, packed, name):
     own = {path: text for path, text in INSTALLED.items() if "leg" not in path}
     expected = EXPECTED | {"headers": ["arm/gripper.hpp", "arm/same.hpp"], "names": EXPECTED["names"] * 2}
     file = deb(tmp_path / "ros-jazzy-arm_1.2.0-1_amd64.deb", own, packed, name)
-    assert told(surface_at("arm", str(file))[0]) == expected
-    assert told(surface_at("arm", f"{tmp_path}/")[0]) == expected
+    assert told(read_surface("arm", str(file))[0]) == expected
+    assert told(read_surface("arm", f"{tmp_path}/")[0]) == expected
 
 
 def test_what_is_installed_is_what_the_sources_of_that_version_offer(tmp_path):
     installed = put(tmp_path / "jazzy", {path: text for path, text in INSTALLED.items() if "msg" not in path})
     with Store(tmp_path / "store.sqlite") as store:
-        before = RepositorySurfaces(surfaces_of(WorkingTree(put(tmp_path / "ws", SOURCES)), store, jobs=1))
-    surface, after = surface_at("arm", str(installed))
+        before = RepositorySurfaces(build_surfaces(WorkingTree(put(tmp_path / "ws", SOURCES)), store, jobs=1))
+    surface, after = read_surface("arm", str(installed))
     changes = compare(before.surfaces["arm"], surface, before, after)
     assert [(change.kind, change.what, change.name) for change in changes if change.breaks and change.sure >= 1] == []
 
@@ -170,7 +170,7 @@ def test_what_cannot_be_read_is_named(tmp_path, installed, asked, says):
     (tmp_path / "empty.deb").write_bytes(b"!<arch>\n")
     deb(tmp_path / "odd.deb", {}, name="data.tar.lz9")
     with pytest.raises(VersionError) as error:
-        surface_at("hand", str(tmp_path / asked))
+        read_surface("hand", str(tmp_path / asked))
     assert says in str(error.value) and str(tmp_path) in str(error.value)
 
 
@@ -181,7 +181,7 @@ def test_versions_and_distros_are_no_paths(installed, monkeypatch):
 
 
 def test_a_file_that_cannot_be_read_costs_itself_only(installed):
-    whole, _ = surface_at("arm", str(installed))
+    whole, _ = read_surface("arm", str(installed))
     include = installed / "include/arm/arm"
     include.mkdir(parents=True, exist_ok=True)
     with open(include / "sparse.hpp", "wb") as file:
@@ -190,7 +190,7 @@ def test_a_file_that_cannot_be_read_costs_itself_only(installed):
     (include / "zero.hpp").symlink_to("/dev/zero")
     with open(installed / "share/arm/sparse.cmake", "wb") as file:
         file.truncate(3 << 30)
-    found, _ = surface_at("arm", str(installed))
+    found, _ = read_surface("arm", str(installed))
     assert {path for path, header in found.headers if header.entities} == {p for p, h in whole.headers if h.entities}
     lost = set(found.build.unknown) - set(whole.build.unknown)
     assert ("headers", "include/arm/arm/sparse.hpp cannot be read: larger than 8 MB") in lost

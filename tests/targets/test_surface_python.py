@@ -4,14 +4,14 @@ import textwrap
 
 import pytest
 from rosimpact.databuild.extract import python
-from rosimpact.databuild.surface.compare_python import broken_by, compare
-from rosimpact.databuild.surface.python import installed, kind_of, surface_of
+from rosimpact.databuild.surface.compare_python import compare, explain_break
+from rosimpact.databuild.surface.python import build_surface, find_installed_modules, find_kind
 from rosimpact.impact.facts import kinds
-from rosimpact.impact.facts.extract import gather
+from rosimpact.impact.facts.extract import extract_all
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.package import Watched
 from rosimpact.impact.model.workspace import link
-from rosimpact.impact.targets.surface.python import UNKNOWN, SurfaceNames, signature
+from rosimpact.impact.targets.surface.python import UNKNOWN, SurfaceNames, write_signature
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = """<package format="3"><name>arm</name><version>1.0.0</version><description>d</description>
@@ -32,10 +32,10 @@ def package(tmp_path_factory):
             (folder / path).write_text(textwrap.dedent(text))
         tree = WorkingTree(folder)
         with Store(tmp_path_factory.mktemp("cache")) as store:
-            main = gather(tree, store, jobs=1)
+            main = extract_all(tree, store, jobs=1)
             workspace = link(tree, main, store, None, Watched(), 1)
-            modules = gather(tree, store, jobs=1, kind_of=kind_of)
-            facts = {path: modules.facts(path).facts for path in modules.kinds}
+            modules = extract_all(tree, store, jobs=1, kind_of=find_kind)
+            facts = {path: modules.get_facts(path).facts for path in modules.kinds}
         return workspace.packages["arm"], facts.get
 
     return make
@@ -48,7 +48,7 @@ def surface(package):
     def make(files):
         files = {"arm/__init__.py": "", **{f"arm/{path}": text for path, text in files.items()}}
         setup = "from setuptools import setup, find_packages\nsetup(packages=find_packages())\n"
-        return surface_of(*package({"setup.py": setup, **files}))
+        return build_surface(*package({"setup.py": setup, **files}))
 
     return make
 
@@ -84,12 +84,12 @@ def surface(package):
     ],
 )  # fmt: skip
 def test_installed_modules(package, tool, files, modules, unknown):
-    found = installed(package(files, tool)[0])
+    found = find_installed_modules(package(files, tool)[0])
     assert (sorted(found.modules), found.unknown, found.unresolved) == (modules, unknown, ())
 
 
 def test_what_a_setup_py_computes_is_named(package):
-    found = installed(package({"setup.py": "setup(packages=names())"})[0])
+    found = find_installed_modules(package({"setup.py": "setup(packages=names())"})[0])
     assert found.unresolved == ("packages: `names()`",)
 
 
@@ -137,7 +137,7 @@ def test_find(surface, files, name, where):
 
 def test_generated_and_compiled_modules_are_neither_there_nor_missing(package):
     cmake = f'{CMAKE}rosidl_generate_interfaces(arm "msg/A.msg")'
-    names = SurfaceNames(surface_of(*package({"CMakeLists.txt": cmake, "msg/A.msg": ""}, "ament_cmake")))
+    names = SurfaceNames(build_surface(*package({"CMakeLists.txt": cmake, "msg/A.msg": ""}, "ament_cmake")))
     assert names.find("arm.msg.A") is UNKNOWN
     assert names.find("arm.srv.A") is None
 
@@ -231,17 +231,17 @@ def parameters(surface):
     ],
 )
 def test_which_changes_of_parameters_break_calls(parameters, old, new, problem):
-    assert broken_by(parameters(old), parameters(new)) == problem
+    assert explain_break(parameters(old), parameters(new)) == problem
 
 
 @pytest.mark.parametrize("head", ["a, /, b, *, c=1", "*args, c, **more", "a, /", "a=1, *, b"])
 def test_a_signature_is_written_as_python_does(parameters, head):
-    assert signature(parameters(head)) == f"({head})"
+    assert write_signature(parameters(head)) == f"({head})"
 
 
 def test_nothing_else_asks_for_these_facts():
-    assert python.__name__ not in {kinds.kind_of(path) for path in ("a.py", "b/__init__.py", "scripts/run")}
-    assert (kind_of("a.py"), kind_of("setup.py"), kind_of("a.txt")) == (python.__name__, None, None)
+    assert python.__name__ not in {kinds.find_kind(path) for path in ("a.py", "b/__init__.py", "scripts/run")}
+    assert (find_kind("a.py"), find_kind("setup.py"), find_kind("a.txt")) == (python.__name__, None, None)
 
 
 def test_modules_that_take_all_names_from_each_other(surface):

@@ -7,7 +7,7 @@ from rosimpact.databuild.extract.cpp import extract as header
 from rosimpact.databuild.extract.python import extract as module
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces, compare
-from rosimpact.databuild.surface.headers import compiled
+from rosimpact.databuild.surface.headers import keep_compiled_includes
 from rosimpact.databuild.surface_file import write
 from rosimpact.impact.facts.cpp.lexical import Include
 from rosimpact.impact.facts.interface import extract as interface
@@ -51,7 +51,7 @@ def surface(version, code=CODE):
     modules = (InstalledModule("arm", "arm/__init__.py", True, module(PYTHON.encode())),)
     definitions = (("msg/M", interface(b"int8 a 1\nint8 B=2\n", "msg")),)
     python = PythonSurface("arm", modules, ("arm.msg",))
-    headers = (("a.hpp", compiled(header(code.encode()))),)
+    headers = (("a.hpp", keep_compiled_includes(header(code.encode()))),)
     parameters = (("a", None), ("rate", "2.0"))
     return Surface("arm", version, build, python, headers, definitions, False, ("rclcpp",), parameters)
 
@@ -60,7 +60,7 @@ def packed(*surfaces, approximate=False):
     packing = Packing()
     for one in surfaces:
         packing.add("arm", one.version, (2,), RepositorySurfaces({"arm": one}), approximate)
-    return packing.packed()["arm", 2]
+    return packing.pack_packages()["arm", 2]
 
 
 def stored(*surfaces):
@@ -70,7 +70,7 @@ def stored(*surfaces):
 
 def test_what_comes_back_is_what_was_packed():
     one = surface("1.0.0")
-    back = stored(one).surface("1.0.0")
+    back = stored(one).load_surface("1.0.0")
     assert compare(one, back) == compare(back, one) == ()
     told = ("build", "runs_with", "parameters")
     assert [getattr(back, name) for name in told] == [getattr(one, name) for name in told]
@@ -88,12 +88,12 @@ def test_what_comes_back_is_what_was_packed():
 def test_each_version_has_what_it_had():
     history = stored(surface("1.0.0"), surface("2.0.0", CODE.replace("f(int)", "g(int)")), surface("10.0.0"))
     assert history.versions == ("1.0.0", "2.0.0", "10.0.0")
-    assert history.names()["arm::A::f"] == ("1.0.0", "10.0.0")
+    assert history.index_names()["arm::A::f"] == ("1.0.0", "10.0.0")
     every = ("a.hpp", "arm/msg/M", "arm::A", "ARM_MAX", "arm", "arm.f", "arm.C.x")
-    assert {history.names()[name] for name in every} == {history.versions}
-    changes = compare(history.surface("1.0.0"), history.surface("2.0.0"))
+    assert {history.index_names()[name] for name in every} == {history.versions}
+    changes = compare(history.load_surface("1.0.0"), history.load_surface("2.0.0"))
     assert [(c.kind, c.name) for c in changes] == [("removed", "arm::A::f"), ("added", "arm::A::g")]
-    assert history.surface("3.0.0") is None
+    assert history.load_surface("3.0.0") is None
 
 
 def test_nothing_but_facts_is_stored():
@@ -107,12 +107,12 @@ def test_statements_and_long_messages_are_not_stored():
     lambda_ = "[](){ int told = 1; return told; }()"
     code = f"[[deprecated(\"{message}\")]] void f(int n = {lambda_}, char c = ';');"
     history = stored(surface("1.0.0", code))
-    (one,) = (e for _, h in history.surface("1.0.0").headers for e in h.entities)
+    (one,) = (e for _, h in history.load_surface("1.0.0").headers for e in h.entities)
     assert message.startswith(one.deprecated.removesuffix(" ...")) and 100 < len(one.deprecated) <= 164
     assert "told" not in one.parameters[0].default and one.parameters[1].default == "';'"
     # Another lambda is another default still.
-    changed = stored(surface("2.0.0", code.replace("told", "tale"))).surface("2.0.0")
-    assert [(c.kind, c.name) for c in compare(history.surface("1.0.0"), changed)] == [("default", "f")]
+    changed = stored(surface("2.0.0", code.replace("told", "tale"))).load_surface("2.0.0")
+    assert [(c.kind, c.name) for c in compare(history.load_surface("1.0.0"), changed)] == [("default", "f")]
 
 
 def test_a_file_of_packages(tmp_path):
@@ -122,11 +122,11 @@ def test_a_file_of_packages(tmp_path):
     surfaces = Surfaces(file)
     assert surfaces.about == about == (1, 1, "humble jazzy", "2026-08-22")
     assert surfaces.packages == {"arm"}
-    assert surfaces.history("arm", 2).approximate == {"1.0.0"}
-    assert {generation: line.versions for generation, line in surfaces.lines("arm").items()} == {2: ("1.0.0",)}
-    assert surfaces.included("arm", 2).versions == ("1.0.0",)
-    assert surfaces.lines("leg") == {}
-    assert surfaces.history("leg", 2) is surfaces.included("arm", 1) is surfaces.line("arm", 1) is None
+    assert surfaces.find_history("arm", 2).approximate == {"1.0.0"}
+    assert {generation: line.versions for generation, line in surfaces.find_lines("arm").items()} == {2: ("1.0.0",)}
+    assert surfaces.find_included("arm", 2).versions == ("1.0.0",)
+    assert surfaces.find_lines("leg") == {}
+    assert surfaces.find_history("leg", 2) is surfaces.find_included("arm", 1) is surfaces.find_line("arm", 1) is None
 
 
 def test_a_package_of_each_generation_answers_for_its_own(tmp_path):
@@ -135,19 +135,19 @@ def test_a_package_of_each_generation_answers_for_its_own(tmp_path):
     for ros, code in ((1, "void one();"), (2, "void two();")):
         one = surface("0.11.0", code)
         packing.add("arm", "0.11.0", (ros,), RepositorySurfaces({"arm": one}))
-    write(tmp_path / "x", packing.packed())
+    write(tmp_path / "x", packing.pack_packages())
     surfaces = Surfaces(tmp_path / "x")
-    assert surfaces.generations("arm") == (1, 2)
+    assert surfaces.list_ros("arm") == (1, 2)
     for ros, has in ((1, "one"), (2, "two")):
-        history = surfaces.history("arm", ros)
+        history = surfaces.find_history("arm", ros)
         assert [name for name in ("one", "two") if history.has(name, "0.11.0")] == [has]
-        assert surfaces.line("arm", ros).events == {}
+        assert surfaces.find_line("arm", ros).events == {}
     assert surfaces.about.packages == surfaces.about.versions == 1
 
 
 def test_which_package_may_have_a_header(tmp_path):
     surfaces = write(tmp_path / "x", {("arm", 2): packed(surface("1.0.0"))}) and Surfaces(tmp_path / "x")
-    assert [surfaces.holders(header) for header in ("a.hpp", "arm/any.hpp", "b.hpp")] == [("arm",), ("arm",), ()]
+    assert [surfaces.list_holders(header) for header in ("a.hpp", "arm/any.hpp", "b.hpp")] == [("arm",), ("arm",), ()]
 
 
 def test_a_file_that_is_none(tmp_path):
@@ -168,7 +168,11 @@ def test_which_parameters_surely_came_or_went(tmp_path):
     )
     surfaces = write(tmp_path / "x", {("arm", 2): arm}) and Surfaces(tmp_path / "x")
     assert surfaces.changing_parameters == {"fresh": {"arm"}, "gone": {"arm"}}
-    assert [name for name, _ in surfaces.history("arm", 2).parameters("1.0.0")] == ["*.gone", "hidden", "kept"]
+    assert [name for name, _ in surfaces.find_history("arm", 2).list_parameters("1.0.0")] == [
+        "*.gone",
+        "hidden",
+        "kept",
+    ]
     unknown = packed(
         *(msgspec.structs.replace(surface(v), parameters=p) for v, p in (("1", (("a", None),)), ("2", ())))
     )

@@ -73,7 +73,7 @@ def test_an_edited_rosdep_file_is_read_again(tmp_path):
     assert "tf_old" not in unknown(root, tmp_path / "cache")
     from rosimpact.impact.targets.distro import surroundings
 
-    surroundings._rosdep.cache_clear()  # another run
+    surroundings._load_rosdep.cache_clear()  # another run
     (root / "rosdep.yaml").write_text("other:\n  ubuntu: [libtf]\n")
     assert "tf_old" in unknown(root, tmp_path / "cache")
 

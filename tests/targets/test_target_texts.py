@@ -9,19 +9,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.impact.config import Config
-from rosimpact.impact.targets.distro.known import known_distros
+from rosimpact.impact.targets.distro.known import list_known_distros
 from rosimpact.impact.targets.resolve import (
     TargetError,
-    branch_of,
+    choose_default_distros,
     choose_targets,
-    default_distros,
-    distros_named,
+    find_named_distros,
     parse_dpkg,
     parse_image,
     parse_target,
+    read_branch,
 )
 
-DISTROS = known_distros()
+DISTROS = list_known_distros()
 NAMES = [known.name for known in DISTROS]
 CONFIG = Config(
     path=Path("rosimpact.toml"),
@@ -83,7 +83,7 @@ def test_a_table_with_names_that_nobody_knows_is_an_error(table, expected):
 
 
 def test_a_configured_target_takes_its_versions():
-    assert parse_target("robot", CONFIG).library("opencv") == "4.9"
+    assert parse_target("robot", CONFIG).find_library("opencv") == "4.9"
 
 
 ERRORS = [
@@ -169,9 +169,9 @@ def test_a_dpkg_listing_is_a_target(tmp_path):
     (tmp_path / "robot.dpkg.txt").write_text(LISTING)
     found = parse_target("robot.dpkg.txt", None, tmp_path)
     assert (found.name, found.distro, found.date, found.platform) == ("robot", "humble", "2024-02-17", "ubuntu jammy")
-    assert found.version("rclcpp") == "16.0.8"
-    assert found.version("cv_bridge") == "3.2.1"
-    assert found.library("opencv") == "4.5.4"
+    assert found.find_version("rclcpp") == "16.0.8"
+    assert found.find_version("cv_bridge") == "3.2.1"
+    assert found.find_library("opencv") == "4.5.4"
 
 
 @pytest.mark.parametrize(
@@ -203,12 +203,12 @@ CI = [
 
 @pytest.mark.parametrize(("text", "expected"), CI)
 def test_distros_that_a_ci_file_names(text, expected):
-    assert distros_named(text, NAMES) == expected
+    assert find_named_distros(text, NAMES) == expected
 
 
 @given(st.text())
 def test_any_text_may_be_a_ci_file(text):
-    assert set(distros_named(text, NAMES)) <= set(NAMES)
+    assert set(find_named_distros(text, NAMES)) <= set(NAMES)
 
 
 def workflow(*distros):
@@ -250,7 +250,7 @@ CHOICES = [
 
 @pytest.mark.parametrize(("ros", "texts", "branches", "environment", "expected", "says"), CHOICES)
 def test_what_stands_when_nothing_is_asked_for(ros, texts, branches, environment, expected, says):
-    distros, reason = default_distros(ros, texts, branches, DISTROS, environment, DAY)
+    distros, reason = choose_default_distros(ros, texts, branches, DISTROS, environment, DAY)
     assert distros == expected
     assert says in reason
 
@@ -263,7 +263,7 @@ class OneFile:
     def __init__(self, path, text):
         self.path, self.text = path, text
 
-    def entries(self):
+    def list_entries(self):
         return [SimpleNamespace(path=self.path, size=len(self.text))]
 
     def read(self, path, limit=0):
@@ -305,7 +305,7 @@ def test_ci_files_below_another_repositorys_are_not_those_of_the_workspace(monke
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     tree = OneFile("", "")
     texts = {".github/workflows/ci.yaml": "FROM ros:jazzy", "src/nav/.github/workflows/ci.yaml": "FROM ros:humble"}
-    tree.entries = lambda: [SimpleNamespace(path=path, size=20) for path in texts]
+    tree.list_entries = lambda: [SimpleNamespace(path=path, size=20) for path in texts]
     tree.read = lambda path, limit: texts[path].encode()
     assert [item.target.distro for item in choose_targets((), Config(), 2, tree)] == ["jazzy"]
 
@@ -325,7 +325,7 @@ def test_asked_for_comes_first_then_the_configuration():
 def test_the_branch_of_a_repository(tmp_path, head, branch):
     (tmp_path / ".git").mkdir()
     (tmp_path / ".git" / "HEAD").write_text(head)
-    assert branch_of(tmp_path) == branch
+    assert read_branch(tmp_path) == branch
 
 
 def test_a_worktree_has_its_own_branch(tmp_path):
@@ -333,8 +333,8 @@ def test_a_worktree_has_its_own_branch(tmp_path):
     (tmp_path / "main" / ".git" / "worktrees" / "w" / "HEAD").write_text("ref: refs/heads/jazzy\n")
     (tmp_path / "w").mkdir()
     (tmp_path / "w" / ".git").write_text("gitdir: ../main/.git/worktrees/w\n")
-    assert branch_of(tmp_path / "w") == "jazzy"
-    assert branch_of(tmp_path / "nowhere") == ""
+    assert read_branch(tmp_path / "w") == "jazzy"
+    assert read_branch(tmp_path / "nowhere") == ""
 
 
 def test_build_stamps_of_no_day_do_not_count(tmp_path):

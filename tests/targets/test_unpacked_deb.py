@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 import zstandard
 from rosimpact.databuild.surface import unpacked_deb
-from rosimpact.databuild.surface.unpacked_deb import DebError, DebFile, members
+from rosimpact.databuild.surface.unpacked_deb import DebError, DebFile, read_members
 from rosimpact.edges.limits import Limits
 
 PACKERS = {
@@ -58,7 +58,7 @@ def deb(data: bytes, packing: str = ".xz") -> bytes:
 
 def of(tmp_path: Path, data: bytes) -> dict[str, DebFile]:
     (tmp_path / "a.deb").write_bytes(data)
-    return members(tmp_path / "a.deb")
+    return read_members(tmp_path / "a.deb")
 
 
 LONG = "usr/" + "deep/" * 60 + "long.h"
@@ -151,7 +151,7 @@ HOSTILE = {
 
 @pytest.mark.parametrize(("data", "said"), HOSTILE.values(), ids=HOSTILE)
 def test_what_is_broken_is_named_at_once(tmp_path, monkeypatch, data, said):
-    monkeypatch.setattr(unpacked_deb, "limits", lambda: Limits(deb=200 << 20))
+    monkeypatch.setattr(unpacked_deb, "get_limits", lambda: Limits(deb=200 << 20))
     monkeypatch.setattr(unpacked_deb, "_MEMBERS", 2000)
     data = data() if callable(data) else data
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
@@ -181,10 +181,10 @@ def test_any_damage_is_a_clause(tmp_path):
 def test_what_is_no_file_is_not_opened(tmp_path, make):
     make(tmp_path / "a.deb")
     with pytest.raises(OSError):
-        members(tmp_path / "a.deb")
+        read_members(tmp_path / "a.deb")
 
 
 def test_a_package_larger_than_its_limit(tmp_path, monkeypatch):
-    monkeypatch.setattr(unpacked_deb, "limits", lambda: Limits(deb=1000))
+    monkeypatch.setattr(unpacked_deb, "get_limits", lambda: Limits(deb=1000))
     with pytest.raises(OSError, match="larger than 1000 bytes"):
         of(tmp_path, bytes(2000))

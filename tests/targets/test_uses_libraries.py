@@ -3,8 +3,8 @@
 import re
 
 import pytest
-from rosimpact.impact.facts.usage import places_of_use
-from rosimpact.impact.targets.changes import all_uses, changes_in_force, standards_of
+from rosimpact.impact.facts.usage import find_use_places
+from rosimpact.impact.targets.changes import changes_in_force, find_standards, load_uses
 from rosimpact.impact.targets.distro.distro import DistroTarget
 
 
@@ -14,7 +14,7 @@ class Nothing:
     def has_header(self, *_):
         return None
 
-    def header_history(self, *_):
+    def list_header_spans(self, *_):
         return ()
 
 
@@ -26,10 +26,10 @@ class Machine(DistroTarget):
         self.distro, self.ros, self.python_major = "noetic", 1, 3
         self.versions = {name.replace("_", "-"): version for name, version in versions.items()}
 
-    def version(self, package):
+    def find_version(self, package):
         return self.versions.get(package)
 
-    def library(self, name):
+    def find_library(self, name):
         return self.versions.get(name)
 
 
@@ -38,8 +38,8 @@ def refused(code: str, **versions: str) -> set[str]:
     states = {change.old: change.state for change in changes_in_force(Machine(**versions), Nothing())}
     return {
         label
-        for label, use in all_uses().items()
-        if label in states and "::" not in use.pattern.word and list(places_of_use(code.encode(), use.pattern))
+        for label, use in load_uses().items()
+        if label in states and "::" not in use.pattern.word and list(find_use_places(code.encode(), use.pattern))
     }
 
 
@@ -175,16 +175,16 @@ def test_what_a_library_refuses(code, versions, label):
     ],
 )
 def test_what_depends_on_the_standard(label, expected):
-    assert standards_of(label) == expected
+    assert find_standards(label) == expected
 
 
-@pytest.mark.parametrize("use", all_uses().values(), ids=lambda use: use.old)
+@pytest.mark.parametrize("use", load_uses().values(), ids=lambda use: use.old)
 def test_a_row_is_in_force_from_some_version_on_and_says_where_from(use):
     assert use.source and (use.removed_in or use.new_since)
     assert len(use.old) < 120
 
 
-@pytest.mark.parametrize("use", all_uses().values(), ids=lambda use: use.old)
+@pytest.mark.parametrize("use", load_uses().values(), ids=lambda use: use.old)
 def test_a_row_has_expressions_that_can_be_read(use):
     p = use.pattern
     for expression in (p.before, p.template or "", p.after, p.file, p.unless, *p.where.values()):

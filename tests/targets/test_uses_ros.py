@@ -5,8 +5,8 @@ import json
 import re
 
 import pytest
-from rosimpact.impact.facts.usage import places_of_use
-from rosimpact.impact.targets.changes import DISTROS, all_uses
+from rosimpact.impact.facts.usage import find_use_places
+from rosimpact.impact.targets.changes import DISTROS, load_uses
 from rosimpact.impact.targets.snapshot import DATA
 
 BOUND = re.compile(r"\d+(\.\d+)+\Z")
@@ -15,7 +15,7 @@ OURS = {
     for group in json.loads((DATA / "uses_ros.json").read_bytes())["uses"]
     for label in group["uses"]
 }
-ROWS = {label: row for label, row in all_uses().items() if label in OURS}
+ROWS = {label: row for label, row in load_uses().items() if label in OURS}
 
 # label: code that looks so, and code that does not. A label without an example is code itself.
 EXAMPLES = {
@@ -594,7 +594,7 @@ EXAMPLES = {
 
 
 def seen(label: str, code: str) -> bool:
-    return bool(list(places_of_use(f"{code}\n".encode(), ROWS[label].pattern)))
+    return bool(list(find_use_places(f"{code}\n".encode(), ROWS[label].pattern)))
 
 
 def test_every_example_has_its_row():

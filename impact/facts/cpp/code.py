@@ -13,40 +13,54 @@ from functools import cached_property, lru_cache
 
 from tree_sitter import Node
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ..condition import Condition
-from .flow_clean import cleaned, cleaned_further
-from .flow_grammar import DECLARED_TYPES, KIND, LISTS, NAMES, PARAMETERS, PARSER, TYPES, errors, kind, kinds, listed_in
-from .lexical import Scan, beginning_lines, scan, standing, text_of
-from .names import joined, without_templates
+from .flow_clean import clean_further, clean_source
+from .flow_grammar import (
+    DECLARED_TYPES,
+    KIND,
+    LISTS,
+    NAMES,
+    PARAMETERS,
+    PARSER,
+    TYPES,
+    find_errors,
+    get_items,
+    get_kind,
+    get_kinds,
+)
+from .lexical import Scan, decode_source, find_at_line_starts, find_words, scan
+from .names import join_scope, strip_templates
 from .schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations, Local, WrittenParameter
 
-_LEAVES = kinds("identifier", "field_identifier", "type_identifier", "namespace_identifier")
-_TEMPLATES = kinds("template_function", "template_method", "template_type")
-_CLASSES = kinds("class_specifier", "struct_specifier", "union_specifier")
-_PREPROCESSOR = kinds("preproc_if", "preproc_ifdef", "preproc_else", "preproc_elif", "preproc_elifdef")
-_DEFINES = kinds("preproc_def", "preproc_function_def")
-_TRAIT_NODES = kinds("virtual_specifier", "type_qualifier", "storage_class_specifier") | {kind("virtual", False)}
+_LEAVES = get_kinds("identifier", "field_identifier", "type_identifier", "namespace_identifier")
+_TEMPLATES = get_kinds("template_function", "template_method", "template_type")
+_CLASSES = get_kinds("class_specifier", "struct_specifier", "union_specifier")
+_PREPROCESSOR = get_kinds("preproc_if", "preproc_ifdef", "preproc_else", "preproc_elif", "preproc_elifdef")
+_DEFINES = get_kinds("preproc_def", "preproc_function_def")
+_TRAIT_NODES = get_kinds("virtual_specifier", "type_qualifier", "storage_class_specifier") | {
+    get_kind("virtual", False)
+}
 # Expressions without parts: kind and text.
 _PLAIN = {
     KIND.this: ("this", "this"),
     KIND.lambda_expression: ("lambda", ""),
     KIND.parameter_pack_expansion: ("pack", ""),
-    **dict.fromkeys(kinds("string_literal", "raw_string_literal", "concatenated_string"), ("literal", "text")),
-    **dict.fromkeys(kinds("true", "false"), ("literal", "bool")),
+    **dict.fromkeys(get_kinds("string_literal", "raw_string_literal", "concatenated_string"), ("literal", "text")),
+    **dict.fromkeys(get_kinds("true", "false"), ("literal", "bool")),
     KIND.null: ("literal", "null"),
 }
-_TYPE_PARAMETERS = kinds(
+_TYPE_PARAMETERS = get_kinds(
     "type_parameter_declaration", "variadic_type_parameter_declaration", "optional_type_parameter_declaration",
     "template_template_parameter_declaration",
 )  # fmt: skip
-_BLOCKS = kinds("compound_statement", "case_statement", "translation_unit", "declaration_list")
-_BODIES = kinds("compound_statement", "lambda_expression", "field_initializer_list")
-_NAMED = kinds("alias_declaration", "namespace_definition", "namespace_alias_definition")
-_TYPED = kinds("type_definition", "declaration", "field_declaration", "for_range_loop")
-_STATEMENTS_WITH_HEAD = kinds("if_statement", "while_statement", "switch_statement")
-_NAMES = NAMES - kinds("template_method", "namespace_identifier")
-_WRAPPED = kinds("parenthesized_declarator", "array_declarator", "attributed_declarator", "variadic_declarator")
+_BLOCKS = get_kinds("compound_statement", "case_statement", "translation_unit", "declaration_list")
+_BODIES = get_kinds("compound_statement", "lambda_expression", "field_initializer_list")
+_NAMED = get_kinds("alias_declaration", "namespace_definition", "namespace_alias_definition")
+_TYPED = get_kinds("type_definition", "declaration", "field_declaration", "for_range_loop")
+_STATEMENTS_WITH_HEAD = get_kinds("if_statement", "while_statement", "switch_statement")
+_NAMES = NAMES - get_kinds("template_method", "namespace_identifier")
+_WRAPPED = get_kinds("parenthesized_declarator", "array_declarator", "attributed_declarator", "variadic_declarator")
 _MARKS = {KIND.pointer_declarator: "*", KIND.reference_declarator: "&"}
 _TRAITS = frozenset(("virtual", "override", "final", "const", "static", "friend"))
 # What these find in comments too does no harm: it is one more name that nobody asks for.
@@ -72,13 +86,13 @@ class CppCode:
     @cached_property
     def _parsed(self) -> tuple[str, str, Node]:
         """The text, what was parsed, and its tree."""
-        source = cleaned(self._data)
+        source = clean_source(self._data)
         root = PARSER.parse(source.source).root_node
         if root.has_error:
-            further = cleaned_further(self._data, source)
+            further = clean_further(self._data, source)
             if further.source != source.source:
                 again = PARSER.parse(further.source).root_node
-                if len(errors(again, further.starts)) < len(errors(root, source.starts)):
+                if len(find_errors(again, further.starts)) < len(find_errors(root, source.starts)):
                     source, root = further, again
         return source.text, source.source.decode(), root
 
@@ -86,11 +100,11 @@ class CppCode:
     def _text(self) -> str:
         return self._parsed[1]
 
-    def _of(self, node: Node) -> str:
+    def _read(self, node: Node) -> str:
         """The text of a node."""
         return " ".join(self._text[node.start_byte : node.end_byte].split())
 
-    def _path(self, offset: int) -> list[Node]:
+    def _find_path(self, offset: int) -> list[Node]:
         """The nodes around an offset, the outermost first; the last is a leaf."""
         cursor = self._parsed[2].walk()
         path: list[Node] = []
@@ -108,16 +122,16 @@ class CppCode:
         """Line and column of an offset, from 1."""
         return self._scanned.place(offset)
 
-    def conditions(self, offset: int) -> tuple[Condition, ...] | None:
+    def find_conditions(self, offset: int) -> tuple[Condition, ...] | None:
         """The preprocessor conditions around an offset; None in a directive."""
-        return self._scanned.under(offset)
+        return self._scanned.find_conditions(offset)
 
     @cached_property
     def file(self) -> FileDeclarations:
         """What the file declares outside of functions."""
         return _Declarations(self).read(self._parsed[2])
 
-    @cached_method
+    @cache_method
     def mentions(self, word: str) -> bool:
         """Whether a word may stand in the file, in comments too."""
         return word.encode() in self._data
@@ -125,13 +139,13 @@ class CppCode:
     @cached_property
     def text(self) -> str:
         """The text of the file, comments and literals included."""
-        return text_of(self._data)
+        return decode_source(self._data)
 
     @cached_property
     def using(self) -> dict[str, str]:
         """Names that `using a::b;` makes known outside of functions or in them, in full, without parsing the file."""
         found = {}
-        for match in beginning_lines(_LIKE_USING, self.text):
+        for match in find_at_line_starts(_LIKE_USING, self.text):
             full = "".join(match.group(1).split())
             outer, _, last = full.rpartition("::")
             if outer and outer.rpartition("::")[2] != last:  # not the constructors of a base class
@@ -141,13 +155,13 @@ class CppCode:
     @cached_property
     def opened(self) -> tuple[str, ...]:
         """Namespaces that `using namespace` opens, without parsing the file."""
-        found = ("".join(match.group(1).split()) for match in beginning_lines(_LIKE_OPENED, self.text))
+        found = ("".join(match.group(1).split()) for match in find_at_line_starts(_LIKE_OPENED, self.text))
         return tuple(dict.fromkeys(found))
 
     @cached_property
     def spaces(self) -> dict[str, str]:
         """Other names of namespaces, without parsing the file."""
-        return {m.group(1): "".join(m.group(2).split()) for m in beginning_lines(_LIKE_SPACE, self.text)}
+        return {m.group(1): "".join(m.group(2).split()) for m in find_at_line_starts(_LIKE_SPACE, self.text)}
 
     @cached_property
     def like_aliases(self) -> frozenset[str]:
@@ -173,7 +187,7 @@ class CppCode:
         if not self.mentions(word):
             return False
         data = self._data
-        for match in _called_pattern(word).finditer(data):
+        for match in _compile_call_pattern(word).finditer(data):
             at = match.start()
             if data[at - 1 : at] in (b"*", b"&") or _TYPE_AHEAD.search(data, max(0, at - _FAR), at) is not None:
                 return True
@@ -181,38 +195,38 @@ class CppCode:
 
     def may_have_member(self, word: str) -> bool:
         """Whether a word may stand behind `.`, `->` or `::` and not be called; comments count too."""
-        return self.mentions(word) and _member_pattern(word).search(self._data) is not None
+        return self.mentions(word) and _compile_member_pattern(word).search(self._data) is not None
 
-    def uses(self, words: Iterable[str], wanted: Callable[[str, int], bool] | None = None) -> Iterator[CppUse]:
+    def list_uses(self, words: Iterable[str], wanted: Callable[[str, int], bool] | None = None) -> Iterator[CppUse]:
         """The places where these words are used; of `operator+=` and its like, where the operator is. wanted: whether a
         word may be of interest at an offset of the text, asked before the file is parsed."""
         for word in words:
             if word.startswith("operator"):
-                yield from self._assignments(word, wanted)
+                yield from self._list_assignments(word, wanted)
                 continue
             if not self.mentions(word):
                 continue
-            for at in standing(word, self.text):
+            for at in find_words(word, self.text):
                 if wanted is not None and not wanted(word, at):
                     continue
-                path = self._path(at)
+                path = self._find_path(at)
                 leaf = path[-1]
                 if leaf.kind_id in _LEAVES and leaf.start_byte == at and leaf.end_byte == at + len(word):
                     use = self._use(word, at, path)
                     if use is not None:
                         yield use
 
-    def _assignments(self, word: str, wanted: Callable[[str, int], bool] | None) -> Iterator[CppUse]:
+    def _list_assignments(self, word: str, wanted: Callable[[str, int], bool] | None) -> Iterator[CppUse]:
         sign = word.removeprefix("operator")
         at = self.text.find(sign)
         while at >= 0:
             if wanted is None or wanted(word, at):
-                path = self._path(at)
+                path = self._find_path(at)
                 node = path[-2] if len(path) > 1 else path[-1]
                 if path[-1].start_byte == at and node.kind_id == KIND.assignment_expression:
                     left = node.child_by_field_name("left")
                     if left is not None:
-                        yield CppUse(word, at, "assigned", word, self._place(path), self._expression(left, path[:-1]))
+                        yield CppUse(word, at, "assigned", word, self._place(path), self._make_expr(left, path[:-1]))
             at = self.text.find(sign, at + len(sign))
 
     def _use(self, word: str, at: int, path: list[Node]) -> CppUse | None:
@@ -228,7 +242,7 @@ class CppCode:
                 if parent.child_by_field_name("name") != node:
                     break
                 if node.end_byte == at + len(word):
-                    template = self._template(parent)
+                    template = self._list_template_arguments(parent)
             elif number == KIND.qualified_identifier:
                 scope = parent.child_by_field_name("scope")
                 if scope is not None and scope.start_byte <= at < scope.end_byte:
@@ -240,7 +254,7 @@ class CppCode:
             first = node
         if path[-1].kind_id == KIND.namespace_identifier and last:
             return None
-        written = without_templates(self._text[first.start_byte : at + len(word)]).removeprefix("::")
+        written = strip_templates(self._text[first.start_byte : at + len(word)]).removeprefix("::")
         parent = path[level - 1] if level else node
         number = parent.kind_id
         outer = path[:level]
@@ -250,39 +264,39 @@ class CppCode:
         if number == KIND.field_expression:
             object_ = parent.child_by_field_name("argument")
             if object_ is None or object_ == node:
-                return self._named(word, at, form, written, template, None, False, path, outer)
-            call = self._called(path, level - 1)
+                return self._make_use(word, at, form, written, template, None, False, path, outer)
+            call = self._find_args(path, level - 1)
             operator = parent.child_by_field_name("operator")
             arrow = operator is not None and operator.end_byte - operator.start_byte == 2
             if "::" in written:
                 return None
-            return CppUse(word, at, "member", written, self._place(path), self._expression(object_, outer), arrow,
+            return CppUse(word, at, "member", written, self._place(path), self._make_expr(object_, outer), arrow,
                        call, template=template)  # fmt: skip
         if number == KIND.field_initializer:
-            call = self._arguments(parent.named_children[-1], outer)
+            call = self._list_arguments(parent.named_children[-1], outer)
             return CppUse(word, at, "initializer", written, self._place(path), call=call, template=template)
         if number == KIND.call_expression:
-            return self._named(word, at, form, written, template, self._called(path, level), False, path, outer)
+            return self._make_use(word, at, form, written, template, self._find_args(path, level), False, path, outer)
         if self._is_declared(node, parent):
             return None
-        made, call = self._made(node, parent, path, level)
-        return self._named(word, at, form, written, template, call, made, path, outer)
+        made, call = self._find_construction(node, parent, path, level)
+        return self._make_use(word, at, form, written, template, call, made, path, outer)
 
-    def _named(self, word, at, form, written, template, call, made, path, outer) -> CppUse:
-        local = self._local(word, at, outer) if form == "bare" else None
+    def _make_use(self, word, at, form, written, template, call, made, path, outer) -> CppUse:
+        local = self._find_local(word, at, outer) if form == "bare" else None
         return CppUse(word, at, form, written, self._place(path), None, False, call, made, template, local)
 
-    def _called(self, path: Sequence[Node], level: int) -> tuple[Expr, ...] | None:
+    def _find_args(self, path: Sequence[Node], level: int) -> tuple[Expr, ...] | None:
         """The arguments where the node at a level is what a call calls."""
         call = path[level - 1] if level else None
         if call is None or call.kind_id != KIND.call_expression or call.child_by_field_name("function") != path[level]:
             return None
-        return self._arguments(call.child_by_field_name("arguments"), path[:level])
+        return self._list_arguments(call.child_by_field_name("arguments"), path[:level])
 
-    def _arguments(self, node: Node | None, path: Sequence[Node]) -> tuple[Expr, ...] | None:
+    def _list_arguments(self, node: Node | None, path: Sequence[Node]) -> tuple[Expr, ...] | None:
         if node is None or node.kind_id not in LISTS or node.has_error:
             return None
-        return tuple(self._expression(each, path) for each in listed_in(node))
+        return tuple(self._make_expr(each, path) for each in get_items(node))
 
     def _is_declared(self, node: Node, parent: Node) -> bool:
         """Whether a name stands where it is declared."""
@@ -303,23 +317,23 @@ class CppCode:
                                "goto_statement", "lambda_capture_specifier", "preproc_defined", "attribute")
         )  # fmt: skip
 
-    def _made(self, node: Node, parent: Node, path: Sequence[Node], level: int):
+    def _find_construction(self, node: Node, parent: Node, path: Sequence[Node], level: int):
         """Whether a name is the type of what is made, and with which arguments."""
         number = parent.kind_id
         if number == KIND.new_expression and parent.child_by_field_name("type") == node:
             arguments = parent.child_by_field_name("arguments")
-            return True, self._arguments(arguments, path[:level]) if arguments is not None else ()
+            return True, self._list_arguments(arguments, path[:level]) if arguments is not None else ()
         if number == KIND.compound_literal_expression and parent.child_by_field_name("type") == node:
             return True, None  # braces may be an aggregate's
         if number == KIND.type_descriptor and level > 3 and path[level - 2].kind_id == KIND.template_argument_list:
             function = path[level - 3]
             name = function.child_by_field_name("name")
-            if name is not None and self._of(name) in _MAKERS and path[level - 2].named_children[0] == parent:
+            if name is not None and self._read(name) in _MAKERS and path[level - 2].named_children[0] == parent:
                 up = level - 3
                 while up and path[up - 1].kind_id == KIND.qualified_identifier:
                     up -= 1
                 if up and path[up - 1].kind_id == KIND.call_expression:
-                    return True, self._called(path, up)
+                    return True, self._find_args(path, up)
         if number in (KIND.declaration, KIND.field_declaration) and parent.child_by_field_name("type") == node:
             for declarator in parent.children_by_field_name("declarator"):
                 if declarator.kind_id == KIND.init_declarator:
@@ -328,23 +342,23 @@ class CppCode:
                     if value is None or inner is None:
                         continue
                     if value.kind_id == KIND.argument_list and inner.kind_id == KIND.identifier:
-                        return True, self._arguments(value, path[:level])
+                        return True, self._list_arguments(value, path[:level])
                 elif declarator.kind_id == KIND.function_declarator and any(node.kind_id in _BODIES for node in path):
-                    return True, self._as_arguments(declarator, path[:level])
+                    return True, self._read_as_arguments(declarator, path[:level])
         return False, None
 
-    def _as_arguments(self, declarator: Node, path: Sequence[Node]) -> tuple[Expr, ...] | None:
+    def _read_as_arguments(self, declarator: Node, path: Sequence[Node]) -> tuple[Expr, ...] | None:
         """The arguments of `A a(b, c)`, which look like the parameters of a function."""
         listed = declarator.child_by_field_name("parameters")
         inner = declarator.child_by_field_name("declarator")
         if listed is None or inner is None or inner.kind_id != KIND.identifier:
             return None
         found = []
-        for each in listed_in(listed):
+        for each in get_items(listed):
             type_ = each.child_by_field_name("type") if each.kind_id == KIND.parameter_declaration else None
             if type_ is None or each.child_by_field_name("declarator") is not None or each.named_child_count != 1:
                 return None
-            found.append(self._expression(type_, path))
+            found.append(self._make_expr(type_, path))
         return tuple(found) or None  # `A a();` declares a function
 
     def _place(self, path: Sequence[Node]) -> CodePlace:
@@ -357,28 +371,28 @@ class CppCode:
             if number == KIND.namespace_definition or number in _CLASSES:
                 name = node.child_by_field_name("name")
                 if name is not None:
-                    scope.append(without_templates(self._of(name)))
+                    scope.append(strip_templates(self._read(name)))
                 if number in _CLASSES:
                     owner = "::".join(scope)
             elif number == KIND.function_definition:
-                name, _, declarator, _ = self._declarator(node.child_by_field_name("declarator"))
-                if name is not None and declarator is not None and self._of(name) in _FIXTURES:
+                name, _, declarator, _ = self._split_declarator(node.child_by_field_name("declarator"))
+                if name is not None and declarator is not None and self._read(name) in _FIXTURES:
                     listed = declarator.child_by_field_name("parameters")
-                    owner = self._of(listed.named_children[0]) if listed is not None and listed.named_children else ""
+                    owner = self._read(listed.named_children[0]) if listed is not None and listed.named_children else ""
                 elif name is not None and name.kind_id == KIND.qualified_identifier:
-                    written = without_templates(self._of(name)).rpartition("::")[0]
+                    written = strip_templates(self._read(name)).rpartition("::")[0]
                     owner = written.removeprefix("::")
             elif number in _BODIES:
                 function = True
             if number == KIND.compound_statement:
-                for at, name, _, how in self._block(node):
+                for at, name, _, how in self._list_block_names(node):
                     if how == "opened":
                         opened.append(name)
                     elif how == "used" and at < path[-1].start_byte:
                         used.append(name)
         return CodePlace("::".join(scope), owner, function, tuple(opened), tuple(used))
 
-    def _local(self, name: str, at: int, path: Sequence[Node], depth: int = 0) -> Local | None:
+    def _find_local(self, name: str, at: int, path: Sequence[Node], depth: int = 0) -> Local | None:
         """What a name means at an offset, as declared in the blocks around it."""
         if depth > 8:
             return None
@@ -386,13 +400,13 @@ class CppCode:
             number = path[level].kind_id
             if number in _BLOCKS or number in _SCOPED:
                 found = None
-                for offset, other, node, how in self._block(path[level]):
+                for offset, other, node, how in self._list_block_names(path[level]):
                     if offset >= at:
                         break
                     if other == name and how not in ("opened", "used"):
                         found = offset, node, how
                 if found is not None:
-                    return self._declared_locally(*found, path[: level + 1], depth)
+                    return self._make_local(*found, path[: level + 1], depth)
             elif number in _CLASSES and any(node.kind_id == KIND.function_definition for node in path[level:]):
                 members = path[level].child_by_field_name("body")
                 if members is not None and self._is_member(members, name):
@@ -403,24 +417,24 @@ class CppCode:
         text = self._text[body.start_byte : body.end_byte]
         return re.search(rf"\b{re.escape(name)}\s*(?:[;={{,]|\[)", text) is not None
 
-    def _declared_locally(self, offset: int, node: Node, how: str, path: Sequence[Node], depth: int) -> Local | None:
+    def _make_local(self, offset: int, node: Node, how: str, path: Sequence[Node], depth: int) -> Local | None:
         if how in ("template", "type"):
             return Local(how, "", None, offset)
         if how == "alias":
-            return Local(how, self._of(node.child_by_field_name("type") or node), None, offset)
+            return Local(how, self._read(node.child_by_field_name("type") or node), None, offset)
         if how == "captured":
             value = node.child_by_field_name("right")
-            return Local("variable", "auto", self._value(value, path, depth), offset)
-        type_ = self._type(node)
+            return Local("variable", "auto", self._parse_value(value, path, depth), offset)
+        type_ = self._read_type(node)
         if how == "each":
-            value = self._value(node.child_by_field_name("right"), path, depth)
+            value = self._parse_value(node.child_by_field_name("right"), path, depth)
             declarator = node.child_by_field_name("declarator")
-            name_node, marks, *_ = self._declarator(declarator)
+            name_node, marks, *_ = self._split_declarator(declarator)
             if name_node is not None and name_node.kind_id == KIND.structured_binding_declarator:
                 return Local("binding", "auto", value, offset)
             return Local("each", type_ + marks, value, offset)
         for declarator in node.children_by_field_name("declarator"):
-            name_node, marks, parameters, array = self._declarator(declarator)
+            name_node, marks, parameters, array = self._split_declarator(declarator)
             if name_node is None:
                 continue
             if name_node.kind_id == KIND.structured_binding_declarator:
@@ -431,35 +445,35 @@ class CppCode:
             if declarator.kind_id == KIND.init_declarator:
                 given = declarator.child_by_field_name("value")
                 if given is not None and "auto" in type_:
-                    value = self._value(given, path, depth)
+                    value = self._parse_value(given, path, depth)
             elif parameters is not None and "auto" not in type_:
                 # `A a(b);` looks like a function, and is one only with parameters that have names or kinds.
-                if how == "variable" and self._as_arguments_likely(declarator):
+                if how == "variable" and self._may_be_arguments(declarator):
                     return Local("variable", type_ + marks, None, offset)
                 return Local("function", type_ + marks, None, offset)
             return Local(how, type_ + marks + ("[]" if array else ""), value, offset)
         return Local("variable", "", None, offset)
 
-    def _as_arguments_likely(self, declarator: Node) -> bool:
+    def _may_be_arguments(self, declarator: Node) -> bool:
         listed = declarator.child_by_field_name("parameters")
         return (
             listed is not None
             and all(
-                each.kind_id == KIND.parameter_declaration and each.named_child_count == 1 for each in listed_in(listed)
+                each.kind_id == KIND.parameter_declaration and each.named_child_count == 1 for each in get_items(listed)
             )
-            and bool(listed_in(listed))
+            and bool(get_items(listed))
         )
 
-    def _value(self, node: Node | None, path: Sequence[Node], depth: int) -> Expr | None:
+    def _parse_value(self, node: Node | None, path: Sequence[Node], depth: int) -> Expr | None:
         if node is None:
             return None
         if node.kind_id in LISTS:
-            inner = listed_in(node)
-            return self._expression(inner[0], path, depth + 1) if len(inner) == 1 else None
-        return self._expression(node, path, depth + 1)
+            inner = get_items(node)
+            return self._make_expr(inner[0], path, depth + 1) if len(inner) == 1 else None
+        return self._make_expr(node, path, depth + 1)
 
-    @cached_method
-    def _block(self, node: Node) -> list[tuple[int, str, Node, str]]:
+    @cache_method
+    def _list_block_names(self, node: Node) -> list[tuple[int, str, Node, str]]:
         """What a block, loop, lambda or function declares itself: offset, name, node and how."""
         return sorted(self._declares(node), key=lambda each: each[0])
 
@@ -470,12 +484,12 @@ class CppCode:
         elif number == KIND.lambda_expression:
             declarator = node.child_by_field_name("declarator")
             if declarator is not None:
-                yield from self._parameters_of(declarator)
+                yield from self._list_parameters(declarator)
             captures = node.child_by_field_name("captures")
             for each in captures.named_children if captures is not None else ():
                 left = each.child_by_field_name("left")
                 if left is not None:
-                    yield left.start_byte, self._of(left), each, "captured"
+                    yield left.start_byte, self._read(left), each, "captured"
         elif number == KIND.function_definition:
             declarator = node.child_by_field_name("declarator")
             while declarator is not None and declarator.kind_id != KIND.function_declarator:
@@ -483,11 +497,11 @@ class CppCode:
                     declarator.named_children[-1] if declarator.kind_id in _MARKS else None
                 )
             if declarator is not None:
-                yield from self._parameters_of(declarator)
+                yield from self._list_parameters(declarator)
         elif number == KIND.catch_clause:
-            yield from self._parameters_of(node)
+            yield from self._list_parameters(node)
         elif number == KIND.for_range_loop:
-            yield from self._named_by(node.child_by_field_name("declarator"), node, "each")
+            yield from self._list_declared(node.child_by_field_name("declarator"), node, "each")
         elif number == KIND.for_statement:
             first = node.child_by_field_name("initializer")
             if first is not None:
@@ -498,7 +512,7 @@ class CppCode:
                 for each in condition.named_children:
                     yield from self._declares_among(each.named_children if each.type == "init_statement" else [each])
         elif number == KIND.template_declaration:
-            for name, at in self._template_parameters(node):
+            for name, at in self._list_template_parameters(node):
                 yield at, name, node, "template"
 
     def _declares_among(self, children: Sequence[Node]) -> Iterator[tuple[int, str, Node, str]]:
@@ -506,7 +520,7 @@ class CppCode:
             number = child.kind_id
             if number == KIND.declaration:
                 for declarator in child.children_by_field_name("declarator"):
-                    yield from self._named_by(declarator, child, "variable")
+                    yield from self._list_declared(declarator, child, "variable")
                 type_ = child.child_by_field_name("type")
                 if type_ is not None and type_.kind_id in _CLASSES:
                     yield from self._declares_among([type_])
@@ -515,45 +529,45 @@ class CppCode:
             elif number in (KIND.alias_declaration, KIND.type_definition):
                 name = child.child_by_field_name("name") or child.child_by_field_name("declarator")
                 if name is not None:
-                    yield child.start_byte, self._of(name), child, "alias"
+                    yield child.start_byte, self._read(name), child, "alias"
             elif number in DECLARED_TYPES:
                 name = child.child_by_field_name("name")
                 if name is not None and child.parent is not None and child.parent.kind_id == KIND.compound_statement:
-                    yield name.start_byte, self._of(name), child, "type"
+                    yield name.start_byte, self._read(name), child, "type"
             elif number == KIND.using_declaration:
-                text = self._of(child)
+                text = self._read(child)
                 full = text.removeprefix("using").strip(" ;")
                 if full.startswith("namespace "):
                     space = "".join(full.removeprefix("namespace").split())
                     yield child.start_byte, space.removeprefix("::"), child, "opened"
                 else:
-                    yield child.start_byte, without_templates(full).removeprefix("::"), child, "used"
+                    yield child.start_byte, strip_templates(full).removeprefix("::"), child, "used"
 
-    def _parameters_of(self, node: Node) -> Iterator[tuple[int, str, Node, str]]:
+    def _list_parameters(self, node: Node) -> Iterator[tuple[int, str, Node, str]]:
         listed = node.child_by_field_name("parameters")
         for each in listed.named_children if listed is not None else ():
             if each.kind_id in PARAMETERS:
-                yield from self._named_by(each.child_by_field_name("declarator"), each, "parameter")
+                yield from self._list_declared(each.child_by_field_name("declarator"), each, "parameter")
 
-    def _named_by(self, declarator: Node | None, node: Node, how: str) -> Iterator[tuple[int, str, Node, str]]:
+    def _list_declared(self, declarator: Node | None, node: Node, how: str) -> Iterator[tuple[int, str, Node, str]]:
         """The names that a declarator has, of a binding each of its own."""
-        name, *_ = self._declarator(declarator)
+        name, *_ = self._split_declarator(declarator)
         if name is not None:
             for each in name.named_children if name.kind_id == KIND.structured_binding_declarator else [name]:
-                yield each.start_byte, self._of(each), node, how
+                yield each.start_byte, self._read(each), node, how
 
-    def _template_parameters(self, node: Node) -> Iterator[tuple[str, int]]:
+    def _list_template_parameters(self, node: Node) -> Iterator[tuple[str, int]]:
         listed = node.child_by_field_name("parameters")
         for each in listed.named_children if listed is not None else ():
             if each.kind_id in _TYPE_PARAMETERS:
                 names = [inner for inner in each.named_children if inner.kind_id == KIND.type_identifier]
                 if names:
-                    yield self._of(names[0]), names[0].start_byte
+                    yield self._read(names[0]), names[0].start_byte
             elif each.kind_id in PARAMETERS:
-                for at, name, *_ in self._named_by(each.child_by_field_name("declarator"), each, ""):
+                for at, name, *_ in self._list_declared(each.child_by_field_name("declarator"), each, ""):
                     yield name, at
 
-    def _declarator(self, node: Node | None) -> tuple[Node | None, str, Node | None, bool]:
+    def _split_declarator(self, node: Node | None) -> tuple[Node | None, str, Node | None, bool]:
         """Name, marks, parameters and whether it is an array, of a declarator."""
         marks, parameters, array = "", None, False
         while node is not None:
@@ -579,40 +593,40 @@ class CppCode:
                 return None, marks, parameters, array
         return None, marks, parameters, array
 
-    def _type(self, node: Node) -> str:
+    def _read_type(self, node: Node) -> str:
         """The type that a declaration begins with, with its `const`."""
         type_ = node.child_by_field_name("type")
         if type_ is None:
             return ""
         if type_.kind_id in DECLARED_TYPES:
             name = type_.child_by_field_name("name")
-            return self._of(name) if name is not None else ""
+            return self._read(name) if name is not None else ""
         constant = any(
-            child.type == "type_qualifier" and self._of(child) == "const" for child in node.named_children[:3]
+            child.type == "type_qualifier" and self._read(child) == "const" for child in node.named_children[:3]
         )
-        return ("const " if constant else "") + self._of(type_)
+        return ("const " if constant else "") + self._read(type_)
 
-    def _template(self, node: Node) -> tuple[str, ...]:
+    def _list_template_arguments(self, node: Node) -> tuple[str, ...]:
         listed = node.child_by_field_name("arguments")
-        return tuple(self._of(each) for each in listed_in(listed)) if listed is not None else ()
+        return tuple(self._read(each) for each in get_items(listed)) if listed is not None else ()
 
-    def _expression(self, node: Node, path: Sequence[Node], depth: int = 0) -> Expr:
+    def _make_expr(self, node: Node, path: Sequence[Node], depth: int = 0) -> Expr:
         number, at = node.kind_id, node.start_byte
         if depth > _DEEPEST:
             return Expr("other", "", at)
         if number in (KIND.identifier, KIND.type_identifier):
-            name = self._of(node)
-            return Expr("name", name, at, local=self._local(name, at, path, depth))
+            name = self._read(node)
+            return Expr("name", name, at, local=self._find_local(name, at, path, depth))
         if number in (KIND.qualified_identifier, KIND.template_function, KIND.template_type):
             inner, template = node, None
             while inner is not None and inner.kind_id == KIND.qualified_identifier:
                 inner = inner.child_by_field_name("name")
             if inner is not None and inner.kind_id in _TEMPLATES:
-                template = self._template(inner)
+                template = self._list_template_arguments(inner)
                 written = self._text[at : (inner.child_by_field_name("name") or inner).end_byte]
             else:
                 written = self._text[at : node.end_byte]
-            return Expr("name", without_templates(written).removeprefix("::"), at, template=template)
+            return Expr("name", strip_templates(written).removeprefix("::"), at, template=template)
         if number == KIND.field_expression:
             object_, field = node.child_by_field_name("argument"), node.child_by_field_name("field")
             if object_ is None or field is None:
@@ -621,53 +635,53 @@ class CppCode:
                 field = field.named_children[-1]
             template = None
             if field.kind_id in _TEMPLATES:
-                template = self._template(field)
+                template = self._list_template_arguments(field)
                 field = field.child_by_field_name("name") or field
             operator = node.child_by_field_name("operator")
             arrow = operator is not None and operator.end_byte - operator.start_byte == 2
-            return Expr("member", self._of(field), field.start_byte, (self._expression(object_, path, depth + 1),),
+            return Expr("member", self._read(field), field.start_byte, (self._make_expr(object_, path, depth + 1),),
                         arrow, template)  # fmt: skip
         if number == KIND.call_expression:
             function, arguments = node.child_by_field_name("function"), node.child_by_field_name("arguments")
             if function is None:
                 return Expr("other", "", at)
-            given = listed_in(arguments) if arguments is not None else []
+            given = get_items(arguments) if arguments is not None else []
             parts = (function, *given)
-            return Expr("call", "", at, tuple(self._expression(each, path, depth + 1) for each in parts))
+            return Expr("call", "", at, tuple(self._make_expr(each, path, depth + 1) for each in parts))
         if number == KIND.parenthesized_expression and node.named_child_count:
-            return self._expression(listed_in(node)[0], path, depth + 1) if listed_in(node) else Expr("other", "", at)
+            return self._make_expr(get_items(node)[0], path, depth + 1) if get_items(node) else Expr("other", "", at)
         if number in (KIND.pointer_expression, KIND.subscript_expression):
             inner = node.child_by_field_name("argument")
             how, sign = ("unary", self._text[at]) if number == KIND.pointer_expression else ("index", "")
             if inner is not None:
-                return Expr(how, sign, at, (self._expression(inner, path, depth + 1),))
+                return Expr(how, sign, at, (self._make_expr(inner, path, depth + 1),))
         if number in _PLAIN:
             how, text = _PLAIN[number]
             return Expr(how, text, at)
         if number == KIND.number_literal:
-            text = self._of(node)
+            text = self._read(node)
             floating = text[:2] not in ("0x", "0X") and any(c in text for c in ".eE")
             return Expr("literal", "float" if floating else "integer", at)
         if number in (KIND.new_expression, KIND.compound_literal_expression, KIND.cast_expression):
             type_ = node.child_by_field_name("type")
             given = node.child_by_field_name("arguments") or node.child_by_field_name("value")
-            values = [] if given is None else listed_in(given) if given.kind_id in LISTS else [given]
+            values = [] if given is None else get_items(given) if given.kind_id in LISTS else [given]
             how = "new" if number == KIND.new_expression else "cast" if number == KIND.cast_expression else "braces"
-            return Expr(how, self._of(type_) if type_ is not None else "", at,
-                        tuple(self._expression(each, path, depth + 1) for each in values))  # fmt: skip
+            return Expr(how, self._read(type_) if type_ is not None else "", at,
+                        tuple(self._make_expr(each, path, depth + 1) for each in values))  # fmt: skip
         if number == KIND.initializer_list:
-            return Expr("braces", "", at, tuple(self._expression(each, path, depth + 1) for each in listed_in(node)))
+            return Expr("braces", "", at, tuple(self._make_expr(each, path, depth + 1) for each in get_items(node)))
         if number in (KIND.binary_expression, KIND.unary_expression):
             operator = node.child_by_field_name("operator")
             operands = [
                 each for name in ("left", "right", "argument") if (each := node.child_by_field_name(name)) is not None
             ]
             how = "binary" if number == KIND.binary_expression else "unary"
-            sign = self._of(operator) if operator is not None else ""
-            return Expr(how, sign, at, tuple(self._expression(each, path, depth + 1) for each in operands))
+            sign = self._read(operator) if operator is not None else ""
+            return Expr(how, sign, at, tuple(self._make_expr(each, path, depth + 1) for each in operands))
         if number == KIND.conditional_expression:
             both = (node.child_by_field_name("consequence"), node.child_by_field_name("alternative"))
-            parts = tuple(self._expression(each, path, depth + 1) for each in both if each is not None)
+            parts = tuple(self._make_expr(each, path, depth + 1) for each in both if each is not None)
             return Expr("conditional", "", at, parts)
         return Expr("other", "", at)
 
@@ -675,14 +689,14 @@ class CppCode:
 # Macros of gtest that open the body of a method of a class that is derived from what they are given first.
 _FIXTURES = frozenset(("TEST_F", "TEST_P", "TYPED_TEST", "TYPED_TEST_P"))
 _MAKERS = frozenset(("make_shared", "make_unique"))
-_SCOPED = _STATEMENTS_WITH_HEAD | kinds(
+_SCOPED = _STATEMENTS_WITH_HEAD | get_kinds(
     "lambda_expression", "function_definition", "catch_clause", "for_range_loop", "for_statement",
     "template_declaration",
 )  # fmt: skip
 
 
 @lru_cache(maxsize=4096)
-def _called_pattern(word: str) -> re.Pattern[bytes]:
+def _compile_call_pattern(word: str) -> re.Pattern[bytes]:
     return re.compile(re.escape(word.encode()) + rb"\s*\(")
 
 
@@ -691,7 +705,7 @@ _FAR = 120
 
 
 @lru_cache(maxsize=4096)
-def _member_pattern(word: str) -> re.Pattern[bytes]:
+def _compile_member_pattern(word: str) -> re.Pattern[bytes]:
     return re.compile(rb"(?:\.|->|::)\s*" + re.escape(word.encode()) + rb"(?!\w|\s*\(|\s*::)")
 
 
@@ -711,53 +725,53 @@ class _Declarations:
 
     def read(self, root: Node) -> FileDeclarations:
         with suppress(RecursionError):  # what nobody writes by hand is read as far as it goes
-            self._among(root.named_children, "", None, ())
+            self._add_nodes(root.named_children, "", None, ())
         return FileDeclarations(
             tuple(self.classes), tuple(self.names), tuple(self.using), tuple(self.opened), tuple(self.spaces),
             tuple(self.added), tuple(self.announced), tuple(self.macros),
         )  # fmt: skip
 
-    def _among(self, children: Sequence[Node], scope: str, members: dict | None, template: tuple[str, ...]) -> None:
+    def _add_nodes(self, children: Sequence[Node], scope: str, members: dict | None, template: tuple[str, ...]) -> None:
         for node in children:
             number = node.kind_id
             if number == KIND.namespace_definition:
                 name = node.child_by_field_name("name")
-                inner = joined(scope, "".join(self.code._of(name).split())) if name is not None else scope
+                inner = join_scope(scope, "".join(self.code._read(name).split())) if name is not None else scope
                 self.added[inner] = None
                 body = node.child_by_field_name("body")
                 if body is not None:
-                    self._among(body.named_children, inner, None, ())
+                    self._add_nodes(body.named_children, inner, None, ())
             elif number in (KIND.declaration, KIND.field_declaration, KIND.function_definition):
-                self._declaration(node, scope, members, template)
+                self._add_declaration(node, scope, members, template)
             elif number in _CLASSES:
-                self._class(node, scope, members, template)
+                self._add_class(node, scope, members, template)
             elif number == KIND.enum_specifier:
-                self._enum(node, scope, members)
+                self._add_enum(node, scope, members)
             elif number == KIND.template_declaration:
-                inner = tuple(name for name, _ in self.code._template_parameters(node))
-                self._among(node.named_children[1:], scope, members, inner or ("",))
+                inner = tuple(name for name, _ in self.code._list_template_parameters(node))
+                self._add_nodes(node.named_children[1:], scope, members, inner or ("",))
             elif number in _PREPROCESSOR:
-                self._among(node.named_children, scope, members, template)
+                self._add_nodes(node.named_children, scope, members, template)
             elif number == KIND.linkage_specification:
                 body = node.child_by_field_name("body")
                 if body is not None:
                     several = body.kind_id == KIND.declaration_list
-                    self._among(body.named_children if several else [body], scope, members, ())
+                    self._add_nodes(body.named_children if several else [body], scope, members, ())
             elif number in (KIND.alias_declaration, KIND.type_definition):
-                self._alias(node, scope, members, template)
+                self._add_alias(node, scope, members, template)
             elif number == KIND.using_declaration:
-                self._using(node, scope)
+                self._add_using(node, scope)
             elif number == KIND.namespace_alias_definition:
                 name = node.child_by_field_name("name")
-                meant = self.code._of(node).partition("=")[2].strip(" ;")
+                meant = self.code._read(node).partition("=")[2].strip(" ;")
                 if name is not None and meant:
-                    self.spaces.append((scope, self.code._of(name), "".join(meant.split()).removeprefix("::")))
+                    self.spaces.append((scope, self.code._read(name), "".join(meant.split()).removeprefix("::")))
             elif number in _DEFINES:
                 name = node.child_by_field_name("name")
                 if name is not None:
-                    self.macros.append(self.code._of(name))
+                    self.macros.append(self.code._read(name))
             elif number in (KIND.ERROR, KIND.declaration_list):
-                self._among(node.named_children, scope, members, template)
+                self._add_nodes(node.named_children, scope, members, template)
 
     def _add(self, members: dict[str, list[Declaration]] | None, one: Declaration) -> None:
         if members is None:
@@ -765,64 +779,64 @@ class _Declarations:
         else:
             members.setdefault(one.name, []).append(one)
 
-    def _declaration(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
+    def _add_declaration(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
         code = self.code
         type_node = node.child_by_field_name("type")
         declarators = node.children_by_field_name("declarator")
         if type_node is not None:
             if type_node.kind_id in _CLASSES:
-                self._class(type_node, scope, members, template if not declarators else ())
+                self._add_class(type_node, scope, members, template if not declarators else ())
             elif type_node.kind_id == KIND.enum_specifier:
-                self._enum(type_node, scope, members)
-        type_ = code._type(node)
+                self._add_enum(type_node, scope, members)
+        type_ = code._read_type(node)
         traits = {
-            text for child in node.children if child.kind_id in _TRAIT_NODES and (text := code._of(child)) in _TRAITS
+            text for child in node.children if child.kind_id in _TRAIT_NODES and (text := code._read(child)) in _TRAITS
         } - {"const"}
         if template:
             traits.add("template")
         for declarator in declarators:
-            name, marks, function, array = code._declarator(declarator)
+            name, marks, function, array = code._split_declarator(declarator)
             if name is None or name.kind_id == KIND.structured_binding_declarator:
                 continue
-            written = without_templates(code._of(name))
+            written = strip_templates(code._read(name))
             outer, _, last = written.removeprefix("::").rpartition("::")
-            around = joined(scope, outer) if outer else scope
+            around = join_scope(scope, outer) if outer else scope
             if function is not None:
                 inner = set(traits)
                 result = type_ + marks
                 for child in function.children:
-                    if child.kind_id in _TRAIT_NODES and code._of(child) in _TRAITS:
-                        inner.add(code._of(child))
+                    if child.kind_id in _TRAIT_NODES and code._read(child) in _TRAITS:
+                        inner.add(code._read(child))
                     elif child.kind_id == KIND.trailing_return_type and child.named_child_count:
-                        result = code._of(child.named_children[-1])
+                        result = code._read(child.named_children[-1])
                 behind = code._text[function.end_byte : node.end_byte][:40]
                 if node.kind_id == KIND.field_declaration and re.match(r"\s*=\s*0\s*;", behind):
                     inner.add("pure")
                 if re.match(r"[^{;]*=\s*delete\b", behind):
                     inner.add("deleted")
                 self._add(members if not outer else None,
-                          Declaration("function", last, around, name.start_byte, result, self._parameters(function),
-                                   frozenset(inner), template))  # fmt: skip
+                          Declaration("function", last, around, name.start_byte, result,
+                                   self._list_parameters(function), frozenset(inner), template))  # fmt: skip
             else:
                 value = None
                 if "auto" in type_ and declarator.kind_id == KIND.init_declarator:
                     given = declarator.child_by_field_name("value")
-                    value = code._value(given, (), 0)
+                    value = code._parse_value(given, (), 0)
                 self._add(members if not outer else None,
                           Declaration("variable", last, around, name.start_byte,
                                    type_ + marks + ("[]" if array else ""),
                                    (), frozenset(traits), template, value))  # fmt: skip
 
-    def _parameters(self, function: Node) -> tuple[WrittenParameter, ...]:
+    def _list_parameters(self, function: Node) -> tuple[WrittenParameter, ...]:
         code = self.code
         listed = function.child_by_field_name("parameters")
         found = []
-        for each in listed_in(listed) if listed is not None else ():
+        for each in get_items(listed) if listed is not None else ():
             if each.kind_id not in PARAMETERS:
-                found.append(WrittenParameter("..." if each.type == "variadic_parameter" else code._of(each)))
+                found.append(WrittenParameter("..." if each.type == "variadic_parameter" else code._read(each)))
                 continue
             declarator = each.child_by_field_name("declarator")
-            name, *_ = code._declarator(declarator)
+            name, *_ = code._split_declarator(declarator)
             default = each.child_by_field_name("default_value")
             # The type is all but the name and the default.
             end = default.start_byte if default is not None else each.end_byte
@@ -830,20 +844,20 @@ class _Declarations:
             if name is not None and name.kind_id == KIND.identifier:
                 start = name.start_byte - each.start_byte
                 text = text[:start] + text[start + name.end_byte - name.start_byte :]
-            found.append(WrittenParameter(" ".join(text.split()), code._of(name) if name is not None else "",
-                                   code._of(default) if default is not None else None))  # fmt: skip
+            found.append(WrittenParameter(" ".join(text.split()), code._read(name) if name is not None else "",
+                                   code._read(default) if default is not None else None))  # fmt: skip
         return tuple(found) if [p.type for p in found] != ["void"] else ()
 
-    def _class(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
+    def _add_class(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
         code = self.code
         name = node.child_by_field_name("name")
         body = node.child_by_field_name("body")
         if name is None:
             if body is not None:  # members of what is around it
-                self._among(body.named_children, scope, members, ())
+                self._add_nodes(body.named_children, scope, members, ())
             return
-        written = code._of(name)
-        full = joined(scope, without_templates(written))
+        written = code._read(name)
+        full = join_scope(scope, strip_templates(written))
         if body is None:
             if (
                 node.parent is None
@@ -855,57 +869,57 @@ class _Declarations:
         bases = []
         for child in node.named_children:
             if child.kind_id == KIND.base_class_clause:
-                bases = [code._of(one) for one in child.named_children if one.kind_id in TYPES]
+                bases = [code._read(one) for one in child.named_children if one.kind_id in TYPES]
         inside: dict[str, list[Declaration]] = {}
         place = len(self.classes)
-        self._among(body.named_children, full, inside, ())
+        self._add_nodes(body.named_children, full, inside, ())
         open_ = any(child.kind_id == KIND.ERROR or child.is_missing for child in body.children) or any(
             each.type.isupper() for those in inside.values() for each in those
         )
         one = CppClass(full, name.start_byte, tuple(bases), inside, template, "<" in written, open_, node.end_byte)
         self.classes.insert(place, one)
         if members is not None:
-            self._add(members, Declaration("type", without_templates(written), scope, name.start_byte))
+            self._add(members, Declaration("type", strip_templates(written), scope, name.start_byte))
 
-    def _enum(self, node: Node, scope: str, members) -> None:
+    def _add_enum(self, node: Node, scope: str, members) -> None:
         code = self.code
         name, body = node.child_by_field_name("name"), node.child_by_field_name("body")
         text = code._text[node.start_byte : node.start_byte + 12]
         scoped = re.match(r"enum\s+(?:class|struct)\b", text) is not None
         full = scope
         if name is not None:
-            last = without_templates(code._of(name))
-            full = joined(scope, last)
+            last = strip_templates(code._read(name))
+            full = join_scope(scope, last)
             self._add(members, Declaration("type", last, scope, name.start_byte))
         for each in body.named_children if body is not None else ():
             inner = each.child_by_field_name("name")
             if inner is not None:
-                one = Declaration("enumerator", code._of(inner), full if scoped else scope, inner.start_byte, full)
+                one = Declaration("enumerator", code._read(inner), full if scoped else scope, inner.start_byte, full)
                 if scoped:
                     self.names.append(one)
                 else:
                     self._add(members, one)
 
-    def _alias(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
+    def _add_alias(self, node: Node, scope: str, members, template: tuple[str, ...]) -> None:
         code = self.code
         if node.kind_id == KIND.alias_declaration:
             name, type_ = node.child_by_field_name("name"), node.child_by_field_name("type")
             if name is not None and type_ is not None:
-                self._add(members, Declaration("alias", code._of(name), scope, name.start_byte, code._of(type_),
+                self._add(members, Declaration("alias", code._read(name), scope, name.start_byte, code._read(type_),
                                             template=template))  # fmt: skip
             return
         type_ = node.child_by_field_name("type")
         if type_ is not None and type_.kind_id in _CLASSES:
-            self._class(type_, scope, members, ())
+            self._add_class(type_, scope, members, ())
         for declarator in node.children_by_field_name("declarator"):
-            name, marks, function, array = code._declarator(declarator)
+            name, marks, function, array = code._split_declarator(declarator)
             if name is not None and function is None:
-                self._add(members, Declaration("alias", code._of(name), scope, name.start_byte,
-                                            code._type(node) + marks + ("[]" if array else "")))  # fmt: skip
+                self._add(members, Declaration("alias", code._read(name), scope, name.start_byte,
+                                            code._read_type(node) + marks + ("[]" if array else "")))  # fmt: skip
 
-    def _using(self, node: Node, scope: str) -> None:
-        full = self.code._of(node).removeprefix("using").strip(" ;")
+    def _add_using(self, node: Node, scope: str) -> None:
+        full = self.code._read(node).removeprefix("using").strip(" ;")
         if full.startswith("namespace "):
             self.opened.append((scope, "".join(full.removeprefix("namespace").split()).removeprefix("::")))
         else:
-            self.using.append((scope, without_templates(full.removeprefix("typename")).removeprefix("::")))
+            self.using.append((scope, strip_templates(full.removeprefix("typename")).removeprefix("::")))

@@ -16,7 +16,7 @@ from tree_sitter import Node
 
 from ..flow import Alias, Assignment, DataMember, FlowClass, FlowExpr, FlowFile
 from ..place import Problem
-from .flow_clean import Cleaned, cleaned, cleaned_further
+from .flow_clean import Cleaned, clean_further, clean_source
 from .flow_grammar import (
     DECLARATORS,
     DECLARED_TYPES,
@@ -24,30 +24,30 @@ from .flow_grammar import (
     NAMES,
     PARSER,
     TYPES,
-    errors,
-    grammatical,
-    listed_in,
-    node_readers,
+    find_errors,
+    find_node_readers,
+    get_items,
+    list_children,
 )
 from .flow_statements import CppStatements
-from .flow_values import PASS, READ, bare, flat
-from .lexical import EXPORTING, beginning_lines, exports_of, scan
-from .names import joined
+from .flow_values import PASS, READ, flatten, strip_template
+from .lexical import EXPORTING, find_at_line_starts, list_exports, scan
+from .names import join_scope
 
 INCLUDED = re.compile(r"#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]")
 
 
 def extract(data: bytes) -> FlowFile:
     """The flow of one C or C++ file. Never raises; what did not parse is in `unread`, what went wrong in `problems`."""
-    source = cleaned(data)
+    source = clean_source(data)
     root = PARSER.parse(source.source).root_node
-    wrong = errors(root, source.starts)
+    wrong = find_errors(root, source.starts)
     reader = None if wrong else read(source, root)
     if reader is None or reader.misread:
-        further = cleaned_further(data, source)
+        further = clean_further(data, source)
         if further.source != source.source:
             again = PARSER.parse(further.source).root_node
-            still_wrong = errors(again, further.starts)
+            still_wrong = find_errors(again, further.starts)
             if len(still_wrong) <= len(wrong):
                 source, root, wrong, reader = further, again, still_wrong, None
     if reader is None:
@@ -55,8 +55,8 @@ def extract(data: bytes) -> FlowFile:
     reader.leave_outside()
     exports: tuple[str, ...] = ()
     if any(word in source.text for word in EXPORTING):
-        exports = exports_of(scan(data).visible)
-    included = (match.group(1) for match in beginning_lines(INCLUDED, source.text))
+        exports = list_exports(scan(data).visible)
+    included = (match.group(1) for match in find_at_line_starts(INCLUDED, source.text))
     return FlowFile(
         "cpp", tuple(reader.aliases), tuple(reader.classes), tuple(reader.functions), tuple(reader.constants), exports,
         tuple(sorted(wrong.union(source.hidden))), tuple(reader.problems), tuple(dict.fromkeys(included)),
@@ -67,7 +67,7 @@ def read(source: Cleaned, root: Node) -> _File:
     """A source as parsed, read."""
     reader = _File(source)
     try:
-        reader.scope(root.children, "", "", ())
+        reader.visit_scope(root.children, "", "", ())
     except RecursionError:
         reader.problems.append(Problem(1, "nested too deeply to be read in full"))
     return reader
@@ -84,14 +84,14 @@ class _File(CppStatements):
         self.problems: list[Problem] = []
         self.namespaces: set[str] = set()
         self.misread = False
-        self.outside = {"": self.state()}
+        self.outside = {"": self.get_state()}
 
     def go_outside(self, owner: str) -> None:
         """Into the function that stands for what is outside of functions, of the file or of a class."""
         if owner not in self.outside:
             self.name, self.owner = "", owner
             self.begin(set())
-            self.outside[owner] = self.state()
+            self.outside[owner] = self.get_state()
         self.restore(self.outside[owner])
 
     def leave_outside(self) -> None:
@@ -101,7 +101,7 @@ class _File(CppStatements):
                 line = min(call.line for call in self.calls)
                 self.close((), line, max(call.line for call in self.calls))
 
-    def scope(self, children: list[Node], name: str, owner: str, conditions: tuple[tuple[str, int], ...]) -> None:
+    def visit_scope(self, children: list[Node], name: str, owner: str, conditions: tuple[tuple[str, int], ...]) -> None:
         """What stands in a file, namespace or class. name: the scopes so far; owner: the class, empty for none."""
         for child in children:
             read = SCOPED.get(child.kind_id)
@@ -115,29 +115,29 @@ class _File(CppStatements):
             return
         inner = name
         if said is not None:
-            inner = joined(name, "".join(self.said(said).replace("inline", "").split()))
+            inner = join_scope(name, "".join(self.spell_node(said).replace("inline", "").split()))
             self.namespaces.add(inner)
-        self.scope(body.children, inner, "", conditions)
+        self.visit_scope(body.children, inner, "", conditions)
 
     def scope_linkage_specification(self, node: Node, name: str, owner: str, conditions) -> None:
-        self.scope(node.children, name, owner, conditions)
+        self.visit_scope(node.children, name, owner, conditions)
 
     scope_declaration_list = scope_template_instantiation = scope_friend_declaration = scope_linkage_specification
 
     def scope_template_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         before, parameters = self.types, node.child_by_field_name("parameters")
-        self.types = tuple(map(self.type_parameter, parameters.named_children)) if parameters is not None else ()
-        self.scope(node.children, name, owner, conditions)
+        self.types = tuple(map(self.find_type_parameter, parameters.named_children)) if parameters is not None else ()
+        self.visit_scope(node.children, name, owner, conditions)
         self.types = before
 
-    def type_parameter(self, node: Node) -> str:
+    def find_type_parameter(self, node: Node) -> str:
         """The name of a template's parameter that is a type, empty for others."""
         if "type_parameter" not in node.type:
             return ""
         named = node.child_by_field_name("name") or next(
             (child for child in node.named_children if child.type == "type_identifier"), None
         )
-        return self.said(named) if named is not None else ""
+        return self.spell_node(named) if named is not None else ""
 
     def scope_ERROR(self, node: Node, name: str, owner: str, conditions) -> None:
         """What did not parse: whatever is a whole piece in it is read."""
@@ -147,21 +147,21 @@ class _File(CppStatements):
                 read(self, child, name, owner, conditions)
             elif child.child_count:
                 self.go_outside(owner)
-                self.statement(child, -1)
+                self.visit_statement(child, -1)
 
     def scope_preproc_if(self, node: Node, name: str, owner: str, conditions) -> None:
-        asked, statements, rest = self.branch(node)
-        if not rest and not owner and asked.startswith("!(defined(") and guards_file(node, statements):
-            self.scope(statements, name, owner, conditions)
+        asked, statements, rest = self.split_branch(node)
+        if not rest and not owner and asked.startswith("!(defined(") and is_include_guard(node, statements):
+            self.visit_scope(statements, name, owner, conditions)
             return
-        line = self.line(node)
+        line = self.find_line(node)
         inner = (*conditions, (asked, line)) if asked else conditions
-        self.scope(statements, name, owner, inner)
+        self.visit_scope(statements, name, owner, inner)
         while rest is not None:
             conditions = (*conditions, (f"!({asked})", line))
-            asked, statements, rest = self.branch(rest)
+            asked, statements, rest = self.split_branch(rest)
             inner = (*conditions, (asked, line)) if asked else conditions
-            self.scope(statements, name, owner, inner)
+            self.visit_scope(statements, name, owner, inner)
 
     scope_preproc_ifdef = scope_preproc_if
 
@@ -169,53 +169,53 @@ class _File(CppStatements):
         said = node.child_by_field_name("name")
         target = node.child_by_field_name("type")
         if said is not None and target is not None:
-            self.aliases.append(Alias(self.said(said), self.said(target), name))
+            self.aliases.append(Alias(self.spell_node(said), self.spell_node(target), name))
 
     def scope_type_definition(self, node: Node, name: str, owner: str, conditions) -> None:
-        children = grammatical(node)
-        target = self.written_type(children)
+        children = list_children(node)
+        target = self.find_written_type(children)
         for child in children:
             if child.kind_id in DECLARED_TYPES:
                 self.scope_class_specifier(child, name, owner, conditions)
         for child in node.children_by_field_name("declarator"):
-            said, marks = self.declared(child)
+            said, marks = self.split_declarator(child)
             if said is not None:
-                self.aliases.append(Alias(self.said(said), target + marks, name))
+                self.aliases.append(Alias(self.spell_node(said), target + marks, name))
 
     def scope_using_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
-        children = grammatical(node)
+        children = list_children(node)
         target = next((child for child in children if child.kind_id in NAMES), None)
         if target is None:
             return
-        said = bare(self.said(target))
+        said = strip_template(self.spell_node(target))
         if any(self.text[child.start_byte : child.end_byte] == "namespace" for child in children[:2]):
             self.aliases.append(Alias("*", said, name))
         else:
             self.aliases.append(Alias(said.rpartition("::")[2], said, name))
 
     def scope_namespace_alias_definition(self, node: Node, name: str, owner: str, conditions) -> None:
-        children = grammatical(node)
+        children = list_children(node)
         if len(children) >= 4:
-            self.aliases.append(Alias(self.said(children[1]), bare(self.said(children[3])), name))
+            self.aliases.append(Alias(self.spell_node(children[1]), strip_template(self.spell_node(children[3])), name))
 
     def scope_preproc_def(self, node: Node, name: str, owner: str, conditions) -> None:
         children = node.children
         if len(children) < 3:
             return
         said, written = children[1], children[2]
-        text = flat(self.text[written.start_byte : written.end_byte])
+        text = flatten(self.text[written.start_byte : written.end_byte])
         value: FlowExpr | None = None
         if text[:1] == '"' and text[-1:] == '"' and len(text) > 1 and '"' not in text[1:-1]:
             value = FlowExpr("text", text[1:-1])
         elif text in ("true", "false") or (text.strip("()") and _is_number(text.strip("()"))):
             value = FlowExpr("number", text.strip("()"))
         if value is not None:
-            self.constants.append(DataMember(self.said(said), "", self.line(node), value))
+            self.constants.append(DataMember(self.spell_node(said), "", self.find_line(node), value))
 
     def scope_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         """A declaration outside of functions: variables; what declares functions tells only their names."""
         self.go_outside(owner)
-        base = self.guarded(conditions)
+        base = self.add_guards(conditions)
         children = node.children
         type_ = ""
         for child in children:
@@ -227,22 +227,22 @@ class _File(CppStatements):
             if number not in DECLARATORS or (number in NAMES and node.field_name_for_child(index) != "declarator"):
                 continue
             if not typed:
-                type_, typed = self.written_type(children), True
+                type_, typed = self.find_written_type(children), True
             self.go_outside(owner)
-            self.variable(node, child, index, type_, name, owner, base)
+            self.add_variable(node, child, index, type_, name, owner, base)
 
     scope_field_declaration = scope_declaration
 
-    def variable(self, node: Node, child: Node, index: int, type_: str, name: str, owner: str, base: int) -> None:
-        said, marks = self.declared(child)
+    def add_variable(self, node: Node, child: Node, index: int, type_: str, name: str, owner: str, base: int) -> None:
+        said, marks = self.split_declarator(child)
         if said is None or self.declares_function(child):
             if said is not None and owner:
-                self.methods.append(bare(self.said(said)))
+                self.methods.append(strip_template(self.spell_node(said)))
             return
         if child.kind_id == KIND.parenthesized_declarator and node.children[-1].is_missing:
             return
-        variable = bare(self.said(said))
-        target = f"this.{variable}" if owner else joined(name, variable)
+        variable = strip_template(self.spell_node(said))
+        target = f"this.{variable}" if owner else join_scope(name, variable)
         value: FlowExpr | None = None
         children = node.children
         given: Node | None = None
@@ -260,14 +260,14 @@ class _File(CppStatements):
                 given.kind_id == KIND.initializer_list and before is not None and before.kind_id != KIND.equals_sign
             )
             if direct:
-                inner = listed_in(given)
+                inner = get_items(given)
                 if len(inner) == 1:
-                    value = self.value(inner[0], base, READ, target)
+                    value = self.follow(inner[0], base, READ, target)
                 else:
-                    value = FlowExpr("make", type_, self.arguments(given, base, PASS))
+                    value = FlowExpr("make", type_, self.visit_arguments(given, base, PASS))
             else:
-                value = self.value(given, base, READ, target)
-        member = DataMember(variable if owner else target, type_ + marks, self.line(said), value)
+                value = self.follow(given, base, READ, target)
+        member = DataMember(variable if owner else target, type_ + marks, self.find_line(said), value)
         (self.members if owner else self.constants).append(member)
 
     def declares_function(self, node: Node) -> bool:
@@ -286,7 +286,7 @@ class _File(CppStatements):
             node = inner
         return False
 
-    def guarded(self, conditions) -> int:
+    def add_guards(self, conditions) -> int:
         """The guards of the preprocessor around what stands outside of functions."""
         guard = -1
         for text, line in conditions:
@@ -302,34 +302,34 @@ class _File(CppStatements):
         if body is None or node.kind_id == KIND.enum_specifier:
             return
         said = node.child_by_field_name("name")
-        inner = joined(name, bare(self.said(said))) if said is not None else name
+        inner = join_scope(name, strip_template(self.spell_node(said))) if said is not None else name
         bases: list[str] = []
         for child in node.children:
             if child.kind_id == KIND.base_class_clause:
-                bases = [self.said(part) for part in child.children if part.kind_id in TYPES]
+                bases = [self.spell_node(part) for part in child.children if part.kind_id in TYPES]
         kept = getattr(self, "members", None), getattr(self, "methods", None)
         self.members, self.methods = [], []
-        before = self.state()
+        before = self.get_state()
         types, self.types = self.types, ()
-        self.scope(body.children, inner, inner or "", conditions)
+        self.visit_scope(body.children, inner, inner or "", conditions)
         self.types = types
         self.restore(before)
         members, methods = self.members, self.methods
         if kept[0] is not None and kept[1] is not None:
             self.members, self.methods = kept[0], kept[1]
-        lines = self.line(node), self.line_of_end(node)
+        lines = self.find_line(node), self.find_end_line(node)
         found = FlowClass(inner, tuple(bases), tuple(members), tuple(dict.fromkeys(methods)), *lines, types)
         self.classes.append(found)
 
     scope_struct_specifier = scope_union_specifier = scope_enum_specifier = scope_class_specifier
 
-    def local_type(self, node: Node) -> None:
+    def add_local_type(self, node: Node) -> None:
         self.scope_class_specifier(node, self.name or self.owner, "", ())
 
-    def local_name(self, node: Node) -> None:
+    def add_local_name(self, node: Node) -> None:
         SCOPED[node.kind_id](self, node, self.name, "", ())
 
-    def line_of_end(self, node: Node) -> int:
+    def find_end_line(self, node: Node) -> int:
         return bisect_right(self.starts, node.end_byte)
 
     def scope_function_definition(self, node: Node, name: str, owner: str, conditions) -> None:
@@ -362,75 +362,75 @@ class _File(CppStatements):
             self.go_outside(owner)
             for child in children:
                 if child.kind_id == KIND.compound_statement:
-                    self.statement(child, -1)
+                    self.visit_statement(child, -1)
             return
         returns = ""
         listed: Node | None = None
         if declarator.kind_id == KIND.function_declarator:
-            said = bare(self.said(declarator.children[0]))
+            said = strip_template(self.spell_node(declarator.children[0]))
             for child in declarator.children:
                 number = child.kind_id
                 if number == KIND.parameter_list and listed is None:
                     listed = child
                 elif number == KIND.trailing_return_type:
-                    returns = self.said(child).removeprefix("->").strip()
+                    returns = self.spell_node(child).removeprefix("->").strip()
                 elif number == KIND.virtual_specifier:
                     virtual = True
         else:
-            said = self.said(declarator)
+            said = self.spell_node(declarator)
             if declarator.kind_id == KIND.operator_cast or "operator" in said:
                 said = said.partition("(")[0].strip()
             else:
-                said = bare(said)
+                said = strip_template(said)
         if not returns:
-            returns = self.written_type(children) + marks
+            returns = self.find_written_type(children) + marks
         said = said.removeprefix("::")
         if owner:
             self.methods.append(said)
             belongs = owner
         else:
             belongs = said.rpartition("::")[0] if "operator" not in said else said.partition("operator")[0].rstrip(":")
-            belongs = joined(name, belongs) if belongs else ""
+            belongs = join_scope(name, belongs) if belongs else ""
             if belongs in self.namespaces:
                 belongs = ""
         if body is None and initializers is None:
             return
-        self.name, self.owner = joined(name, said), belongs
+        self.name, self.owner = join_scope(name, said), belongs
         self.begin(set())
-        guard = self.guarded(conditions)
-        line = self.line(node)
-        parameters = self.parameters(listed, guard)
-        state = self.state()
+        guard = self.add_guards(conditions)
+        line = self.find_line(node)
+        parameters = self.add_parameters(listed, guard)
+        state = self.get_state()
         try:
             if initializers is not None:
-                self.initializers(initializers, guard)
+                self.visit_initializers(initializers, guard)
             if body is not None:
-                self.statement(body, guard)
+                self.visit_statement(body, guard)
         except RecursionError:
             self.problems.append(Problem(line, "nested too deeply to be read in full"))
             self.nesting = 0
             self.restore(state)
-        self.close(parameters, line, self.line_of_end(node), returns, virtual)
+        self.close(parameters, line, self.find_end_line(node), returns, virtual)
 
-    def initializers(self, node: Node, guard: int) -> None:
+    def visit_initializers(self, node: Node, guard: int) -> None:
         """The list of initialisers of a constructor: assignments to members, and to base classes by their names."""
         for child in node.children:
             if child.kind_id != KIND.field_initializer:
                 continue
-            parts = grammatical(child)
-            target = f"this.{bare(self.said(parts[0]))}"
+            parts = list_children(child)
+            target = f"this.{strip_template(self.spell_node(parts[0]))}"
             given = parts[-1]
-            inner = listed_in(given)
+            inner = get_items(given)
             if len(inner) == 1:
-                value = self.value(inner[0], guard, PASS, target)
+                value = self.follow(inner[0], guard, PASS, target)
             else:
-                value = FlowExpr("make", "", self.arguments(given, guard, PASS) if inner else ())
-            self.assignments.append(Assignment(target, value, self.line(child), guard))
+                value = FlowExpr("make", "", self.visit_arguments(given, guard, PASS) if inner else ())
+            self.assignments.append(Assignment(target, value, self.find_line(child), guard))
 
     def scope_expression_statement(self, node: Node, name: str, owner: str, conditions) -> None:
         """Macros and other statements outside of functions."""
         self.go_outside(owner)
-        self.statement(node, self.guarded(conditions))
+        self.visit_statement(node, self.add_guards(conditions))
 
 
 def _is_number(text: str) -> bool:
@@ -441,7 +441,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def guards_file(node: Node, statements: list[Node]) -> bool:
+def is_include_guard(node: Node, statements: list[Node]) -> bool:
     """Whether an #ifndef is the guard of a header: it defines at once what it asks for."""
     if not statements or statements[0].kind_id != KIND.preproc_def:
         return False
@@ -449,4 +449,4 @@ def guards_file(node: Node, statements: list[Node]) -> bool:
     return asked.text == defined.text
 
 
-SCOPED = node_readers(_File, "scope_")
+SCOPED = find_node_readers(_File, "scope_")

@@ -9,7 +9,15 @@ from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
-from .lexical import Directive, blanked, blanks, conditional_blocks, line_starts, scan, text_of
+from .lexical import (
+    Directive,
+    blank_stretches,
+    decode_source,
+    find_line_starts,
+    list_conditional_blocks,
+    make_blanks,
+    scan,
+)
 
 
 class Region(NamedTuple):
@@ -46,7 +54,7 @@ class Regions:
         self._turns.append(at)
         self._inner.append(number)
 
-    def between(self, outside: int, inside: int) -> list[Region]:
+    def list_between(self, outside: int, inside: int) -> list[Region]:
         """Those around the place `inside` that begin behind the place `outside`, the outermost first."""
         found: list[Region] = []
         number = self._inner[bisect_right(self._turns, inside) - 1]
@@ -97,32 +105,32 @@ _MOST_ATTRIBUTES = 32
 _ATTRIBUTES = re.compile(rf"(?:\[\[[^\[\]]*\]\]\s*){{{_MOST_ATTRIBUTES},}}")
 
 
-def cleaned(data: bytes) -> Cleaned:
+def clean_source(data: bytes) -> Cleaned:
     """The source of a file, ready to be parsed. Undecodable bytes become replacement characters, line breaks `\\n`."""
-    text = text_of(data)
+    text = decode_source(data)
     source = text
     if not source.isascii() or "\0" in source:
         source = _NOT_ASCII.sub(_stand_in, source)
     if source.count("]]") >= _MOST_ATTRIBUTES:
-        source = blanked(source, [match.span() for match in _ATTRIBUTES.finditer(source)])
+        source = blank_stretches(source, [match.span() for match in _ATTRIBUTES.finditer(source)])
     if any(end in source for end in _VISIBILITY_ENDS):
-        source = _without_visibility(source)
+        source = _blank_visibility(source)
     if any(name in source for name in _EACH_NAMES):
-        source = _each(source)
-    return Cleaned(text, source.encode(), line_starts(text))
+        source = _rewrite_foreach(source)
+    return Cleaned(text, source.encode(), find_line_starts(text))
 
 
-def cleaned_further(data: bytes, before: Cleaned) -> Cleaned:
+def clean_further(data: bytes, before: Cleaned) -> Cleaned:
     """The source of a file that did not parse as it was: what is dear to look for is blanked too."""
     source = before.source.decode()
     for words, pattern, stand_in in _FURTHER:
         if any(word in source for word in words):
             source = pattern.sub(stand_in, source)
-    source, regions, hidden = _flattened(data, before.text, source, before.starts)
+    source, regions, hidden = _flatten_branches(data, before.text, source, before.starts)
     return Cleaned(before.text, source.encode(), before.starts, regions, hidden)
 
 
-def _without_visibility(source: str) -> str:
+def _blank_visibility(source: str) -> str:
     """`class FOO_PUBLIC A` as `class            A`. Searched from the end of the word, which is the rarer part."""
     gone: list[tuple[int, int]] = []
     for match in _VISIBILITY.finditer(source):
@@ -130,7 +138,7 @@ def _without_visibility(source: str) -> str:
         word = _LAST_WORD.search(source, max(line, gone[-1][1] if gone else 0), match.start())
         if word is not None and source[line : word.start()].lstrip()[:1] != "#":
             gone.append((word.start(), match.end()))
-    return blanked(source, gone)
+    return blank_stretches(source, gone)
 
 
 def _stand_in(match: re.Match[str]) -> str:
@@ -138,11 +146,11 @@ def _stand_in(match: re.Match[str]) -> str:
     return " " if match[0] == "\0" else "x"
 
 
-def _as_public(match: re.Match[str]) -> str:
+def _make_public(match: re.Match[str]) -> str:
     return match[1] + "public:".ljust(len(match[2]) + len(match[3]))
 
 
-def _unless_directive(match: re.Match[str]) -> str:
+def _blank_unless_directive(match: re.Match[str]) -> str:
     text = match.string
     line = text.rfind("\n", 0, match.start()) + 1
     if text[line : match.start()].lstrip()[:1] == "#":
@@ -150,7 +158,7 @@ def _unless_directive(match: re.Match[str]) -> str:
     return " " * len(match[0])
 
 
-def _each(source: str) -> str:
+def _rewrite_foreach(source: str) -> str:
     """`BOOST_FOREACH(T x, xs)` as `for(T x: xs)`."""
     pieces: list[str] = []
     position = 0
@@ -193,7 +201,7 @@ def _blank_group(match: re.Match[str], sign: str = " ") -> str:
 _word_group = partial(_blank_group, sign="x")
 
 
-def _rounded(match: re.Match[str]) -> str:
+def _replace_braces(match: re.Match[str]) -> str:
     """`= {a, b}` as `= (a, b)`, and `= {}` as `= 0 `."""
     inner = match["inner"]
     return f"={match['blanks']}({inner})" if inner.strip() else f"={match['blanks']}0{' ' * (len(inner) + 1)}"
@@ -220,7 +228,7 @@ _FURTHER = (
     (("__has_include",), _HAS_INCLUDE, _word_group),
     (("(<", "(>", "(=", "(!"), _COMPARED, _word_group),
     (("new ",), _NEW_POINTERS, _blank_group),
-    (("{",), _DEFAULT_BRACES, _rounded),
+    (("{",), _DEFAULT_BRACES, _replace_braces),
     (("typename",), _TYPENAME, _blank_group),
     (("template",), _TEMPLATE, _blank_group),
     (("SIGNAL", "SLOT"), _SIGNATURE, _blank_group),
@@ -228,11 +236,11 @@ _FURTHER = (
     (("EACH",), _EACH_MACRO, _blank_group),
     ((")",), _STATEMENT_MACRO, r"\g<macro>;"),
     (("class ", "struct "), _CLASS_MACRO, _blank_group),
-    (("_DECL", "_VISIBILITY", "_IMPORT", "_HIDDEN"), _RARE_VISIBILITY, _unless_directive),
-    (_BARE, _BARE_WORD, _unless_directive),
-    (("PRI",), _FORMATS, blanks),
+    (("_DECL", "_VISIBILITY", "_IMPORT", "_HIDDEN"), _RARE_VISIBILITY, _blank_unless_directive),
+    (_BARE, _BARE_WORD, _blank_unless_directive),
+    (("PRI",), _FORMATS, make_blanks),
     (("slots", "Q_SLOTS"), _SLOTS, _blank_group),
-    (("signals", "Q_SIGNALS"), _SIGNALS, _as_public),
+    (("signals", "Q_SIGNALS"), _SIGNALS, _make_public),
 )
 _BRACES = re.compile(r"[{}()]")
 _STARTS_INSIDE = re.compile(r"\s*(?:else\b|&&|\|\||<<|[,.?)+*/=]|:(?!:)|->|-)")
@@ -240,7 +248,7 @@ _ENDS_INSIDE = re.compile(r"(?:\belse|&&|\|\||<<|[,(=?+*/]|-)\s*\Z")
 _HEADED = re.compile(r"\s*(?:\}\s*else\s+)?(?:if|while|for|else\s+if)\b[^;{}]*\)\s*\Z")
 
 
-def _flattened(
+def _flatten_branches(
     data: bytes, text: str, source: str, starts: list[int]
 ) -> tuple[str, tuple[Region, ...], tuple[tuple[int, int], ...]]:
     """The source without those #if blocks that cut through a statement: of each, the first branch is kept and becomes
@@ -254,8 +262,8 @@ def _flattened(
     blank: list[tuple[int, int]] = []
     regions: list[Region] = []
     hidden: list[tuple[int, int]] = []
-    for directives in conditional_blocks(scanned.directives):
-        if not _cuts(visible, directives):
+    for directives in list_conditional_blocks(scanned.directives):
+        if not _cuts_statement(visible, directives):
             continue
         first_start, first_end, first_word, condition = directives[0]
         if first_word == "ifdef":
@@ -269,10 +277,10 @@ def _flattened(
         blank.append((kept_end, directives[-1][1]))
         if len(directives) > 2:
             hidden.append((bisect_right(starts, directives[1][1]) + 1, bisect_right(starts, directives[-1][0]) - 1))
-    return blanked(source, sorted(blank)), tuple(sorted(regions)), tuple(hidden)
+    return blank_stretches(source, sorted(blank)), tuple(sorted(regions)), tuple(hidden)
 
 
-def _cuts(visible: str, directives: list[Directive]) -> bool:
+def _cuts_statement(visible: str, directives: list[Directive]) -> bool:
     """Whether an #if block cuts through a statement, so that its branches are none by themselves."""
     before = visible[max(0, directives[0][0] - 2000) : directives[0][0]]
     while True:  # directives before it are no code

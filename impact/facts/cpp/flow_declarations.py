@@ -14,17 +14,17 @@ from .flow_grammar import (
     NAMES,
     PARAMETERS,
     TYPES,
-    grammatical,
-    listed_in,
-    node_readers,
+    find_node_readers,
+    get_items,
+    list_children,
 )
-from .flow_values import PASS, READ, VALUES, FunctionReader, bare, flat
+from .flow_values import PASS, READ, VALUES, FunctionReader, flatten, strip_template
 
 
 class Declarations(FunctionReader):
     """The reader of declarations inside functions."""
 
-    def written_type(self, children: list[Node]) -> str:
+    def find_written_type(self, children: list[Node]) -> str:
         """The type that a declaration begins with, without its declarators."""
         pieces: list[str] = []
         typed = False
@@ -34,16 +34,16 @@ class Declarations(FunctionReader):
                 pieces.append(self.text[child.start_byte : child.end_byte])
             elif number in DECLARED_TYPES:
                 name = child.child_by_field_name("name")
-                pieces.append(self.said(name) if name is not None else "")
+                pieces.append(self.spell_node(name) if name is not None else "")
                 typed = True
             elif number in TYPES and not typed:
-                pieces.append(self.said(child))
+                pieces.append(self.spell_node(child))
                 typed = True
             elif typed:
                 break
         return " ".join(pieces) if len(pieces) > 1 else pieces[0] if pieces else ""
 
-    def declared(self, node: Node) -> tuple[Node | None, str]:
+    def split_declarator(self, node: Node) -> tuple[Node | None, str]:
         """The name inside a declarator and the marks `*`, `&`, `&&` around it."""
         marks = ""
         for _ in range(64):
@@ -71,75 +71,75 @@ class Declarations(FunctionReader):
             number = child.kind_id
             if number == KIND.init_declarator:
                 if not typed:
-                    kind_, typed = self.written_type(children), True
-                value = self.initialised(child, guard, kind_)
+                    kind_, typed = self.find_written_type(children), True
+                value = self.visit_initialization(child, guard, kind_)
             elif number in DECLARATORS and (
                 number not in NAMES or typed or node.field_name_for_child(index) == "declarator"
             ):
                 if not typed:
-                    kind_, typed = self.written_type(children), True
+                    kind_, typed = self.find_written_type(children), True
                 if number == KIND.function_declarator:
-                    self.constructed(child, guard, kind_)
+                    self.visit_construction(child, guard, kind_)
                     continue
-                if number == KIND.reference_declarator and self.called_after(child, guard, kind_):
+                if number == KIND.reference_declarator and self.visit_and_call(child, guard, kind_):
                     continue
                 given = children[index + 1] if index + 1 < len(children) else None
                 if given is not None and given.kind_id == KIND.equals_sign and index + 2 < len(children):
                     # `if (auto x = f())` has no init_declarator.
-                    value = self.kept(child, children[index + 2], guard, kind_)
+                    value = self.keep_value(child, children[index + 2], guard, kind_)
                     break
-                name, marks = self.declared(child)
+                name, marks = self.split_declarator(child)
                 if name is None:
                     continue
                 self.assign(name, FlowExpr("make", kind_ + marks), guard, kind_ + marks)
             elif number in DECLARED_TYPES:
-                self.local_type(child)
+                self.add_local_type(child)
         return value
 
-    def local_type(self, node: Node) -> None:
+    def add_local_type(self, node: Node) -> None:
         """A class inside a function; who reads files says what is done with it."""
 
-    def local_name(self, node: Node) -> None:
+    def add_local_name(self, node: Node) -> None:
         """Another name for something inside a function; the same."""
 
-    def initialised(self, node: Node, guard: int, kind_: str) -> FlowExpr:
+    def visit_initialization(self, node: Node, guard: int, kind_: str) -> FlowExpr:
         children = node.children
         if len(children) == 3 and children[1].kind_id == KIND.equals_sign:
-            return self.kept(children[0], children[2], guard, kind_)
-        children = grammatical(node)
+            return self.keep_value(children[0], children[2], guard, kind_)
+        children = list_children(node)
         if len(children) == 3:
-            return self.kept(children[0], children[2], guard, kind_)
+            return self.keep_value(children[0], children[2], guard, kind_)
         if len(children) != 2:
-            return self.anything(node, guard, READ, "")
-        name, marks = self.declared(children[0])
+            return self.visit_anything(node, guard, READ, "")
+        name, marks = self.split_declarator(children[0])
         given = children[1]
         if name is None or given.kind_id not in (KIND.argument_list, KIND.initializer_list):
-            return self.anything(node, guard, READ, "")
+            return self.visit_anything(node, guard, READ, "")
         if kind_.endswith("auto") or marks:
-            inner = listed_in(given)
+            inner = get_items(given)
             if len(inner) == 1:
-                return self.kept(children[0], inner[0], guard, kind_)
-        value = FlowExpr("make", kind_, self.arguments(given, guard, PASS if bare(kind_) else READ))
+                return self.keep_value(children[0], inner[0], guard, kind_)
+        value = FlowExpr("make", kind_, self.visit_arguments(given, guard, PASS if strip_template(kind_) else READ))
         return self.assign(name, value, guard, kind_ + marks)
 
     def assign(self, name: Node, value: FlowExpr, guard: int, type_: str) -> FlowExpr:
         """Notes a variable that is declared here, with the value that it begins with."""
         variable = self.text[name.start_byte : name.end_byte]
         self.known.add(variable)
-        self.assignments.append(Assignment(variable, value, self.line(name), guard, type_))
+        self.assignments.append(Assignment(variable, value, self.find_line(name), guard, type_))
         return value
 
-    def kept(self, declarator: Node, given: Node, guard: int, kind_: str) -> FlowExpr:
+    def keep_value(self, declarator: Node, given: Node, guard: int, kind_: str) -> FlowExpr:
         """`T x = given`."""
         if declarator.kind_id == KIND.identifier:
             name, marks = declarator, ""
         else:
-            name, marks = self.declared(declarator)
+            name, marks = self.split_declarator(declarator)
             if name is None:
-                return self.value(given, guard, READ)
+                return self.follow(given, guard, READ)
         if name.kind_id == KIND.structured_binding_declarator:
-            value = self.value(given, guard, READ)
-            line = self.line(name)
+            value = self.follow(given, guard, READ)
+            line = self.find_line(name)
             variables = [child for child in name.children if child.kind_id == KIND.identifier]
             for index, child in enumerate(variables):
                 variable = self.text[child.start_byte : child.end_byte]
@@ -148,25 +148,25 @@ class Declarations(FunctionReader):
                 self.assignments.append(Assignment(variable, part, line, guard, kind_ + marks))
             return value
         variable = self.text[name.start_byte : name.end_byte]
-        return self.assign(name, self.value(given, guard, READ, variable), guard, kind_ + marks)
+        return self.assign(name, self.follow(given, guard, READ, variable), guard, kind_ + marks)
 
-    def constructed(self, node: Node, guard: int, kind_: str) -> None:
+    def visit_construction(self, node: Node, guard: int, kind_: str) -> None:
         """`T x(a, f());` in a function, which the grammar takes for a function's declaration."""
-        children = grammatical(node)
-        name, marks = self.declared(children[0])
+        children = list_children(node)
+        name, marks = self.split_declarator(children[0])
         listed = next((child for child in children if child.kind_id == KIND.parameter_list), None)
         if name is None or listed is None:
             return
-        types = listed_in(listed)
+        types = get_items(listed)
         if not types or kind_ == "void":
             return
         parts = self.taken_for_parameters(types, guard)
         if parts is not None:
             self.assign(name, FlowExpr("make", kind_, parts), guard, kind_ + marks)
 
-    def called_after(self, node: Node, guard: int, asked: str) -> bool:
+    def visit_and_call(self, node: Node, guard: int, asked: str) -> bool:
         """`a && g(b);`, which the grammar takes for the declaration of a function that gives an `a &&`."""
-        children = grammatical(node)
+        children = list_children(node)
         if len(children) != 2 or children[0].type != "&&" or children[1].kind_id != KIND.function_declarator:
             return False
         name, listed = children[1].children[0], children[1].children[-1]
@@ -174,8 +174,8 @@ class Declarations(FunctionReader):
             return False
         line, column = self.place(name.start_byte)
         inner = self.guard("if", asked, line, guard)
-        callee = bare(self.text[name.start_byte : name.end_byte])
-        parts = self.taken_for_parameters(listed_in(listed), inner)
+        callee = strip_template(self.text[name.start_byte : name.end_byte])
+        parts = self.taken_for_parameters(get_items(listed), inner)
         if parts is not None:
             self.calls.append(FlowCall(callee, parts, line, column, inner))
         return True
@@ -184,25 +184,25 @@ class Declarations(FunctionReader):
         """Arguments that the grammar took for the types of parameters; None when one of them is a parameter."""
         parts: list[FlowExpr] = []
         for node in nodes:
-            part = self.taken_for_parameter(node, guard)
+            part = self.visit_mistaken_argument(node, guard)
             if part is None:
                 return None
             parts.append(part)
         return tuple(parts)
 
-    def taken_for_parameter(self, node: Node, guard: int) -> FlowExpr | None:
+    def visit_mistaken_argument(self, node: Node, guard: int) -> FlowExpr | None:
         """An argument that the grammar took for a parameter's type; None when it is a parameter."""
-        children = grammatical(node)
+        children = list_children(node)
         if node.kind_id != KIND.parameter_declaration or not children or children[0].kind_id not in TYPES:
             return None
-        name = bare(self.text[children[0].start_byte : children[0].end_byte])
+        name = strip_template(self.text[children[0].start_byte : children[0].end_byte])
         if len(children) == 1:
             if name in self.known:
                 self.touch(name, PASS)
             return FlowExpr("name", name)
         if len(children) == 2 and children[1].kind_id == KIND.abstract_function_declarator:
             listed = next((child for child in children[1].children if child.kind_id == KIND.parameter_list), None)
-            parts = self.taken_for_parameters(listed_in(listed) if listed is not None else [], guard)
+            parts = self.taken_for_parameters(get_items(listed) if listed is not None else [], guard)
             if parts is None:
                 return None
             line, column = self.place(children[0].start_byte)
@@ -210,7 +210,7 @@ class Declarations(FunctionReader):
             return FlowExpr("call", name, parts)
         return None
 
-    def parameters(self, listed: Node | None, guard: int = -1) -> tuple[FlowParameter, ...]:
+    def add_parameters(self, listed: Node | None, guard: int = -1) -> tuple[FlowParameter, ...]:
         """The parameters of a function; their names are known from here on."""
         result: list[FlowParameter] = []
         if listed is None:
@@ -229,23 +229,23 @@ class Declarations(FunctionReader):
                 if kind_ == KIND.equals_sign:
                     end = part.start_byte
                     if index + 1 < len(children):
-                        default = self.value(children[index + 1], guard)
+                        default = self.follow(children[index + 1], guard)
                     break
                 if typed:
                     if kind_ in DECLARATORS:
-                        name, _ = self.declared(part)
+                        name, _ = self.split_declarator(part)
                 elif kind_ in TYPES or kind_ in DECLARED_TYPES:
                     typed = True
             start = child.start_byte
             if name is None:
                 if child.child_count == 1 and self.text[start:end] == "void":
                     continue
-                result.append(FlowParameter("", flat(self.text[start:end]), default))
+                result.append(FlowParameter("", flatten(self.text[start:end]), default))
                 continue
             said = self.text[name.start_byte : name.end_byte]
             self.known.add(said)
             written = self.text[start : name.start_byte] + " " + self.text[name.end_byte : end]
-            result.append(FlowParameter(said, flat(written), default))
+            result.append(FlowParameter(said, flatten(written), default))
         return tuple(result)
 
     def value_lambda_expression(self, node: Node, guard: int, position: str, target: str) -> FlowExpr:
@@ -263,9 +263,9 @@ class Declarations(FunctionReader):
             if number == KIND.lambda_capture_specifier:
                 for capture in child.children:
                     if capture.kind_id == KIND.lambda_capture_initializer:
-                        parts = grammatical(capture)
+                        parts = list_children(capture)
                         said = self.text[parts[0].start_byte : parts[0].end_byte].lstrip("&")
-                        inits.append((said, self.value(parts[-1], guard, READ)))
+                        inits.append((said, self.follow(parts[-1], guard, READ)))
             elif number == KIND.compound_statement:
                 body = child
             elif number == KIND.abstract_function_declarator:
@@ -273,11 +273,11 @@ class Declarations(FunctionReader):
                     if part.kind_id == KIND.parameter_list:
                         listed = part
                     elif part.kind_id == KIND.trailing_return_type:
-                        returns = self.said(part).removeprefix("->").strip()
-        state = self.state()
+                        returns = self.spell_node(part).removeprefix("->").strip()
+        state = self.get_state()
         self.begin(set(self.known))
         self.name = name
-        parameters = self.parameters(listed)
+        parameters = self.add_parameters(listed)
         for said, value in inits:
             self.known.add(said)
             self.assignments.append(Assignment(said, value, line, -1, "auto"))
@@ -303,4 +303,4 @@ class Declarations(FunctionReader):
         raise NotImplementedError
 
 
-VALUES.update(node_readers(Declarations, "value_"))
+VALUES.update(find_node_readers(Declarations, "value_"))

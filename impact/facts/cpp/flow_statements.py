@@ -17,8 +17,8 @@ from tree_sitter import Node
 from ..flow import Assignment, FlowExpr
 from .flow_clean import Regions
 from .flow_declarations import Declarations
-from .flow_grammar import KIND, grammatical, kinds, listed_in, node_readers
-from .flow_values import ESCAPE, READ, RETURN, VALUES, flat
+from .flow_grammar import KIND, find_node_readers, get_items, get_kinds, list_children
+from .flow_values import ESCAPE, READ, RETURN, VALUES, flatten
 
 
 class FlowCondition(NamedTuple):
@@ -50,7 +50,7 @@ MOST_CONDITIONS = 500
 MOST_VALUES = 64
 
 
-def negated(conditions: tuple[FlowCondition, ...]) -> str | None:
+def negate_conditions(conditions: tuple[FlowCondition, ...]) -> str | None:
     """The text of when not all of some conditions hold; None when that has no words."""
     pieces: list[str] = []
     for condition in conditions:
@@ -60,10 +60,10 @@ def negated(conditions: tuple[FlowCondition, ...]) -> str | None:
             pieces.append(f"!({condition.code or condition.text})")
         else:
             return None
-    return " || ".join(grouped(piece) for piece in pieces) if len(pieces) > 1 else pieces[0]
+    return " || ".join(add_parentheses(piece) for piece in pieces) if len(pieces) > 1 else pieces[0]
 
 
-def grouped(text: str) -> str:
+def add_parentheses(text: str) -> str:
     """A condition that may stand beside `&&`."""
     depth = 0
     for mark in _MARKS.finditer(text):
@@ -81,11 +81,11 @@ class CppStatements(Declarations):
     """The reader of statements."""
 
     def run(self, body: Node, guard: int = -1) -> None:
-        self.statement(body, guard)
+        self.visit_statement(body, guard)
 
-    def statement(self, node: Node, guard: int) -> Leaving:
+    def visit_statement(self, node: Node, guard: int) -> Leaving:
         if self.regions is not None:
-            guard = self.regional(self.regions, node, guard)
+            guard = self.add_region_guards(self.regions, node, guard)
         read = STATEMENTS.get(node.kind_id)
         if read is not None:
             return read(self, node, guard)
@@ -96,20 +96,20 @@ class CppStatements(Declarations):
             return self.read_compound_statement(node, guard)
         return STAYS
 
-    def regional(self, regions: Regions, node: Node, guard: int) -> int:
+    def add_region_guards(self, regions: Regions, node: Node, guard: int) -> int:
         """Adds the conditions of blanked directives that a statement, but not the one around it, stands under."""
         start = node.start_byte
         parent = node.parent
         if parent is not None and parent.kind_id == KIND.else_clause:
             parent = parent.parent
-        for region in regions.between(parent.start_byte if parent is not None else -1, start):
+        for region in regions.list_between(parent.start_byte if parent is not None else -1, start):
             guard = self.guard("cpp", region.condition, region.line, guard)
         return guard
 
     def read_compound_statement(self, node: Node, guard: int) -> Leaving:
-        return self.sequence(node.named_children, guard)
+        return self.visit_sequence(node.named_children, guard)
 
-    def sequence(self, children: list[Node], guard: int) -> Leaving:
+    def visit_sequence(self, children: list[Node], guard: int) -> Leaving:
         """Statements one after the other."""
         base = guard
         ended = STAYS
@@ -122,24 +122,24 @@ class CppStatements(Declarations):
             if number == KIND.comment:
                 continue
             if jumped is not None and number != KIND.labeled_statement:
-                guard = self.never(jumped, guard)
+                guard = self.add_never_guard(jumped, guard)
                 jumped = None
             if headed is not None:
-                outer = self.guard("macro", self.said(headed), self.line(headed), guard)
+                outer = self.guard("macro", self.spell_node(headed), self.find_line(headed), guard)
                 headed = None
-                self.statement(child, outer)
+                self.visit_statement(child, outer)
                 continue
             if number == KIND.expression_statement and child.child_count == 2 and child.children[1].is_missing:
-                if self.heads(child, children[place + 1 : place + 20]):
+                if self.is_statement_head(child, children[place + 1 : place + 20]):
                     headed = child.children[0]
-                    self.value(headed, guard)
+                    self.follow(headed, guard)
                     continue
             elif number == KIND.labeled_statement:
                 guard, conditions, ended, jumped = base, [], STAYS, None
             read = STATEMENTS.get(number) if regions is None else None
-            leaving = self.statement(child, guard) if read is None else read(self, child, guard)
+            leaving = self.visit_statement(child, guard) if read is None else read(self, child, guard)
             if regions is not None and leaving in (JUMPS, BREAKS):
-                leaving = self.regionally(regions, child, leaving)
+                leaving = self.limit_leaving(regions, child, leaving)
             if leaving == STAYS or ended:
                 continue
             if not isinstance(leaving, tuple):
@@ -150,22 +150,22 @@ class CppStatements(Declarations):
                 guard = self.guard(condition.kind, condition.text, condition.line, guard, True)
         return ended or tuple(conditions) or STAYS
 
-    def never(self, node: Node, guard: int) -> int:
+    def add_never_guard(self, node: Node, guard: int) -> int:
         """A guard around what stands behind a statement that always leaves."""
         word = _WORD.search(self.text, node.start_byte, node.end_byte)
-        return self.guard("never", f"after {word[0] if word else 'a jump'}", self.line(node), guard, True)
+        return self.guard("never", f"after {word[0] if word else 'a jump'}", self.find_line(node), guard, True)
 
-    def regionally(self, regions: Regions, node: Node, leaving: Leaving) -> Leaving:
+    def limit_leaving(self, regions: Regions, node: Node, leaving: Leaving) -> Leaving:
         """How control leaves a jump: only where the blanked directives let it be compiled that the statements around it
         do not stand under."""
         parent = node.parent
         around = parent.start_byte if parent is not None else node.start_byte
-        inner = regions.between(around, node.start_byte)
+        inner = regions.list_between(around, node.start_byte)
         if not inner:
             return leaving
         return (FlowCondition("cpp", f"!({inner[0].condition})", inner[0].line),) if len(inner) == 1 else STAYS
 
-    def heads(self, node: Node, children: list[Node]) -> bool:
+    def is_statement_head(self, node: Node, children: list[Node]) -> bool:
         """Whether `NAME(...)` without a semicolon is the head of the statement that follows it: one on the same line,
         or further to the right."""
         following = next((child for child in children if child.start_byte >= node.end_byte and child.is_named), None)
@@ -176,19 +176,19 @@ class CppStatements(Declarations):
         last_line = bisect_right(self.starts, node.end_byte)
         return next_line == last_line or (next_line <= last_line + 1 and next_column > column)
 
-    def condition(self, node: Node, guard: int) -> str:
+    def visit_condition(self, node: Node, guard: int) -> str:
         """Reads the condition in parentheses of an if, while or switch; gives its text."""
-        children = listed_in(node)
+        children = get_items(node)
         for child in children:
             if child.kind_id == KIND.init_statement:
                 for part in child.children:
                     if part.is_named:
-                        self.statement(part, guard)
+                        self.visit_statement(part, guard)
             else:
-                self.value(child, guard, READ, None)
+                self.follow(child, guard, READ, None)
         if not children:
             return ""
-        return self.outer_text(children[-1])
+        return self.format_condition(children[-1])
 
     def read_if_statement(self, node: Node, guard: int) -> Leaving:
         """An if with its chain of else-ifs, which is walked along since it is a deep tree."""
@@ -207,10 +207,10 @@ class CppStatements(Declarations):
                 elif asked is not None and child.is_named and number != KIND.comment:
                     then = child
             if asked is None:
-                return self.sequence(node.named_children, guard)
-            line = self.line(node)
-            text = self.condition(asked, guard)
-            leaving = self.statement(then, self.guard("if", text, line, guard)) if then is not None else STAYS
+                return self.visit_sequence(node.named_children, guard)
+            line = self.find_line(node)
+            text = self.visit_condition(asked, guard)
+            leaving = self.visit_statement(then, self.guard("if", text, line, guard)) if then is not None else STAYS
             branches.append((FlowCondition("unless", text, line), leaving))
             if other is None:
                 break
@@ -223,13 +223,13 @@ class CppStatements(Declarations):
             if follows.kind_id == KIND.if_statement and self.regions is None:
                 node = follows
                 continue
-            last = self.statement(follows, guard)
+            last = self.visit_statement(follows, guard)
             break
         for asked_, leaving in reversed(branches):
-            last = self.either(asked_, leaving, last)
+            last = self.merge_leavings(asked_, leaving, last)
         return last
 
-    def either(self, asked: FlowCondition, yes: Leaving, no: Leaving) -> Leaving:
+    def merge_leavings(self, asked: FlowCondition, yes: Leaving, no: Leaving) -> Leaving:
         """How control leaves an if, from how it leaves its branches. asked: that its condition does not hold."""
         yes_ends = yes in (JUMPS, BREAKS)
         no_ends = no in (JUMPS, BREAKS)
@@ -245,11 +245,11 @@ class CppStatements(Declarations):
             text = f"{asked.text} || {no[0].text}"
             return (FlowCondition("if", text, asked.line),) if len(text) < LONGEST_COMPOSED else STAYS
         result: list[FlowCondition] = []
-        for head, leaving in ((grouped(asked.text), yes), (f"!({asked.text})", no)):
+        for head, leaving in ((add_parentheses(asked.text), yes), (f"!({asked.text})", no)):
             if isinstance(leaving, tuple):
-                tail = negated(leaving)
+                tail = negate_conditions(leaving)
                 if tail is not None and len(head) + len(tail) < LONGEST_COMPOSED:
-                    result.append(FlowCondition("unless", f"{head} && {grouped(tail)}", leaving[0].line))
+                    result.append(FlowCondition("unless", f"{head} && {add_parentheses(tail)}", leaving[0].line))
         return tuple(result) or STAYS
 
     def read_while_statement(self, node: Node, guard: int) -> Leaving:
@@ -258,13 +258,13 @@ class CppStatements(Declarations):
             if child.kind_id == KIND.condition_clause:
                 asked = child
             elif asked is not None and child.is_named and child.kind_id != KIND.comment:
-                text = self.condition(asked, guard)
-                self.statement(child, self.guard("while", text, self.line(node), guard))
+                text = self.visit_condition(asked, guard)
+                self.visit_statement(child, self.guard("while", text, self.find_line(node), guard))
                 return STAYS
         return STAYS
 
     def read_for_statement(self, node: Node, guard: int) -> Leaving:
-        children = grammatical(node)
+        children = list_children(node)
         semicolons = 0
         text = ""
         update: list[Node] = []
@@ -279,20 +279,20 @@ class CppStatements(Declarations):
             elif closed:
                 body = child
             elif number in (KIND.declaration, KIND.init_statement):
-                self.statement(child, guard)
+                self.visit_statement(child, guard)
                 semicolons += 1
             elif semicolons == 0:
-                self.value(child, guard, READ, None)
+                self.follow(child, guard, READ, None)
             elif semicolons == 1:
-                self.value(child, guard, READ, None)
-                text = self.outer_text(child)
+                self.follow(child, guard, READ, None)
+                text = self.format_condition(child)
             else:
                 update.append(child)
-        inner = self.guard("while", text or "true", self.line(node), guard)
+        inner = self.guard("while", text or "true", self.find_line(node), guard)
         if body is not None:
-            self.statement(body, inner)
+            self.visit_statement(body, inner)
         for child in update:
-            self.value(child, inner, READ, None)
+            self.follow(child, inner, READ, None)
         return STAYS
 
     def read_for_range_loop(self, node: Node, guard: int) -> Leaving:
@@ -301,33 +301,33 @@ class CppStatements(Declarations):
         walked = node.child_by_field_name("right")
         body = node.child_by_field_name("body")
         if declarator is None or walked is None or body is None:
-            return self.sequence(node.named_children, guard)
-        container = self.value(walked, guard, READ)
-        name, marks = self.declared(declarator)
+            return self.visit_sequence(node.named_children, guard)
+        container = self.follow(walked, guard, READ)
+        name, marks = self.split_declarator(declarator)
         head_end = next((child.start_byte for child in children if child.kind_id == KIND.closing), walked.end_byte)
         head = next((child.end_byte for child in children if child.kind_id == KIND.opening), node.start_byte)
-        line = self.line(node)
-        inner = self.guard("for", flat(self.text[head:head_end]), line, guard)
+        line = self.find_line(node)
+        inner = self.guard("for", flatten(self.text[head:head_end]), line, guard)
         if name is not None:
-            type_ = self.written_type(children)
+            type_ = self.find_written_type(children)
             for part in name.children or (name,):
                 if part.is_named:
                     variable = self.text[part.start_byte : part.end_byte]
                     self.known.add(variable)
                     value = FlowExpr("index", "", (container, FlowExpr("other")))
                     self.assignments.append(Assignment(variable, value, line, inner, type_ + marks))
-        self.statement(body, inner)
+        self.visit_statement(body, inner)
         return STAYS
 
     def read_do_statement(self, node: Node, guard: int) -> Leaving:
         body = node.child_by_field_name("body")
         asked = node.child_by_field_name("condition")
         if body is None or asked is None:
-            return self.sequence(node.named_children, guard)
-        text = self.outer_text(asked)
-        inner = self.guard("do", text, self.line(node), guard)
-        leaving = self.statement(body, inner)
-        self.value(asked, inner)
+            return self.visit_sequence(node.named_children, guard)
+        text = self.format_condition(asked)
+        inner = self.guard("do", text, self.find_line(node), guard)
+        leaving = self.visit_statement(body, inner)
+        self.follow(asked, inner)
         # `do { ... } while (false)` runs once: a return inside is one outside, and `continue` goes on behind it.
         goes_on = _CONTINUE.search(self.text, body.start_byte, body.end_byte)
         return JUMPS if leaving == JUMPS and not goes_on else STAYS
@@ -336,10 +336,10 @@ class CppStatements(Declarations):
         asked = next((child for child in node.children if child.kind_id == KIND.condition_clause), None)
         body = node.child_by_field_name("body")
         if asked is None or body is None:
-            return self.sequence(node.named_children, guard)
-        subject = self.condition(asked, guard)
-        line = self.line(node)
-        cases = list(self.cases(body))
+            return self.visit_sequence(node.named_children, guard)
+        subject = self.visit_condition(asked, guard)
+        line = self.find_line(node)
+        cases = list(self.list_cases(body))
         named = [value for value, *_ in cases if value is not None]
         falling: list[str] = []
         other = False
@@ -350,46 +350,46 @@ class CppStatements(Declarations):
                 other = True
             else:
                 falling.append(value)
-            text = self.case_text(subject, falling, other, named)
+            text = self.format_case(subject, falling, other, named)
             inner = guard
             if condition is not None:
-                inner = self.guard("cpp", condition, self.line(case), inner)
+                inner = self.guard("cpp", condition, self.find_line(case), inner)
             if text:
-                inner = self.guard("case", text, self.line(case), inner)
+                inner = self.guard("case", text, self.find_line(case), inner)
             if not statements:
                 leavings.append((value, STAYS))
                 continue
-            leaving = self.sequence(statements, inner)
+            leaving = self.visit_sequence(statements, inner)
             leavings.append((value, leaving))
             if leaving in (JUMPS, BREAKS):
                 falling, other = [], False
         for child in body.children:
             if child.kind_id != KIND.case_statement and child.is_named and child.kind_id not in PREPROC:
-                self.statement(child, guard)
-        return self.after_switch(subject, leavings, line)
+                self.visit_statement(child, guard)
+        return self.merge_case_leavings(subject, leavings, line)
 
-    def cases(self, body: Node, condition: str | None = None):
+    def list_cases(self, body: Node, condition: str | None = None):
         """The labels of a switch, nested ones too: value (None for default), node, statements, condition of #if."""
         for child in body.children:
             if child.kind_id == KIND.case_statement:
-                yield from self.labels(child, condition)
+                yield from self.list_labels(child, condition)
             elif child.kind_id in PREPROC:
-                asked, statements, rest = self.branch(child)
+                asked, statements, rest = self.split_branch(child)
                 for part in statements:
                     if part.kind_id == KIND.case_statement:
-                        yield from self.labels(part, asked)
+                        yield from self.list_labels(part, asked)
                 while rest is not None:
-                    _, statements, rest = self.branch(rest)
+                    _, statements, rest = self.split_branch(rest)
                     for part in statements:
                         if part.kind_id == KIND.case_statement:
-                            yield from self.labels(part, f"!({asked})")
+                            yield from self.list_labels(part, f"!({asked})")
 
-    def labels(self, case: Node, condition: str | None):
+    def list_labels(self, case: Node, condition: str | None):
         children = case.children
         colon = next((index for index, child in enumerate(children) if child.kind_id == KIND.colon), len(children) - 1)
         value: str | None = None
         if children[0].kind_id == KIND.case_word:
-            value = flat(self.text[children[0].end_byte : children[colon].start_byte])
+            value = flatten(self.text[children[0].end_byte : children[colon].start_byte])
         statements: list[Node] = []
         nested: Node | None = None
         for child in children[colon + 1 :]:
@@ -400,10 +400,10 @@ class CppStatements(Declarations):
                 statements.append(child)
         yield value, case, statements, condition
         if nested is not None:
-            yield from self.labels(nested, condition)
+            yield from self.list_labels(nested, condition)
 
     @staticmethod
-    def case_text(subject: str, falling: list[str], other: bool, named: list[str]) -> str:
+    def format_case(subject: str, falling: list[str], other: bool, named: list[str]) -> str:
         if other:
             if len(named) > MOST_CONDITIONS:
                 return f"{subject} other than {len(named)} values"
@@ -413,7 +413,7 @@ class CppStatements(Declarations):
             return f"{subject} == one of {len(falling)} values"
         return f"{subject} == {' or '.join(falling)}"
 
-    def after_switch(self, subject: str, leavings: list[tuple[str | None, Leaving]], line: int) -> Leaving:
+    def merge_case_leavings(self, subject: str, leavings: list[tuple[str | None, Leaving]], line: int) -> Leaving:
         jumping: list[str | None] = []
         staying: list[str | None] = []
         last: Leaving = STAYS
@@ -441,17 +441,17 @@ class CppStatements(Declarations):
             number = child.kind_id
             if number == KIND.catch_clause:
                 listed = next((part for part in child.children if part.kind_id == KIND.parameter_list), None)
-                text = flat(self.text[listed.start_byte + 1 : listed.end_byte - 1]) if listed is not None else "..."
-                line = self.line(child)
-                self.parameters(listed)
+                text = flatten(self.text[listed.start_byte + 1 : listed.end_byte - 1]) if listed is not None else "..."
+                line = self.find_line(child)
+                self.add_parameters(listed)
                 body = next((part for part in child.children if part.kind_id == KIND.compound_statement), None)
                 inner = self.guard("catch", text, line, guard)
-                left = self.statement(body, inner) if body is not None else STAYS
+                left = self.visit_statement(body, inner) if body is not None else STAYS
                 caught.append((FlowCondition("catch", text, line), left))
             elif number == KIND.compound_statement:
-                leaving = self.statement(child, guard)
+                leaving = self.visit_statement(child, guard)
             elif number == KIND.field_initializer_list:
-                self.statement(child, guard)
+                self.visit_statement(child, guard)
         going_on = [asked for asked, left in caught if left != JUMPS and left != BREAKS]
         if leaving in (JUMPS, BREAKS):
             if not going_on:
@@ -468,14 +468,14 @@ class CppStatements(Declarations):
     def read_return_statement(self, node: Node, guard: int) -> Leaving:
         for child in node.children:
             if child.is_named and child.kind_id != KIND.comment:
-                value = self.value(child, guard, ESCAPE, RETURN)
-                self.assignments.append(Assignment("", value, self.line(node), guard, "", "return"))
+                value = self.follow(child, guard, ESCAPE, RETURN)
+                self.assignments.append(Assignment("", value, self.find_line(node), guard, "", "return"))
         return JUMPS
 
     read_co_return_statement = read_return_statement
 
     def read_throw_statement(self, node: Node, guard: int) -> Leaving:
-        self.anything(node, guard, ESCAPE, "")
+        self.visit_anything(node, guard, ESCAPE, "")
         return JUMPS
 
     def read_expression_statement(self, node: Node, guard: int) -> Leaving:
@@ -491,29 +491,29 @@ class CppStatements(Declarations):
                     return JUMPS
                 if value.text in ASSERTS and value.parts:
                     arguments = child.children[-1].children
-                    return (FlowCondition("if", self.outer_text(arguments[1]), self.line(node)),)
+                    return (FlowCondition("if", self.format_condition(arguments[1]), self.find_line(node)),)
         elif number == KIND.throw_statement:
             return JUMPS
         return STAYS
 
     def read_labeled_statement(self, node: Node, guard: int) -> Leaving:
-        return self.sequence(node.named_children[1:], guard)
+        return self.visit_sequence(node.named_children[1:], guard)
 
     def read_function_definition(self, node: Node, guard: int) -> Leaving:
         """`NAME(...) { ... }` inside a function, which the grammar takes for a function's definition."""
-        children = grammatical(node)
+        children = list_children(node)
         body = next((child for child in children if child.kind_id == KIND.compound_statement), None)
         head = next((child for child in children if child.kind_id == KIND.function_declarator), None)
         if body is None or head is None:
-            return self.sequence(node.named_children, guard)
+            return self.visit_sequence(node.named_children, guard)
         known = set(self.known)
-        self.parameters(next((part for part in head.children if part.kind_id == KIND.parameter_list), None), guard)
-        text = flat(self.text[node.start_byte : body.start_byte])
-        self.statement(body, self.guard("macro", text, self.line(node), guard))
+        self.add_parameters(next((part for part in head.children if part.kind_id == KIND.parameter_list), None), guard)
+        text = flatten(self.text[node.start_byte : body.start_byte])
+        self.visit_statement(body, self.guard("macro", text, self.find_line(node), guard))
         self.known = known | self.known
         return STAYS
 
-    def branch(self, node: Node) -> tuple[str, list[Node], Node | None]:
+    def split_branch(self, node: Node) -> tuple[str, list[Node], Node | None]:
         """The condition of an #if, #ifdef, #elif or #else, what stands in it, and the branch after it."""
         children = node.children
         first = children[0]
@@ -521,7 +521,7 @@ class CppStatements(Declarations):
         start = 1
         asked = ""
         if word != "#else" and len(children) > 1:
-            asked = self.directive(children[1].start_byte)
+            asked = self.find_directive_text(children[1].start_byte)
             start = 2
             if word.endswith("ndef"):
                 asked = f"!(defined({asked}))"
@@ -536,12 +536,12 @@ class CppStatements(Declarations):
                 statements.append(child)
         return asked, statements, rest
 
-    def directive(self, start: int) -> str:
+    def find_directive_text(self, start: int) -> str:
         """The rest of a directive's line."""
         end = self.text.find("\n", start)
         while end > 0 and self.text[end - 1] == "\\":
             end = self.text.find("\n", end + 1)
-        return flat(self.text[start : end if end >= 0 else len(self.text)].replace("\\\n", " "))
+        return flatten(self.text[start : end if end >= 0 else len(self.text)].replace("\\\n", " "))
 
     def read_preproc_if(self, node: Node, guard: int) -> Leaving:
         """#if in a function; its branches are walked along."""
@@ -549,15 +549,15 @@ class CppStatements(Declarations):
         asked_before = ""
         ends: list[tuple[str, Leaving]] = []
         while branch is not None:
-            asked, statements, rest = self.branch(branch)
-            line = self.line(branch)
+            asked, statements, rest = self.split_branch(branch)
+            line = self.find_line(branch)
             if asked_before:
                 guard = self.guard("cpp", f"!({asked_before})", line, guard)
             inner = self.guard("cpp", asked, line, guard) if asked else guard
-            ends.append((asked, self.sequence(statements, inner)))
+            ends.append((asked, self.visit_sequence(statements, inner)))
             asked_before = asked
             branch = rest
-        line = self.line(node)
+        line = self.find_line(node)
         gone = [left in (JUMPS, BREAKS) for _, left in ends]
         if all(gone) and not ends[-1][0]:
             return ends[0][1]
@@ -577,29 +577,29 @@ class CppStatements(Declarations):
         """What did not parse: its pieces are read all the same, and nothing is concluded from their order."""
         for child in node.children:
             if child.is_named:
-                self.statement(child, guard)
+                self.visit_statement(child, guard)
         return STAYS
 
     def read_class_specifier(self, node: Node, guard: int) -> Leaving:
-        self.local_type(node)
+        self.add_local_type(node)
         return STAYS
 
     read_struct_specifier = read_union_specifier = read_enum_specifier = read_class_specifier
 
     def read_alias_declaration(self, node: Node, guard: int) -> Leaving:
-        self.local_name(node)
+        self.add_local_name(node)
         return STAYS
 
     read_type_definition = read_using_declaration = read_namespace_alias_definition = read_alias_declaration
 
 
-PREPROC = kinds("preproc_if", "preproc_ifdef")
+PREPROC = get_kinds("preproc_if", "preproc_ifdef")
 STATEMENTS: dict[int, Callable[..., Leaving]] = {
-    **node_readers(CppStatements, "read_"),
-    **dict.fromkeys(kinds("continue_statement", "goto_statement"), lambda *_: JUMPS),
-    **dict.fromkeys(kinds("break_statement"), lambda *_: BREAKS),
+    **find_node_readers(CppStatements, "read_"),
+    **dict.fromkeys(get_kinds("continue_statement", "goto_statement"), lambda *_: JUMPS),
+    **dict.fromkeys(get_kinds("break_statement"), lambda *_: BREAKS),
     **dict.fromkeys(
-        kinds("comment", "preproc_def", "preproc_function_def", "preproc_call", "preproc_include",
+        get_kinds("comment", "preproc_def", "preproc_function_def", "preproc_call", "preproc_include",
               "static_assert_declaration", "access_specifier"),
         lambda *_: STAYS,
     ),

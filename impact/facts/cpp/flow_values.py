@@ -20,7 +20,7 @@ from tree_sitter import Node
 
 from ..flow import Access, Assignment, FlowCall, FlowExpr, FlowFunction, Guard
 from .flow_clean import Cleaned, Regions
-from .flow_grammar import KIND, LISTS, LITERALS, OPERATORS, grammatical, listed_in, node_readers
+from .flow_grammar import KIND, LISTS, LITERALS, OPERATORS, find_node_readers, get_items, list_children
 
 # A position: kind of access, callee it is passed to, number of the argument.
 READ, WRITE, PASS, ESCAPE = "read", "write", "pass", "escape"
@@ -46,7 +46,7 @@ _NOISE = re.compile(
 
 
 @lru_cache(maxsize=4096)
-def noise(callee: str) -> bool:
+def is_noise(callee: str) -> bool:
     """Whether a function only logs or checks."""
     return _NOISE.fullmatch(callee) is not None
 
@@ -76,7 +76,7 @@ CHANGES = frozenset((
 SILENT = ELEMENTS | {"size", "empty", "length", "c_str", "capacity", "has_value", "use_count"}
 
 
-def flat(text: str) -> str:
+def flatten(text: str) -> str:
     """A piece of source on one line, without comments."""
     if "/" in text and ("//" in text or "/*" in text):
         text = _ASIDE.sub(lambda match: match[1] or " ", text)
@@ -85,7 +85,7 @@ def flat(text: str) -> str:
     return text.strip()
 
 
-def bare(name: str) -> str:
+def strip_template(name: str) -> str:
     """A name without its template arguments and without blanks."""
     if "<" not in name and " " not in name and "\n" not in name:
         return name
@@ -129,21 +129,21 @@ class FunctionReader:
         self.accesses: list[Access] = []
         self.known = known
 
-    def state(self) -> tuple[Any, ...]:
+    def get_state(self) -> tuple[Any, ...]:
         """The function it is in, to be gone back to by restore()."""
         return (self.name, self.owner, self.guards, self.calls, self.assignments, self.accesses, self.known)
 
     def restore(self, state: tuple[Any, ...]) -> None:
         self.name, self.owner, self.guards, self.calls, self.assignments, self.accesses, self.known = state
 
-    def said(self, node: Node) -> str:
+    def spell_node(self, node: Node) -> str:
         """The source of a node on one line."""
         text = self.text[node.start_byte : node.end_byte]
         if "\n" in text or "  " in text or "/" in text or "\t" in text:
-            return flat(text)
+            return flatten(text)
         return text
 
-    def line(self, node: Node) -> int:
+    def find_line(self, node: Node) -> int:
         return bisect_right(self.starts, node.start_byte)
 
     def place(self, offset: int) -> tuple[int, int]:
@@ -155,27 +155,27 @@ class FunctionReader:
         self.guards.append(Guard(kind_, text[:LONGEST_CONDITION], line, outer, early))
         return len(self.guards) - 1
 
-    def value(self, node: Node, guard: int, position: str = READ, target: str | None = "") -> FlowExpr:
+    def follow(self, node: Node, guard: int, position: str = READ, target: str | None = "") -> FlowExpr:
         """An expression that stands in a position; target: what it is kept in, RETURN for what the function returns,
         None where nobody asks what it says."""
         return VALUES[node.kind_id](self, node, guard, position, target)
 
-    def other(self, node: Node) -> FlowExpr:
+    def make_other(self, node: Node) -> FlowExpr:
         start = node.start_byte
         end = min(node.end_byte, start + 4 * LONGEST_OTHER)
-        return FlowExpr("other", flat(self.text[start:end])[:LONGEST_OTHER])
+        return FlowExpr("other", flatten(self.text[start:end])[:LONGEST_OTHER])
 
-    def anything(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def visit_anything(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         for child in node.children:
             read = VALUES.get(child.kind_id)
             if read is not None:
                 read(self, child, guard, ESCAPE if position == READ else position, None)
             elif child.child_count:
-                self.anything(child, guard, position, None)
-        return NOTHING if target is None else self.other(node)
+                self.visit_anything(child, guard, position, None)
+        return NOTHING if target is None else self.make_other(node)
 
     def value_comment(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        return self.other(node)
+        return self.make_other(node)
 
     value_type_descriptor = value_template_argument_list = value_primitive_type = value_comment
     value_type_identifier = value_field_identifier = value_comment
@@ -195,11 +195,11 @@ class FunctionReader:
         text = self.text[node.start_byte : node.end_byte]
         if text[0:1] == '"' and "\\" not in text:
             return FlowExpr("text", text[1:-1])
-        return FlowExpr("text", self.literal(node))
+        return FlowExpr("text", self.unquote_literal(node))
 
     value_raw_string_literal = value_string_literal
 
-    def literal(self, node: Node) -> str:
+    def unquote_literal(self, node: Node) -> str:
         """The value of a string literal."""
         text = self.text[node.start_byte : node.end_byte]
         if node.kind_id == KIND.raw_string_literal:
@@ -215,7 +215,7 @@ class FunctionReader:
         for child in node.children:
             number = child.kind_id
             if number in (KIND.string_literal, KIND.raw_string_literal):
-                text = self.literal(child)
+                text = self.unquote_literal(child)
                 if parts and parts[-1].kind == "text":
                     text = parts.pop().text + text
                 parts.append(FlowExpr("text", text))
@@ -226,12 +226,12 @@ class FunctionReader:
         return FlowExpr("join", "+", tuple(parts))
 
     def value_qualified_identifier(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        return FlowExpr("name", bare(self.text[node.start_byte : node.end_byte]))
+        return FlowExpr("name", strip_template(self.text[node.start_byte : node.end_byte]))
 
     value_template_function = value_this = value_qualified_identifier
 
     def value_field_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        path, local = self.path(node, guard)
+        path, local = self.visit_path(node, guard)
         if local:
             self.touch(path, position)
         return FlowExpr("name", path)
@@ -241,94 +241,94 @@ class FunctionReader:
         if position != READ:
             self.accesses.append(Access(path, position))
 
-    def path(self, node: Node, guard: int) -> tuple[str, bool]:
+    def visit_path(self, node: Node, guard: int) -> tuple[str, bool]:
         """A path and whether it begins at a variable of the function; what stands inside, such as an index, is read."""
         number = node.kind_id
         if number == KIND.identifier:
             name = self.text[node.start_byte : node.end_byte]
             return name, name in self.known
         if number == KIND.field_expression:
-            plain = self.plain(node)
+            plain = self.find_plain_path(node)
             if plain is not None:
                 return plain
-            children = grammatical(node)
-            path, local = self.path(children[0], guard)
-            return f"{path}.{self.member(children[-1])}", local
+            children = list_children(node)
+            path, local = self.visit_path(children[0], guard)
+            return f"{path}.{self.find_member_name(children[-1])}", local
         if number in (KIND.this, KIND.qualified_identifier):
-            return bare(self.text[node.start_byte : node.end_byte]), False
+            return strip_template(self.text[node.start_byte : node.end_byte]), False
         if number in (KIND.parenthesized_expression, KIND.pointer_expression, KIND.cast_expression):
-            children = grammatical(node)
-            return self.path(children[1] if number == KIND.parenthesized_expression else children[-1], guard)
+            children = list_children(node)
+            return self.visit_path(children[1] if number == KIND.parenthesized_expression else children[-1], guard)
         if number == KIND.subscript_expression:
-            children = grammatical(node)
-            path, local = self.path(children[0], guard)
-            for index in listed_in(children[1]):
-                self.value(index, guard)
+            children = list_children(node)
+            path, local = self.visit_path(children[0], guard)
+            for index in get_items(children[1]):
+                self.follow(index, guard)
             return f"{path}.[]", local
         if number == KIND.call_expression:
-            children = grammatical(node)
+            children = list_children(node)
             function = children[0]
             if function.kind_id == KIND.field_expression:
-                method = self.member(function.children[-1])
+                method = self.find_member_name(function.children[-1])
                 if method in ELEMENTS or method in POINTEES:
                     if method in POINTEES:
                         self.value_call_expression(node, guard, READ, "")
-                        receiver = self.plain(function.children[0])
-                        return receiver if receiver is not None else (self.receiver(node), False)
-                    path, local = self.path(function.children[0], guard)
-                    for argument in listed_in(children[-1]):
-                        self.value(argument, guard)
+                        receiver = self.find_plain_path(function.children[0])
+                        return receiver if receiver is not None else (self.find_receiver(node), False)
+                    path, local = self.visit_path(function.children[0], guard)
+                    for argument in get_items(children[-1]):
+                        self.follow(argument, guard)
                     return f"{path}.[]", local
             else:
-                arguments = listed_in(children[-1])
-                if len(arguments) == 1 and self.called(node) in THROUGH:
-                    return self.path(arguments[0], guard)
+                arguments = get_items(children[-1])
+                if len(arguments) == 1 and self.find_callee(node) in THROUGH:
+                    return self.visit_path(arguments[0], guard)
             self.received = self.value_call_expression(node, guard, ESCAPE, "")
-            return self.called(node) + "()", False
-        self.received = self.value(node, guard, ESCAPE)
+            return self.find_callee(node) + "()", False
+        self.received = self.follow(node, guard, ESCAPE)
         return "()", False
 
-    def plain(self, node: Node) -> tuple[str, bool] | None:
+    def find_plain_path(self, node: Node) -> tuple[str, bool] | None:
         """The path of a node that is nothing but names."""
         plain = _PLAIN.fullmatch(self.text, node.start_byte, node.end_byte)
         if plain is None:
             return None
         return plain[0].replace("->", "."), plain[1] is None and plain[2] in self.known
 
-    def called(self, node: Node) -> str:
+    def find_callee(self, node: Node) -> str:
         """The callee of a call, by its text alone."""
         function = node.children[0]
         number = function.kind_id
         if number == KIND.field_expression:
-            children = grammatical(function)
-            return f"{self.receiver(children[0])}.{self.member(children[-1])}"
+            children = list_children(function)
+            return f"{self.find_receiver(children[0])}.{self.find_member_name(children[-1])}"
         if number in (KIND.identifier, KIND.qualified_identifier, KIND.template_function):
-            return bare(self.text[function.start_byte : function.end_byte])
-        return self.receiver(function)
+            return strip_template(self.text[function.start_byte : function.end_byte])
+        return self.find_receiver(function)
 
-    def receiver(self, node: Node) -> str:
+    def find_receiver(self, node: Node) -> str:
         """What a method is called on, as a path; nothing is noted."""
         number = node.kind_id
         if number in (KIND.this, KIND.identifier, KIND.qualified_identifier):
-            return bare(self.text[node.start_byte : node.end_byte])
+            return strip_template(self.text[node.start_byte : node.end_byte])
         if number == KIND.field_expression:
-            plain = self.plain(node)
+            plain = self.find_plain_path(node)
             if plain is not None:
                 return plain[0]
-            children = grammatical(node)
-            return f"{self.receiver(children[0])}.{self.member(children[-1])}"
+            children = list_children(node)
+            return f"{self.find_receiver(children[0])}.{self.find_member_name(children[-1])}"
         if number == KIND.parenthesized_expression:
-            return self.receiver(grammatical(node)[1])
+            return self.find_receiver(list_children(node)[1])
         if number in (KIND.pointer_expression, KIND.cast_expression):
-            return self.receiver(grammatical(node)[-1])
+            return self.find_receiver(list_children(node)[-1])
         if number == KIND.subscript_expression:
-            return self.receiver(node.children[0]) + ".[]"
+            return self.find_receiver(node.children[0]) + ".[]"
         if number == KIND.call_expression:
-            name = self.called(node)
+            name = self.find_callee(node)
             if name in THROUGH:
-                arguments = listed_in(node.children[-1])
+                arguments = get_items(node.children[-1])
                 if len(arguments) == 1:
-                    return self.receiver(arguments[0])
+                    return self.find_receiver(arguments[0])
             head, _, last = name.rpartition(".")
             if head and last in ELEMENTS:
                 return head + ".[]"
@@ -337,18 +337,18 @@ class FunctionReader:
             return name + "()"
         return "()"
 
-    def member(self, node: Node) -> str:
+    def find_member_name(self, node: Node) -> str:
         """The name of a member in a field expression, without template arguments."""
         if node.kind_id == KIND.field_identifier:
             return self.text[node.start_byte : node.end_byte]
         if node.kind_id == KIND.dependent_name:
             node = node.children[-1]
-        return bare(self.text[node.start_byte : node.end_byte])
+        return strip_template(self.text[node.start_byte : node.end_byte])
 
-    def templated(self, node: Node) -> tuple[str, str]:
+    def split_template(self, node: Node) -> tuple[str, str]:
         """The name and the arguments of a template, as written."""
         name, written = node.children[0], node.children[-1]
-        types = flat(self.text[written.start_byte + 1 : written.end_byte - 1])
+        types = flatten(self.text[written.start_byte + 1 : written.end_byte - 1])
         return self.text[name.start_byte : name.end_byte], types
 
     def value_call_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
@@ -357,7 +357,7 @@ class FunctionReader:
         if len(children) != 2:
             children = [child for child in children if child.kind_id not in (KIND.comment, KIND.ERROR)]
             if len(children) < 2:
-                return self.anything(node, guard, position, target)
+                return self.visit_anything(node, guard, position, target)
         function = children[0]
         number = function.kind_id
         text = self.text
@@ -377,16 +377,16 @@ class FunctionReader:
                 at = function.end_byte - len(method)
                 local = plain[1] is None and plain[2] in self.known
             else:
-                parts = grammatical(function)
+                parts = list_children(function)
                 member = parts[-1]
                 if member.kind_id == KIND.dependent_name:
                     member = member.children[-1]
                 at = member.start_byte
                 if member.kind_id == KIND.template_method:
-                    method, types = self.templated(member)
+                    method, types = self.split_template(member)
                 else:
-                    method = self.member(member)
-                receiver, local = self.path(parts[0], guard)
+                    method = self.find_member_name(member)
+                receiver, local = self.visit_path(parts[0], guard)
                 if receiver.endswith("()"):
                     received = self.received
                 callee = f"{receiver}.{method}"
@@ -399,18 +399,18 @@ class FunctionReader:
             if name.kind_id == KIND.dependent_name:
                 name = name.children[-1]
             if name.kind_id in (KIND.template_function, KIND.template_method):
-                _, types = self.templated(name)
-            callee = bare(callee)
+                _, types = self.split_template(name)
+            callee = strip_template(callee)
         elif number == KIND.template_function:
-            callee, types = self.templated(function)
+            callee, types = self.split_template(function)
         else:
-            callee, local = self.path(function, guard)
+            callee, local = self.visit_path(function, guard)
 
         listed = children[-1]
         if callee in THROUGH:
-            inner = listed_in(listed)
+            inner = get_items(listed)
             if len(inner) == 1:
-                return self.value(inner[0], guard, position, target)
+                return self.follow(inner[0], guard, position, target)
         if local and receiver:
             if method in ELEMENTS:
                 self.touch(f"{receiver}.[]", position)
@@ -418,14 +418,14 @@ class FunctionReader:
                 self.touch(receiver, position)
             elif method not in LOOKS:
                 self.touch(receiver, WRITE if method in CHANGES else PASS)
-        logs = noise(callee)
+        logs = is_noise(callee)
         arguments: tuple[FlowExpr, ...] = ()
         if listed.end_byte - listed.start_byte > 2:
             self.nesting += 1
             if listed.kind_id in LISTS:
-                arguments = self.arguments(listed, guard, READ if logs or not callee else PASS)
+                arguments = self.visit_arguments(listed, guard, READ if logs or not callee else PASS)
             else:
-                self.value(listed, guard, ESCAPE)
+                self.follow(listed, guard, ESCAPE)
             self.nesting -= 1
         if callee in BINDS and arguments and (callee != "bind" or arguments[0].kind == "function"):
             return FlowExpr("bind", "", arguments)
@@ -436,22 +436,22 @@ class FunctionReader:
         if target is None:
             return NOTHING
         if self.nesting > DEEPEST:
-            return self.other(node)
+            return self.make_other(node)
         if callee in MAKES:
             return FlowExpr("make", types, arguments)
         return FlowExpr("call", callee, arguments, received)
 
-    def arguments(self, listed: Node, guard: int, position: str) -> tuple[FlowExpr, ...]:
+    def visit_arguments(self, listed: Node, guard: int, position: str) -> tuple[FlowExpr, ...]:
         """The arguments in a list, each in the same position."""
         given = (child for child in listed.named_children if child.kind_id != KIND.comment)
         return tuple(VALUES[child.kind_id](self, child, guard, position, "") for child in given)
 
     def value_subscript_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        children = grammatical(node)
-        path, local = self.path(children[0], guard)
+        children = list_children(node)
+        path, local = self.visit_path(children[0], guard)
         index = FlowExpr("other")
-        for child in listed_in(children[1]):
-            index = self.value(child, guard)
+        for child in get_items(children[1]):
+            index = self.follow(child, guard)
         if local:
             self.touch(f"{path}.[]", position)
         return FlowExpr("index", "", (FlowExpr("name", path), index))
@@ -459,26 +459,26 @@ class FunctionReader:
     def value_parenthesized_expression(
         self, node: Node, guard: int, position: str, target: str | None
     ) -> FlowExpr:
-        children = grammatical(node)
+        children = list_children(node)
         if len(children) != 3:
-            return self.anything(node, guard, position, target)
-        return self.value(children[1], guard, position, target)
+            return self.visit_anything(node, guard, position, target)
+        return self.follow(children[1], guard, position, target)
 
     def value_pointer_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        children = grammatical(node)
+        children = list_children(node)
         inner = children[-1]
         if self.text.startswith("&", node.start_byte):
             number = inner.kind_id
             if number in (KIND.qualified_identifier, KIND.template_function):
-                return FlowExpr("function", bare(self.text[inner.start_byte : inner.end_byte]))
+                return FlowExpr("function", strip_template(self.text[inner.start_byte : inner.end_byte]))
             if number == KIND.identifier:
                 name = self.text[inner.start_byte : inner.end_byte]
                 if name and name not in self.known and not name.endswith("_"):
                     return FlowExpr("function", name)
-        return self.value(inner, guard, position, target)
+        return self.follow(inner, guard, position, target)
 
     def value_cast_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        return self.value(grammatical(node)[-1], guard, position, target)
+        return self.follow(list_children(node)[-1], guard, position, target)
 
     value_initializer_pair = value_co_await_expression = value_cast_expression
 
@@ -501,9 +501,9 @@ class FunctionReader:
             if spine.kind_id != KIND.binary_expression:
                 break
         if not operands:
-            return self.anything(node, guard, position, target)
+            return self.visit_anything(node, guard, position, target)
         if spine.kind_id == KIND.binary_expression:
-            self.anything(spine, guard, ESCAPE, None)
+            self.visit_anything(spine, guard, ESCAPE, None)
         operands.append(spine)
         operands.reverse()
         signs.reverse()
@@ -525,12 +525,12 @@ class FunctionReader:
                 if "(" in self.text[operand.start_byte : operand.end_byte]:
                     holds = "if" if sign == "&&" else "unless"
                     for asked in pending:
-                        guard = self.guard(holds, self.outer_text(asked), self.line(asked), guard)
+                        guard = self.guard(holds, self.format_condition(asked), self.find_line(asked), guard)
                     pending = []
             if number in LITERALS:
                 read = VALUES[number](self, operand, guard, READ, "")
             else:
-                if sign in SAFE or (sign in ("==", "!=") and self.literal_beside(operands, index)):
+                if sign in SAFE or (sign in ("==", "!=") and self.is_beside_literal(operands, index)):
                     where = READ
                 else:
                     where = ESCAPE
@@ -540,23 +540,23 @@ class FunctionReader:
         self.nesting -= 1
         if joined:
             return FlowExpr("join", signs[0], tuple(parts))
-        return NOTHING if target is None else self.other(node)
+        return NOTHING if target is None else self.make_other(node)
 
-    def literal_beside(self, operands: list[Node], index: int) -> bool:
+    def is_beside_literal(self, operands: list[Node], index: int) -> bool:
         other = operands[index - 1] if index else operands[1] if len(operands) > 1 else operands[0]
         return other.kind_id in LITERALS
 
     def value_unary_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        children = grammatical(node)
-        inner = self.value(children[-1], guard, READ, None)
+        children = list_children(node)
+        inner = self.follow(children[-1], guard, READ, None)
         if inner.kind == "number" and self.text[node.start_byte] == "-":
             return FlowExpr("number", "-" + inner.text)
-        return NOTHING if target is None else self.other(node)
+        return NOTHING if target is None else self.make_other(node)
 
     def value_update_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        children = grammatical(node)
+        children = list_children(node)
         operand = children[0] if children[-1].child_count == 0 and not children[-1].is_named else children[-1]
-        path, local = self.path(operand, guard)
+        path, local = self.visit_path(operand, guard)
         if local:
             self.touch(path, WRITE)
         sign = (
@@ -564,91 +564,93 @@ class FunctionReader:
             if "++" in (self.text[node.start_byte : node.start_byte + 2], self.text[node.end_byte - 2 : node.end_byte])
             else "-="
         )
-        self.assignments.append(Assignment(path, FlowExpr("number", "1"), self.line(node), guard, "", sign))
+        self.assignments.append(Assignment(path, FlowExpr("number", "1"), self.find_line(node), guard, "", sign))
         return FlowExpr("name", path)
 
     def value_assignment_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        children = grammatical(node)
+        children = list_children(node)
         if len(children) != 3:
-            return self.anything(node, guard, position, target)
+            return self.visit_anything(node, guard, position, target)
         left, sign, right = children
-        path, local = self.path(left, guard)
+        path, local = self.visit_path(left, guard)
         if local:
             self.touch(path, WRITE)
         operator = self.text[sign.start_byte : sign.end_byte]
         followed = operator != "=" or path in self.known
-        value = self.value(right, guard, READ if followed else ESCAPE, path)
-        self.assignments.append(Assignment(path, value, self.line(node), guard, "", operator, self.key(left, guard)))
+        value = self.follow(right, guard, READ if followed else ESCAPE, path)
+        self.assignments.append(
+            Assignment(path, value, self.find_line(node), guard, "", operator, self.find_key(left, guard))
+        )
         return value
 
-    def key(self, node: Node, guard: int) -> FlowExpr | None:
+    def find_key(self, node: Node, guard: int) -> FlowExpr | None:
         """The literal in the brackets of an element's path."""
         if node.kind_id != KIND.subscript_expression:
             return None
-        inner = listed_in(grammatical(node)[1])
-        return self.value(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
+        inner = get_items(list_children(node)[1])
+        return self.follow(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
 
     def value_conditional_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        children = grammatical(node)
+        children = list_children(node)
         if len(children) != 5:
-            return self.anything(node, guard, position, target)
+            return self.visit_anything(node, guard, position, target)
         asked, _, yes, _, no = children
         self.nesting += 1
-        condition = self.value(asked, guard, READ)
-        line = self.line(node)
-        text = self.outer_text(asked)
-        true = self.value(yes, self.guard("if", text, line, guard), position, target)
-        false = self.value(no, self.guard("unless", text, line, guard), position, target)
+        condition = self.follow(asked, guard, READ)
+        line = self.find_line(node)
+        text = self.format_condition(asked)
+        true = self.follow(yes, self.guard("if", text, line, guard), position, target)
+        false = self.follow(no, self.guard("unless", text, line, guard), position, target)
         self.nesting -= 1
         if self.nesting > DEEPEST:
-            return self.other(node)
+            return self.make_other(node)
         return FlowExpr("choice", "", (condition, true, false))
 
-    def outer_text(self, node: Node) -> str:
+    def format_condition(self, node: Node) -> str:
         """A condition as written, without parentheses around the whole."""
         while node.kind_id == KIND.parenthesized_expression:
-            children = grammatical(node)
+            children = list_children(node)
             if len(children) != 3:
                 break
             node = children[1]
-        return self.said(node)
+        return self.spell_node(node)
 
     def value_initializer_list(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         if self.nesting > DEEPEST:
-            self.anything(node, guard, ESCAPE, "")
-            return self.other(node)
+            self.visit_anything(node, guard, ESCAPE, "")
+            return self.make_other(node)
         self.nesting += 1
-        parts = tuple(self.value(child, guard, ESCAPE) for child in listed_in(node))
+        parts = tuple(self.follow(child, guard, ESCAPE) for child in get_items(node))
         self.nesting -= 1
         return FlowExpr("list", "", parts)
 
     def value_new_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         """`new T(...)` and `T{...}`."""
-        children = grammatical(node)
+        children = list_children(node)
         kind_ = ""
         parts: tuple[FlowExpr, ...] = ()
         self.nesting += 1
         for child in children:
             if child.kind_id in (KIND.argument_list, KIND.initializer_list):
-                parts = self.arguments(child, guard, PASS)
+                parts = self.visit_arguments(child, guard, PASS)
             elif child.is_named and not kind_:
-                kind_ = self.said(child)
+                kind_ = self.spell_node(child)
         self.nesting -= 1
         if self.nesting > DEEPEST:
-            return self.other(node)
+            return self.make_other(node)
         return FlowExpr("make", kind_, parts)
 
     value_compound_literal_expression = value_new_expression
 
     def value_throw_statement(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
-        return self.anything(node, guard, ESCAPE, "")
+        return self.visit_anything(node, guard, ESCAPE, "")
 
     def value_sizeof_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         for child in node.children:
             read = VALUES.get(child.kind_id)
             if read is not None:
                 read(self, child, guard, READ, "")
-        return self.other(node)
+        return self.make_other(node)
 
     value_delete_expression = value_sizeof_expression
 
@@ -657,7 +659,7 @@ class _Readers(dict[int, Callable[..., FlowExpr]]):
     """How each kind of node is read; one that is not listed is looked into."""
 
     def __missing__(self, number: int) -> Callable[..., FlowExpr]:
-        return FunctionReader.anything
+        return FunctionReader.visit_anything
 
 
-VALUES = _Readers(node_readers(FunctionReader, "value_"))
+VALUES = _Readers(find_node_readers(FunctionReader, "value_"))

@@ -135,7 +135,7 @@ _PACKAGE_LITERAL = re.compile(r'"([A-Za-z]\w*)"\s*[,)]')
 _SPACE = re.compile(r"\s+")
 
 
-def text_of(data: bytes) -> str:
+def decode_source(data: bytes) -> str:
     """The text of a source, one line break form, undecodable bytes as one replacement character each or so."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         text = data.decode("utf-16", "replace")
@@ -146,7 +146,7 @@ def text_of(data: bytes) -> str:
     return text
 
 
-def line_starts(text: str) -> list[int]:
+def find_line_starts(text: str) -> list[int]:
     """The offset at which each line of a text begins, and that of its end."""
     return [0, *map(add, accumulate(map(len, text.split("\n"))), count(1))]
 
@@ -154,19 +154,19 @@ def line_starts(text: str) -> list[int]:
 _NOT_NEWLINE = re.compile(r"[^\n]+")
 
 
-def blanked(text: str, gone: Iterable[tuple[int, int]]) -> str:
+def blank_stretches(text: str, gone: Iterable[tuple[int, int]]) -> str:
     """A text with some stretches blanked, its lines as they are. gone: sorted, where each begins and ends."""
     pieces: list[str] = []
     position = 0
     for start, end in gone:
         if end > position:
             start = max(start, position)
-            pieces += [text[position:start], _NOT_NEWLINE.sub(blanks, text[start:end])]
+            pieces += [text[position:start], _NOT_NEWLINE.sub(make_blanks, text[start:end])]
             position = end
     return "".join(pieces) + text[position:]
 
 
-def blanks(match: re.Match[str]) -> str:
+def make_blanks(match: re.Match[str]) -> str:
     """As many blanks as what was found has characters."""
     return " " * len(match[0])
 
@@ -175,7 +175,7 @@ def blanks(match: re.Match[str]) -> str:
 Directive = tuple[int, int, str, str]
 
 
-def conditional_blocks(directives: Iterable[Directive]) -> Iterator[list[Directive]]:
+def list_conditional_blocks(directives: Iterable[Directive]) -> Iterator[list[Directive]]:
     """The directives of every #if that is closed, from it to its #endif; inner ones first."""
     opened: list[list[Directive]] = []
     for directive in directives:
@@ -194,7 +194,7 @@ class _Blocks:
         self.open: list[tuple[list[Condition], Condition | None]] = []
         self.kept: dict[tuple[Condition, ...], tuple[Condition, ...]] = {}
 
-    def conditions(self) -> tuple[Condition, ...]:
+    def list_conditions(self) -> tuple[Condition, ...]:
         result: list[Condition] = []
         for earlier, own in self.open[:DEEPEST]:
             if len(earlier) > MOST_BRANCHES:
@@ -216,7 +216,7 @@ class _Blocks:
         self.open.append((earlier, own))
 
 
-def _condition(keyword: str, text: str) -> Condition:
+def _make_condition(keyword: str, text: str) -> Condition:
     text = sys.intern(text)
     if keyword in ("ifdef", "elifdef", "ifndef", "elifndef"):
         name = _IDENTIFIER.match(text)
@@ -298,13 +298,13 @@ class Scan:
     ends: list[int]
     directives: list[Directive]
 
-    def segment(self, offset: int) -> tuple[int, int, tuple[Condition, ...]]:
+    def find_segment(self, offset: int) -> tuple[int, int, tuple[Condition, ...]]:
         """The stretch around an offset; inside a directive the one that follows."""
         return self.segments[min(bisect_right(self.ends, offset), len(self.segments) - 1)]
 
-    def under(self, offset: int) -> tuple[Condition, ...] | None:
+    def find_conditions(self, offset: int) -> tuple[Condition, ...] | None:
         """The conditions around an offset, None inside a directive."""
-        start, _, conditions = self.segment(offset)
+        start, _, conditions = self.find_segment(offset)
         return conditions if start <= offset else None
 
     @cached_property
@@ -334,7 +334,7 @@ class Scan:
         return b" ".join(self.tokens).decode()
 
 
-def _placing(text: str) -> Callable[[int], tuple[int, int]]:
+def _make_locator(text: str) -> Callable[[int], tuple[int, int]]:
     """Gives line and column of offsets, from 1. Each is counted from the one before, which is most often near."""
     line, begin, last = 1, 0, 0
 
@@ -359,12 +359,12 @@ def _placing(text: str) -> Callable[[int], tuple[int, int]]:
 @lru_cache(maxsize=4)
 def scan(data: bytes) -> Scan:
     """Reads a file as far as all that looks into it needs."""
-    text = text_of(data)
+    text = decode_source(data)
     problems: list[Problem] = []
-    place = _placing(text)
+    place = _make_locator(text)
     found: list[tuple[int, bool, str]] = []
 
-    def blank(match: re.Match[str]) -> str:
+    def blank_match(match: re.Match[str]) -> str:
         hidden = match.group()
         first = hidden[0]
         if first == "#":
@@ -386,7 +386,7 @@ def scan(data: bytes) -> Scan:
             return "\n".join([" " * len(line) for line in hidden.split("\n")])
         return " " * len(hidden)
 
-    visible = _HIDDEN.sub(blank, text)
+    visible = _HIDDEN.sub(blank_match, text)
 
     directives: list[Directive] = []
     for match in _DIRECTIVE.finditer(visible):
@@ -416,14 +416,14 @@ def scan(data: bytes) -> Scan:
         if guard and index in guard:
             continue
         if keyword in ("if", "ifdef", "ifndef"):
-            blocks.open.append(([], _condition(keyword, body)))
+            blocks.open.append(([], _make_condition(keyword, body)))
         elif not blocks.open:
             problems.append(Problem(place(start)[0], f"`#{keyword}` without `#if`"))
         elif keyword == "endif":
             blocks.open.pop()
         else:
-            blocks.turn(None if keyword == "else" else _condition(keyword, body))
-        conditions = blocks.conditions()
+            blocks.turn(None if keyword == "else" else _make_condition(keyword, body))
+        conditions = blocks.list_conditions()
     segments.append((position, len(visible), conditions))
     if blocks.open:
         problems.append(Problem(text.count("\n") + 1, f"{len(blocks.open)} `#if` without `#endif`"))
@@ -431,7 +431,7 @@ def scan(data: bytes) -> Scan:
     return Scan(text, visible, place, segments, found, defined, problems, ends, directives)
 
 
-def beginning_lines(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[str]]:
+def find_at_line_starts(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[str]]:
     """The matches that begin a line, blanks before them aside. An expression that says so itself is slower by far than
     one that starts with a literal."""
     for match in pattern.finditer(text):
@@ -440,7 +440,7 @@ def beginning_lines(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[st
             yield match
 
 
-def standing(name: str, text: str, begin: int = 0, stop: int = sys.maxsize) -> Iterator[int]:
+def find_words(name: str, text: str, begin: int = 0, stop: int = sys.maxsize) -> Iterator[int]:
     """Where a name stands as a whole word, between two places."""
     at = text.find(name, begin, stop)
     while at >= 0:
@@ -451,11 +451,11 @@ def standing(name: str, text: str, begin: int = 0, stop: int = sys.maxsize) -> I
         at = text.find(name, end, stop)
 
 
-def places_of(data: bytes, word: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
+def find_word_uses(data: bytes, word: str) -> Iterator[tuple[int, int, tuple[Condition, ...]]]:
     """Line, column and preprocessor conditions of every use of a bare identifier outside comments and literals."""
     scanned = scan(data)
-    for at in standing(word, scanned.visible):
-        conditions = scanned.under(at)
+    for at in find_words(word, scanned.visible):
+        conditions = scanned.find_conditions(at)
         if conditions is not None:
             yield (*scanned.place(at), conditions)
 
@@ -477,7 +477,7 @@ def extract(data: bytes) -> CppFile:
         known = seen.setdefault(piece.conditions, set())
         found: list[tuple[int, str]] = []
         for token in joined:
-            names, bare = _names_in(token)
+            names, bare = _split_names(token)
             words.update(bare)
             for offset, name, begins in names:
                 if name not in known:
@@ -499,16 +499,16 @@ def extract(data: bytes) -> CppFile:
         qualified=tuple(qualified),
         words=b" ".join(long_words[bisect_right(long_words, _AFTER_NUMBERS) :]).decode(),
         defined=tuple(scanned.defined),
-        using=_using(visible) if "using" in tokens_text else (),
-        problems=tuple(sorted(scanned.problems, key=_by_line)),
-        exports=exports_of(visible) if any(word in tokens_text for word in _EXPORTING) else (),
-        references=_references(scanned.text, visible, place),
-        types=types_of(visible, tokens_text) if "namespace" in tokens_text else (),
-        variables=_variables(visible),
+        using=_list_using_names(visible) if "using" in tokens_text else (),
+        problems=tuple(sorted(scanned.problems, key=_get_line)),
+        exports=list_exports(visible) if any(word in tokens_text for word in _EXPORTING) else (),
+        references=_find_references(scanned.text, visible, place),
+        types=list_defined_types(visible, tokens_text) if "namespace" in tokens_text else (),
+        variables=_list_variable_types(visible),
     )
 
 
-def _using(visible: str) -> tuple[str, ...]:
+def _list_using_names(visible: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(_SPACE.sub("", match.group(1)) for match in _USING.finditer(visible)))
 
 
@@ -516,16 +516,16 @@ def _tie(visible: str) -> str:
     """A text in which the blanks around `::` between two words are _TIE, so that a qualified name is one token."""
     tied = visible.replace(_TIE, " ")
     if _SPREAD.search(tied) is not None:
-        tied = _AHEAD.sub(_tied, _AHEAD.sub(_tied, tied)[::-1])[::-1]
+        tied = _AHEAD.sub(_tie_match, _AHEAD.sub(_tie_match, tied)[::-1])[::-1]
     return tied if tied.isascii() else _NO_TOKEN.sub(" ", tied)
 
 
-def _tied(match: re.Match[str]) -> str:
+def _tie_match(match: re.Match[str]) -> str:
     return "::" + _TIE * (len(match.group()) - 2)
 
 
 @lru_cache(maxsize=20_000)
-def _names_in(token: bytes) -> tuple[tuple[tuple[int, str, bool], ...], tuple[bytes, ...]]:
+def _split_names(token: bytes) -> tuple[tuple[tuple[int, str, bool], ...], tuple[bytes, ...]]:
     """The qualified names in a token that has a colon by where they begin, with whether the token begins with the
     colons of one that has no first part; and its bare words."""
     text = token.decode()
@@ -552,7 +552,7 @@ def _names_in(token: bytes) -> tuple[tuple[tuple[int, str, bool], ...], tuple[by
     return tuple(names), tuple(word.encode() for word in bare)
 
 
-def _variables(visible: str) -> tuple[str, ...]:
+def _list_variable_types(visible: str) -> tuple[str, ...]:
     """The qualified types of variables that begin a line."""
     variables: dict[str, None] = {}
     for match in _VARIABLE.finditer(visible):
@@ -578,7 +578,7 @@ _BEGIN_TYPES = {word: re.compile(rf"{word}(?<!\w{word})") for word in _TYPE_WORD
 _MOST_TYPES = 400
 
 
-def types_of(visible: str, tokens_text: str) -> tuple[str, ...]:
+def list_defined_types(visible: str, tokens_text: str) -> tuple[str, ...]:
     """The types that a file defines, with each of the namespaces that it opens. tokens_text: all of its words."""
     spaces = dict.fromkeys(_SPACE.sub("", match) for match in _NAMESPACE.findall(visible))
     if not spaces:
@@ -601,7 +601,7 @@ def _matches(pattern: re.Pattern[str], begins: Iterable[re.Pattern[str]], text: 
             yield match
 
 
-def _by_line(item: Problem | Reference) -> int:
+def _get_line(item: Problem | Reference) -> int:
     return item.line
 
 
@@ -610,11 +610,11 @@ def includes_of(scanned: Scan) -> tuple[Include, ...]:
     includes: list[Include] = []
     for offset, angled, path in scanned.found:
         line, column = scanned.place(offset)
-        includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, scanned.segment(offset)[2]))
+        includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, scanned.find_segment(offset)[2]))
     return tuple(includes)
 
 
-def exports_of(visible: str) -> tuple[str, ...]:
+def list_exports(visible: str) -> tuple[str, ...]:
     """Classes registered as plugins, those of Gazebo too, or components: the first argument, or the later one of ROS
     1's old macros."""
     exports: dict[str, None] = {}
@@ -644,7 +644,7 @@ def _place_below(after: str) -> str:
     return "" if ".." in parts else "/".join(parts)
 
 
-def _references(text: str, visible: str, place) -> tuple[Reference, ...]:
+def _find_references(text: str, visible: str, place) -> tuple[Reference, ...]:
     references: list[Reference] = []
     for match in _PACKAGE_URL.finditer(text) if '"package://' in text else ():
         if visible[match.start()] == '"':
@@ -656,4 +656,4 @@ def _references(text: str, visible: str, place) -> tuple[Reference, ...]:
             name = _place_below(text[literal.end() : literal.end() + 200])
             kind = "place" if name else "package"
             references.append(Reference(kind, literal.group(1), name, *place(literal.start(1))))
-    return tuple(sorted(references, key=_by_line))
+    return tuple(sorted(references, key=_get_line))

@@ -7,7 +7,7 @@ import re
 _ARGUMENTS = re.compile(r"<[^<>]*>")
 
 
-def without_templates(text: str) -> str:
+def strip_templates(text: str) -> str:
     """A name without its template arguments and white space."""
     while "<" in text:
         shorter = _ARGUMENTS.sub("", text)
@@ -17,12 +17,12 @@ def without_templates(text: str) -> str:
     return "".join(text.split())
 
 
-def joined(scope: str, name: str) -> str:
+def join_scope(scope: str, name: str) -> str:
     """A name in a scope, each of which may be empty."""
     return f"{scope}::{name}" if scope and name else scope or name
 
 
-def closing_angle(text: str, opened: int) -> int:
+def find_closing_angle(text: str, opened: int) -> int:
     """Where the `>` stands that closes the `<` at a place, -1 where none does."""
     depth = 0
     for at in range(opened, len(text)):

@@ -92,7 +92,7 @@ class Action(msgspec.Struct, frozen=True, array_like=True, gc=False):
         """The first attribute of a name, None when there is none."""
         return next((value for key, value in self.attributes if key == name), None)
 
-    def all(self, name: str) -> tuple[Value, ...]:
+    def list_values(self, name: str) -> tuple[Value, ...]:
         """All attributes of a name."""
         return tuple(value for key, value in self.attributes if key == name)
 
@@ -109,19 +109,19 @@ class LaunchFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 SHOWN = 120
 
 
-def literal(text: str) -> Value:
+def make_literal(text: str) -> Value:
     """A value that is plain text."""
     return (ValuePart("text", text),)
 
 
-def plain(value: Value | None) -> str | None:
+def find_literal(value: Value | None) -> str | None:
     """The text of a value that is all literal, None for any other."""
     if value is None or any(piece.kind != "text" for piece in value):
         return None
     return "".join(piece.text for piece in value)
 
 
-def together(values: Iterator[Value] | list[Value] | tuple[Value, ...]) -> Value:
+def join_all(values: Iterator[Value] | list[Value] | tuple[Value, ...]) -> Value:
     """Values one after the other as one, literal neighbours joined."""
     pieces: list[ValuePart] = []
     for value in values:
@@ -130,15 +130,15 @@ def together(values: Iterator[Value] | list[Value] | tuple[Value, ...]) -> Value
                 pieces[-1] = ValuePart("text", pieces[-1].text + piece.text)
             elif piece.kind != "text" or piece.text:
                 pieces.append(piece)
-    return tuple(pieces) or literal("")
+    return tuple(pieces) or make_literal("")
 
 
-def named(kind: str, name: Value, *rest: Value) -> ValuePart:
+def make_named(kind: str, name: Value, *rest: Value) -> ValuePart:
     """A piece whose name may be computed."""
-    text = plain(name)
+    text = find_literal(name)
     return ValuePart(kind, text, rest) if text else ValuePart(kind, "", (name, *rest))
 
 
-def other(source: str) -> ValuePart:
+def make_other(source: str) -> ValuePart:
     """A piece that could not be read."""
     return ValuePart("other", " ".join(source.split())[:SHOWN])

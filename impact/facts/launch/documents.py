@@ -7,7 +7,7 @@ from typing import Any
 
 from ..markup import Attribute, Document, Element, decode, scan
 from ..place import Problem
-from .parameter_files import MOST_ENTRIES, YamlNode, yaml_tree
+from .parameter_files import MOST_ENTRIES, YamlNode, parse_yaml_tree
 
 KINDS_2 = {
     "let": "let",
@@ -38,7 +38,7 @@ def read_document(data: bytes, kind: str) -> Document:
     if kind != "launch_yaml":
         return scan(data)
     text = decode(data)
-    root, problems = yaml_tree(text)
+    root, problems = parse_yaml_tree(text)
     body = dict(root.value).get("launch") if root is not None and root.kind == "map" else None
     elements: list[Element] = []
     if body is not None:
@@ -66,28 +66,28 @@ def _add(tag: str, body: YamlNode, elements: list[Element], parent: int) -> None
     if body.kind == "list":
         _add_listed(body, elements, place)
     elif body.kind == "scalar":
-        element.text = _as_text(body.value)
+        element.text = _format_scalar(body.value)
     for key, value in body.value if body.kind == "map" else ():
         listed = value.kind == "list"
         items = value.value if listed else [value]
         if key == "children" and value.kind != "scalar":
             _add_listed(value, elements, place)
         elif all(item.kind == "scalar" for item in items):
-            given = [Attribute(key, _as_text(item.value), item.offset, listed) for item in items]
+            given = [Attribute(key, _format_scalar(item.value), item.offset, listed) for item in items]
             element.attributes += tuple(given) or (Attribute(key, "[]", value.offset),)
         else:
             for item in items:
                 _add(key, item, elements, place)
 
 
-def _as_text(value: Any) -> str:
+def _format_scalar(value: Any) -> str:
     """A scalar as launch would write it."""
     if value is None:
         return ""
     return ("true" if value else "false") if isinstance(value, bool) else str(value)
 
 
-def generation_of(document: Document) -> int:
+def find_generation(document: Document) -> int:
     """1 or 2 by what only that generation writes, 0 where nothing tells."""
     counts = [0, 0, 0]
     for element in document.elements:

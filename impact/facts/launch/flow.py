@@ -12,8 +12,18 @@ import msgspec
 
 from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
-from .actions import Action, ActionCondition, LaunchFile, Value, ValuePart, literal, named, other, together
-from .documents import KINDS_2, generation_of, read_document
+from .actions import (
+    Action,
+    ActionCondition,
+    LaunchFile,
+    Value,
+    ValuePart,
+    join_all,
+    make_literal,
+    make_named,
+    make_other,
+)
+from .documents import KINDS_2, find_generation, read_document
 from .parameter_files import DEEPEST
 
 
@@ -34,39 +44,39 @@ def extract(data: bytes, kind: str) -> LaunchFile:
 _ROS1 = re.compile(r"\$\(([^$()]*)\)")
 
 
-def substitutions(text: str, generation: int) -> Value:
+def parse_substitutions(text: str, generation: int) -> Value:
     """A text of a launch or parameter file as a value, by the rules of ROS 1 (roslaunch) or ROS 2 (launch)."""
     if "$(" not in text:
-        return literal(text)
-    return _ros1(text) if generation == 1 else _Template(text).value()
+        return make_literal(text)
+    return _parse_ros1(text) if generation == 1 else _Template(text).parse_value()
 
 
-def _ros1(text: str) -> Value:
+def _parse_ros1(text: str) -> Value:
     if text.startswith("$(eval ") and text.endswith(")"):
-        return (ValuePart("eval", "roslaunch", (literal(text[7:-1]),)),)
+        return (ValuePart("eval", "roslaunch", (make_literal(text[7:-1]),)),)
     values: list[Value] = []
     at = 0
     for m in _ROS1.finditer(text):
-        values += (_no_opening(text[at : m.start()]), (_ros1_piece(m[1].split(), m[0]),))
+        values += (_parse_between(text[at : m.start()]), (_parse_ros1_piece(m[1].split(), m[0]),))
         at = m.end()
-    values.append(_no_opening(text[at:]))
-    return together(values)
+    values.append(_parse_between(text[at:]))
+    return join_all(values)
 
 
-def _no_opening(text: str) -> Value:
+def _parse_between(text: str) -> Value:
     """Text between substitutions; one that opens a substitution and is none cannot be read."""
-    return (other(text),) if "$(" in text else literal(text)
+    return (make_other(text),) if "$(" in text else make_literal(text)
 
 
-def _ros1_piece(words: list[str], source: str) -> ValuePart:
+def _parse_ros1_piece(words: list[str], source: str) -> ValuePart:
     verb, args = (words[0], words[1:]) if words else ("", [])
     if verb in ("arg", "anon", "env", "find") and len(args) == 1:
         return ValuePart(verb, args[0])
     if verb == "optenv" and args:
-        return ValuePart("env", args[0], (literal(" ".join(args[1:])),))
+        return ValuePart("env", args[0], (make_literal(" ".join(args[1:])),))
     if verb == "dirname" and not args:
         return ValuePart("dirname")
-    return other(source)
+    return make_other(source)
 
 
 _IDENTIFIER = re.compile(r"[A-Za-z][\w-]*")
@@ -81,7 +91,7 @@ class _Template:
         self.text = text
         self.at = 0
 
-    def value(self, depth: int = 0, quote: str = "", quoted: bool = True) -> Value:
+    def parse_value(self, depth: int = 0, quote: str = "", quoted: bool = True) -> Value:
         """Literals and substitutions up to a closing quote or, outside of quotes, a blank or bracket; or to the end.
         quote: in which this stands."""
         values: list[Value] = []
@@ -89,59 +99,59 @@ class _Template:
         while self.at < len(text):
             plain = _PLAIN.match(text, self.at)
             if plain is not None:
-                values.append(literal(plain[0]))
+                values.append(make_literal(plain[0]))
                 self.at = plain.end()
                 continue
             c = text[self.at]
             if c == quote if quoted else c == ")" or c.isspace():
                 break
             if text.startswith("$(", self.at):
-                values.append((self._substitution(depth + 1, quote),))
+                values.append((self._parse_substitution(depth + 1, quote),))
                 continue
             step = 2 if c == "\\" and self.at + 1 < len(text) else 1
-            values.append(literal(text[self.at + step - 1]))
+            values.append(make_literal(text[self.at + step - 1]))
             self.at += step
-        return together(values)
+        return join_all(values)
 
-    def _substitution(self, depth: int, quote: str) -> ValuePart:
+    def _parse_substitution(self, depth: int, quote: str) -> ValuePart:
         begin = self.at
         m = _IDENTIFIER.match(self.text, begin + 2)
         if m is None or depth > DEEPEST:
             self.at = len(self.text)
-            return other(self.text[begin:])
+            return make_other(self.text[begin:])
         self.at = m.end()
         args: list[Value] = []
         while self.at < len(self.text):
             c = self.text[self.at]
             if c == ")":
                 self.at += 1
-                return _ros2_piece(m[0], args, self.text[begin : self.at])
+                return _parse_ros2_piece(m[0], args, self.text[begin : self.at])
             if c.isspace():
                 self.at += 1
             elif c in "'\"" and c != quote:
                 self.at += 1
-                args.append(self.value(depth, c))
+                args.append(self.parse_value(depth, c))
                 self.at += 1
             else:
-                args.append(self.value(depth, quote, False))
-        return other(self.text[begin:])
+                args.append(self.parse_value(depth, quote, False))
+        return make_other(self.text[begin:])
 
 
-def _ros2_piece(verb: str, args: list[Value], source: str) -> ValuePart:
+def _parse_ros2_piece(verb: str, args: list[Value], source: str) -> ValuePart:
     if verb in _ROS2_NAMED and 1 <= len(args) <= 2:
-        return named(_ROS2_NAMED[verb], *args)
+        return make_named(_ROS2_NAMED[verb], *args)
     if verb in ("find-pkg-share", "find-pkg-prefix", "find-exec", "anon") and len(args) == 1:
-        return named(_ROS2_PLACES.get(verb, verb), args[0])
+        return make_named(_ROS2_PLACES.get(verb, verb), args[0])
     if verb == "eval" and args:
-        return ValuePart("eval", "launch", (spaced(args),))
+        return ValuePart("eval", "launch", (join_with_separator(args),))
     if verb == "command" and args:
         return ValuePart("command", "", (args[0],))
     if verb == "not-equals" and len(args) == 2:
         return ValuePart("not", "", ((ValuePart("equals", "", tuple(args)),),))
     if verb == "if" and len(args) == 2:
-        args = [*args, literal("")]
+        args = [*args, make_literal("")]
     kind, numbers = _ROS2_PIECES.get(verb, ("", ()))
-    return ValuePart(kind, "", tuple(args)) if numbers is None or len(args) in numbers else other(source)
+    return ValuePart(kind, "", tuple(args)) if numbers is None or len(args) in numbers else make_other(source)
 
 
 _ROS2_PLACES = {"find-pkg-share": "find", "find-pkg-prefix": "prefix", "find-exec": "program"}
@@ -154,9 +164,9 @@ _ROS2_PIECES: dict[str, tuple[str, tuple[int, ...] | None]] = {
 }  # fmt: skip
 
 
-def spaced(values: list[Value], separator: str = " ") -> Value:
+def join_with_separator(values: list[Value], separator: str = " ") -> Value:
     """Values as one, with a separator between them."""
-    return together([part for value in values for part in (literal(separator), value)][1:])
+    return join_all([part for value in values for part in (make_literal(separator), value)][1:])
 
 
 # XML and YAML as one kind of tree
@@ -179,7 +189,7 @@ def _launch(data: bytes, kind: str) -> LaunchFile:
     if not document.elements or document.elements[0].name != "launch":
         lacking = Problem(1, "has no `launch:` list" if is_yaml else "has no `<launch>` element")
         return LaunchFile(language, 2 if is_yaml else 0, (), (*document.problems, lacking))
-    generation = 2 if is_yaml else generation_of(document)
+    generation = 2 if is_yaml else find_generation(document)
     entities: list[_Entity] = []
     depths: list[int] = []
     problems = list(document.problems)
@@ -204,7 +214,7 @@ def _launch(data: bytes, kind: str) -> LaunchFile:
         elif 0 < depth < DEEPEST:
             entities[element.parent].children.append(entity)
     reader = _Reader(generation)
-    actions = reader.actions(entities[0].children)
+    actions = reader.read_actions(entities[0].children)
     return LaunchFile(language, generation, actions, (*problems, *reader.problems))
 
 
@@ -272,48 +282,50 @@ class _Reader:
         self.generation = generation
         self.problems: list[Problem] = []
 
-    def actions(self, entities: list[_Entity], inside: str = "") -> tuple[Action, ...]:
+    def read_actions(self, entities: list[_Entity], inside: str = "") -> tuple[Action, ...]:
         found: list[Action] = []
         for entity in entities:
-            found += self.action(entity, inside)
+            found += self.read_action(entity, inside)
         return tuple(found)
 
-    def value(self, text: str | list[str]) -> Value:
+    def read_value(self, text: str | list[str]) -> Value:
         if isinstance(text, list):
-            return together([literal("["), spaced([self.value(item) for item in text], ", "), literal("]")])
-        return substitutions(text, self.generation)
+            items = join_with_separator([self.read_value(item) for item in text], ", ")
+            return join_all([make_literal("["), items, make_literal("]")])
+        return parse_substitutions(text, self.generation)
 
-    def action(self, entity: _Entity, inside: str) -> list[Action]:
+    def read_action(self, entity: _Entity, inside: str) -> list[Action]:
         kind = _KINDS.get(entity.tag)
         if kind is None:
             if entity.tag in _IDLE:
                 return []
-            return [Action("unknown", entity.line, (("text", literal(f"<{entity.tag}>")),), self.conditions(entity))]
+            attributes = (("text", make_literal(f"<{entity.tag}>")),)
+            return [Action("unknown", entity.line, attributes, self.read_conditions(entity))]
         if inside == "include" and kind in ("argument", "let"):
             kind = "pass"
         if entity.tag == "param" and "from" in entity.attributes:
             kind = "parameter-file"
         if kind == "parameter":
-            return self.parameter(entity, ())
-        attributes = self.attributes(entity, kind)
-        conditions = self.conditions(entity)
+            return self.read_parameter(entity, ())
+        attributes = self.read_attributes(entity, kind)
+        conditions = self.read_conditions(entity)
         if entity.tag == "timer":
-            period = self.value(entity.attributes.get("period", ""))
-            conditions = (*conditions, ActionCondition("after", together([period, literal(" s")]), entity.line))
+            period = self.read_value(entity.attributes.get("period", ""))
+            conditions = (*conditions, ActionCondition("after", join_all([period, make_literal(" s")]), entity.line))
         if entity.tag == "rosparam" and entity.text:
             fill = "subst_value" in entity.attributes
-            attributes.append(("text", self.value(entity.text) if fill else literal(entity.text)))
-        children = self.actions(entity.children, kind)
+            attributes.append(("text", self.read_value(entity.text) if fill else make_literal(entity.text)))
+        children = self.read_actions(entity.children, kind)
         return [Action(kind, entity.line, tuple(attributes), conditions, children)]
 
-    def conditions(self, entity: _Entity) -> tuple[ActionCondition, ...]:
+    def read_conditions(self, entity: _Entity) -> tuple[ActionCondition, ...]:
         return tuple(
-            ActionCondition(kind, self.value(entity.attributes[kind]), entity.line)
+            ActionCondition(kind, self.read_value(entity.attributes[kind]), entity.line)
             for kind in ("if", "unless")
             if kind in entity.attributes
         )
 
-    def attributes(self, entity: _Entity, kind: str) -> list[tuple[str, Value]]:
+    def read_attributes(self, entity: _Entity, kind: str) -> list[tuple[str, Value]]:
         found: list[tuple[str, Value]] = []
         for name, text in entity.attributes.items():
             if kind == "parameter-file":
@@ -322,22 +334,22 @@ class _Reader:
                 if key == "name" and "ns" in entity.attributes:
                     continue
                 if name == "ns":
-                    below = [self.value(text)]
+                    below = [self.read_value(text)]
                     if "param" in entity.attributes:
-                        below += (literal("/"), self.value(entity.attributes["param"]))
-                    found.append(("name", together(below)))
+                        below += (make_literal("/"), self.read_value(entity.attributes["param"]))
+                    found.append(("name", join_all(below)))
                     continue
             elif kind == "parameter" and name == "type":
                 key = "type"
             elif name == "ros_args":
-                found += [("arguments", literal("--ros-args"))]
+                found += [("arguments", make_literal("--ros-args"))]
                 key = "arguments"
             else:
                 key = _ATTRIBUTES.get(name)
             if key == "arguments" or (key == "command" and kind == "process"):
-                found += [(key, word) for word in words(self.value(text))]
+                found += [(key, word) for word in split_command_line(self.read_value(text))]
             elif key is not None:
-                found.append((key, self.value(text)))
+                found.append((key, self.read_value(text)))
         if kind in ("test", "node") and "test-name" in entity.attributes:
             test = [value for key, value in found if key == "test-name"]
             found = [(key, value) for key, value in found if key != "test-name"]
@@ -345,24 +357,24 @@ class _Reader:
                 found.append(("name", test[0]))
         return found
 
-    def parameter(self, entity: _Entity, above: tuple[Value, ...]) -> list[Action]:
+    def read_parameter(self, entity: _Entity, above: tuple[Value, ...]) -> list[Action]:
         """A parameter, or those nested in it, whose names are joined by dots."""
         if entity.tag == "set_use_sim_time":
-            attributes = [("name", literal("use_sim_time")), *self.attributes(entity, "parameter")]
-            return [Action("parameter", entity.line, tuple(attributes), self.conditions(entity))]
-        attributes = self.attributes(entity, "parameter")
-        name = next((value for key, value in attributes if key == "name"), literal(""))
+            attributes = [("name", make_literal("use_sim_time")), *self.read_attributes(entity, "parameter")]
+            return [Action("parameter", entity.line, tuple(attributes), self.read_conditions(entity))]
+        attributes = self.read_attributes(entity, "parameter")
+        name = next((value for key, value in attributes if key == "name"), make_literal(""))
         nested = [child for child in entity.children if child.tag == "param"]
         if nested:
             found: list[Action] = []
             for child in nested:
-                found += self.parameter(child, (*above, name, literal(".")))
+                found += self.read_parameter(child, (*above, name, make_literal(".")))
             return found
-        attributes = [(key, together([*above, value]) if key == "name" else value) for key, value in attributes]
-        return [Action("parameter", entity.line, tuple(attributes), self.conditions(entity))]
+        attributes = [(key, join_all([*above, value]) if key == "name" else value) for key, value in attributes]
+        return [Action("parameter", entity.line, tuple(attributes), self.read_conditions(entity))]
 
 
-def words(value: Value) -> list[Value]:
+def split_command_line(value: Value) -> list[Value]:
     """A command line as its words, split at the blanks of its literal pieces outside quotes; quotes are taken off."""
     found: list[Value] = []
     word: list[Value] = []
@@ -377,9 +389,9 @@ def words(value: Value) -> list[Value]:
             elif not quote and part in "'\"":
                 quote, begun = part, True
             elif not quote and part.isspace():
-                found += [together(word)] if begun else []
+                found += [join_all(word)] if begun else []
                 word, begun = [], False
             else:
-                word.append(literal(part))
+                word.append(make_literal(part))
                 begun = True
-    return [*found, together(word)] if begun else found
+    return [*found, join_all(word)] if begun else found

@@ -51,7 +51,7 @@ _FLOAT = re.compile(r"[-+]?(?:(?:\.[0-9]+|[0-9][0-9_]*\.[0-9_]*)(?:[eE][-+]?[0-9
 _NOT_FINITE = re.compile(r"([-+]?)\.(?:inf|Inf|INF)\Z|\.(?:nan|NaN|NAN)\Z")
 
 
-def scalar(text: str) -> Any:
+def parse_scalar(text: str) -> Any:
     """What a plain scalar of YAML stands for: None, bool, int, float or str. Integers beyond 64 bits stay text.
 
     `1e-4` is a float, as for rcl; PyYAML, which ROS 1 reads with, would ask for a dot.
@@ -80,7 +80,7 @@ def scalar(text: str) -> Any:
     return text
 
 
-def yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
+def parse_yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
     """The first document of a YAML text, as far as it can be read."""
     import yaml
 
@@ -120,9 +120,9 @@ def yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
             if isinstance(event, yaml.ScalarEvent):
                 is_key = bool(levels) and levels[-1][0].kind == "map" and levels[-1][1] is None
                 bare = event.implicit[0] and not is_key
-                value = scalar(event.value) if bare else _clean(event.value)
+                value = parse_scalar(event.value) if bare else _clean(event.value)
                 if event.tag is not None and not is_key:
-                    value = _tagged(event.tag, value)
+                    value = _parse_tagged(event.tag, value)
                 mark = event.start_mark
                 node = YamlNode("scalar", value, mark.line + 1, mark.index + (event.style in ("'", '"')))
                 if event.anchor:
@@ -161,11 +161,11 @@ def yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
     return (root[0] if root else None), problems
 
 
-def _tagged(tag: str, value: str) -> Any:
+def _parse_tagged(tag: str, value: str) -> Any:
     """A scalar with a tag of its own: `!!str 5`, `!!int "5"`, rosparam's `!degrees 90`."""
     if tag.endswith(":str") or tag == "!":
         return value
-    number = scalar(value)
+    number = parse_scalar(value)
     if tag == "!degrees" and isinstance(number, (int, float)):
         return math.radians(number)
     return number
@@ -178,13 +178,13 @@ def _clean(text: str) -> str:
 
 def extract(data: bytes | str) -> ParameterFile:
     """The values of a YAML file of parameters. Never raises; what cannot be read is a problem, the rest is kept."""
-    root, problems = yaml_tree(decode(data) if isinstance(data, bytes) else _clean(data).lstrip("\ufeff"))
+    root, problems = parse_yaml_tree(decode(data) if isinstance(data, bytes) else _clean(data).lstrip("\ufeff"))
     entries: list[ParameterEntry] = []
     budget = [MOST_ENTRIES]
     if root is not None and root.kind == "map":
         _flatten(root, (), entries, budget)
     elif root is not None and (root.kind == "list" or root.value is not None):
-        entries.append(ParameterEntry((), _plain_value(root, budget), root.line))
+        entries.append(ParameterEntry((), _convert_to_plain(root, budget), root.line))
     if budget[0] <= 0:
         problems.append(Problem(1, f"has more than {MOST_ENTRIES} values"))
     return ParameterFile(tuple(entries), tuple(problems))
@@ -207,16 +207,16 @@ def _flatten(node: YamlNode, path: tuple[str, ...], entries: list[ParameterEntry
             if not _flatten(child, (*path, key), entries, budget):
                 return False
         else:
-            entries.append(ParameterEntry((*path, key), _plain_value(child, budget), child.line))
+            entries.append(ParameterEntry((*path, key), _convert_to_plain(child, budget), child.line))
     return True
 
 
-def _plain_value(node: YamlNode, budget: list[int]) -> Any:
+def _convert_to_plain(node: YamlNode, budget: list[int]) -> Any:
     budget[0] -= 1
     if budget[0] <= 0:
         return None
     if node.kind == "list":
-        return [_plain_value(item, budget) for item in node.value]
+        return [_convert_to_plain(item, budget) for item in node.value]
     if node.kind == "map":
-        return {key: _plain_value(item, budget) for key, item in node.value}
+        return {key: _convert_to_plain(item, budget) for key, item in node.value}
     return node.value

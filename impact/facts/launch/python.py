@@ -11,11 +11,22 @@ import string
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from ....edges.dispatch import node_methods
+from ....edges.dispatch import collect_node_methods
 from ..place import Problem
 from ..python.source import read
-from ..python.text import parameters_in
-from .actions import Action, ActionCondition, LaunchFile, Value, ValuePart, literal, named, other, plain, together
+from ..python.text import list_parameters
+from .actions import (
+    Action,
+    ActionCondition,
+    LaunchFile,
+    Value,
+    ValuePart,
+    find_literal,
+    join_all,
+    make_literal,
+    make_named,
+    make_other,
+)
 from .parameter_files import DEEPEST
 from .python_calls import MAKERS, MOST_TURNS, LaunchCall
 from .python_values import (
@@ -38,12 +49,12 @@ from .python_values import (
     TypedValue,
     Unknown,
     YamlContent,
-    all_of,
-    calculated,
-    folder_of,
-    guarded_by,
+    add_conditions,
+    calculate_result,
+    get_source,
+    join_conditions,
+    make_parent_path,
     place_in,
-    source_of,
 )
 
 MOST_STEPS = 200_000
@@ -103,7 +114,7 @@ class Walker:
         self.line = 1
 
     def launch(self, tree: ast.Module) -> tuple[tuple[Action, ...], tuple[Problem, ...]]:
-        self.block(tree.body)
+        self.walk_block(tree.body)
         entry = next((f for f in map(self.module.names.get, ENTRIES) if isinstance(f, LaunchFunction)), None)
         if entry is None:
             return (), (Problem(1, "has no generate_launch_description()"),)
@@ -111,14 +122,14 @@ class Walker:
         if isinstance(result, Items) and result.kind == "tuple" and result.items:
             # A test's description, and what its cases are told
             result = result.items[0]
-        return tuple(self.actions(result, entry.node.lineno)), ()
+        return tuple(self.list_actions(result, entry.node.lineno)), ()
 
-    def block(self, statements: Sequence[ast.stmt]) -> bool:
+    def walk_block(self, statements: Sequence[ast.stmt]) -> bool:
         """Walks statements; True when none that follows them can run."""
         added = 0
         try:
             for statement in statements:
-                self.spend(1)
+                self.count_steps(1)
                 handler = _STATEMENTS.get(type(statement))
                 if handler is None:
                     continue
@@ -134,29 +145,29 @@ class Walker:
             if added:
                 del self.conditions[-added:]
 
-    def under(self, statements: Sequence[ast.stmt], *conditions: ActionCondition) -> bool:
+    def walk_under(self, statements: Sequence[ast.stmt], *conditions: ActionCondition) -> bool:
         """Walks statements under more conditions; True as from block()."""
         count = len(self.conditions)
         self.conditions += conditions
-        jumps = self.block(statements)
+        jumps = self.walk_block(statements)
         del self.conditions[count:]
         return jumps
 
     def run_Expr(self, statement: ast.Expr) -> None:
-        self.value(statement.value)
+        self.evaluate(statement.value)
 
     def run_Assign(self, statement: ast.Assign) -> None:
-        value = self.value(statement.value)
+        value = self.evaluate(statement.value)
         for target in statement.targets:
             self.bind(target, value)
 
     def run_AnnAssign(self, statement: ast.AnnAssign) -> None:
         if statement.value is not None:
-            self.bind(statement.target, self.value(statement.value))
+            self.bind(statement.target, self.evaluate(statement.value))
 
     def run_AugAssign(self, statement: ast.AugAssign) -> None:
-        added = self.value(statement.value)
-        before = self.value(statement.target)
+        added = self.evaluate(statement.value)
+        before = self.evaluate(statement.target)
         if isinstance(before, Items) and isinstance(added, Items):
             self.extend(before, added.items)
         elif isinstance(before, Pairs) and isinstance(added, Pairs):
@@ -165,7 +176,7 @@ class Walker:
         elif isinstance(statement.op, ast.Add):
             self.bind(statement.target, self.add(before, added, statement))
         else:
-            self.bind(statement.target, Unknown(source_of(statement)))
+            self.bind(statement.target, Unknown(get_source(statement)))
 
     def bind(self, target: ast.expr, value: Any) -> None:
         if isinstance(target, ast.Name):
@@ -174,21 +185,21 @@ class Walker:
             items = value.items if isinstance(value, Items) else ()
             known = len(items) == len(target.elts)
             for place, element in enumerate(target.elts):
-                self.bind(element, items[place] if known else Unknown(source_of(element)))
+                self.bind(element, items[place] if known else Unknown(get_source(element)))
         elif isinstance(target, ast.Subscript):
-            holder = self.value(target.value)
-            key = self.value(target.slice)
+            holder = self.evaluate(target.value)
+            key = self.evaluate(target.slice)
             if isinstance(holder, Pairs):
-                holder.set(key, self.guarded(value, holder.depth))
+                holder.set(key, self.add_conditions(value, holder.depth))
             elif isinstance(holder, Items) and (place := place_in(holder, key)) is not None:
                 holder.items[place] = value
         elif isinstance(target, ast.Attribute):
-            holder = self.value(target.value)
+            holder = self.evaluate(target.value)
             if isinstance(holder, Object):
                 holder.attributes[target.attr] = value
 
     def run_Return(self, statement: ast.Return) -> bool:
-        value = LaunchConstant(None) if statement.value is None else self.value(statement.value)
+        value = LaunchConstant(None) if statement.value is None else self.evaluate(statement.value)
         self.returns.append((tuple(self.conditions[self.base :]), value))
         return True
 
@@ -198,15 +209,15 @@ class Walker:
     run_Continue = run_Raise = run_Break
 
     def run_If(self, statement: ast.If) -> bool | ActionCondition | None:
-        decided = self.truth(statement.test)
+        decided = self.evaluate_test(statement.test)
         if isinstance(decided, bool):
-            return self.block(statement.body if decided else statement.orelse)
+            return self.walk_block(statement.body if decided else statement.orelse)
         yes = ActionCondition("if", decided, statement.lineno)
         no = ActionCondition("unless", decided, statement.lineno)
         before = dict(self.scope.names)
-        body_jumps = self.under(statement.body, yes)
+        body_jumps = self.walk_under(statement.body, yes)
         after_body, self.scope.names = self.scope.names, dict(before)
-        else_jumps = self.under(statement.orelse, no)
+        else_jumps = self.walk_under(statement.orelse, no)
         if body_jumps and else_jumps:
             return True
         if body_jumps:
@@ -223,17 +234,17 @@ class Walker:
         return None
 
     def run_For(self, statement: ast.For) -> None:
-        turns = self.turns(self.value(statement.iter))
+        turns = self.list_turns(self.evaluate(statement.iter))
         if turns is None:
-            over = f"for {source_of(statement.target)} in {source_of(statement.iter)}"
+            over = f"for {get_source(statement.target)} in {get_source(statement.iter)}"
             self.bind_unknown(statement.target)
-            self.under(statement.body, ActionCondition("each", (other(over),), statement.lineno))
+            self.walk_under(statement.body, ActionCondition("each", (make_other(over),), statement.lineno))
         else:
             for turn in turns:
                 extra = self.bind_turn(statement.target, turn)
-                if self.under(statement.body, *extra) and not _continues(statement.body):
+                if self.walk_under(statement.body, *extra) and not _jumps_to_next_turn(statement.body):
                     break
-        self.block(statement.orelse)
+        self.walk_block(statement.orelse)
 
     def bind_turn(self, target: ast.expr, turn: Any) -> tuple[ActionCondition, ...]:
         """Binds the variable of a loop for one turn; gives the conditions that this one stands under."""
@@ -246,29 +257,30 @@ class Walker:
             if isinstance(node, ast.Name):
                 self.scope.names[node.id] = Unknown(node.id)
 
-    def turns(self, over: Any) -> list[Any] | None:
+    def list_turns(self, over: Any) -> list[Any] | None:
         """What a loop walks through, None when that is not known."""
         if not isinstance(over, (Items, Pairs)) or len(over.items) > MOST_TURNS:
             return None
         return [key for key, _ in over.items] if isinstance(over, Pairs) else over.items
 
     def run_While(self, statement: ast.While) -> None:
-        self.under(
-            statement.body, ActionCondition("each", (other(f"while {source_of(statement.test)}"),), statement.lineno)
+        self.walk_under(
+            statement.body,
+            ActionCondition("each", (make_other(f"while {get_source(statement.test)}"),), statement.lineno),
         )
 
     def run_With(self, statement: ast.With) -> bool:
         for item in statement.items:
-            value = self.value(item.context_expr)
+            value = self.evaluate(item.context_expr)
             if item.optional_vars is not None:
                 self.bind(item.optional_vars, value)
-        return self.block(statement.body)
+        return self.walk_block(statement.body)
 
     def run_Try(self, statement: ast.Try) -> bool:
-        jumps = self.block(statement.body)
+        jumps = self.walk_block(statement.body)
         if not jumps:
-            jumps = self.block(statement.orelse)
-        return self.block(statement.finalbody) or jumps
+            jumps = self.walk_block(statement.orelse)
+        return self.walk_block(statement.finalbody) or jumps
 
     def run_FunctionDef(self, statement: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
         self.scope.names[statement.name] = LaunchFunction(statement, self.scope)
@@ -291,22 +303,22 @@ class Walker:
         for alias in statement.names:
             self.scope.names[alias.asname or alias.name] = LaunchModule(f"{statement.module or ''}.{alias.name}")
 
-    def truth(self, node: ast.expr) -> bool | Value:
+    def evaluate_test(self, node: ast.expr) -> bool | Value:
         """Whether an expression is true: known, or a value that tells at launch."""
-        return self.truth_of(self.value(node), node)
+        return self.find_truth(self.evaluate(node), node)
 
-    def truth_of(self, value: Any, node: ast.AST) -> bool | Value:
+    def find_truth(self, value: Any, node: ast.AST) -> bool | Value:
         if isinstance(value, LaunchConstant):
             return bool(value.value)
         if isinstance(value, TextValue):
             if not value.is_str:
                 return True
-            text = plain(value.value)
+            text = find_literal(value.value)
             if text is not None:
                 return bool(text)
             if len(value.value) == 1 and value.value[0].kind in _BOOLEAN_PIECES:
                 return value.value
-            return (ValuePart("not", "", ((ValuePart("equals", "", (value.value, literal(""))),),)),)
+            return (ValuePart("not", "", ((ValuePart("equals", "", (value.value, make_literal(""))),),)),)
         if isinstance(value, (Items, Pairs)):
             if not value.items:
                 return False
@@ -314,13 +326,13 @@ class Walker:
                 return True
         if isinstance(value, (LaunchModule, LaunchFunction, Object, LaunchClass, Action, Context)):
             return True
-        return (other(source_of(node)),)
+        return (make_other(get_source(node)),)
 
     def value_Compare(self, node: ast.Compare) -> Any:
         if len(node.ops) != 1:
-            return Unknown(source_of(node))
+            return Unknown(get_source(node))
         op = node.ops[0]
-        left, right = self.value(node.left), self.value(node.comparators[0])
+        left, right = self.evaluate(node.left), self.evaluate(node.comparators[0])
         same: Any = None
         if isinstance(op, (ast.Eq, ast.NotEq, ast.Is, ast.IsNot)):
             same = self.equal(left, right)
@@ -334,13 +346,13 @@ class Walker:
             elif isinstance(left, TextValue) and all(isinstance(item, TextValue) for item in items):
                 same = (ValuePart("in", "", (left.value, *(item.value for item in items))),)
         elif isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
-            return calculated(node, left.value, right.value)
+            return calculate_result(node, left.value, right.value)
         elif isinstance(op, (ast.In, ast.NotIn)) and isinstance(left, TextValue) and isinstance(right, TextValue):
-            inner, outer = plain(left.value), plain(right.value)
+            inner, outer = find_literal(left.value), find_literal(right.value)
             if inner is not None and outer is not None:
                 same = inner in outer
         if same is None:
-            return Unknown(source_of(node))
+            return Unknown(get_source(node))
         negated = isinstance(op, (ast.NotEq, ast.IsNot, ast.NotIn))
         if isinstance(same, bool):
             return LaunchConstant(same != negated)
@@ -351,7 +363,7 @@ class Walker:
         if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
             return left.value == right.value
         if isinstance(left, TextValue) and isinstance(right, TextValue):
-            a, b = plain(left.value), plain(right.value)
+            a, b = find_literal(left.value), find_literal(right.value)
             if a is not None and b is not None:
                 return a == b
             if not (left.is_str and right.is_str):
@@ -363,26 +375,26 @@ class Walker:
             return None
         return False
 
-    def value(self, node: ast.expr) -> Any:
-        self.spend(1)
+    def evaluate(self, node: ast.expr) -> Any:
+        self.count_steps(1)
         handler = _EXPRESSIONS.get(type(node))
         if handler is None:
-            return Unknown(source_of(node))
+            return Unknown(get_source(node))
         return handler(self, node)
 
     def value_Constant(self, node: ast.Constant) -> Any:
         if isinstance(node.value, str):
-            return TextValue(literal(node.value))
+            return TextValue(make_literal(node.value))
         if node.value is None or isinstance(node.value, (bool, int, float)):
             return LaunchConstant(node.value)
-        return Unknown(source_of(node))
+        return Unknown(get_source(node))
 
     def value_Name(self, node: ast.Name) -> Any:
         found = self.scope.look(node.id)
         return LaunchModule(node.id) if found is None else found
 
     def value_Attribute(self, node: ast.Attribute) -> Any:
-        receiver = self.value(node.value)
+        receiver = self.evaluate(node.value)
         name = node.attr
         if isinstance(receiver, LaunchModule):
             return LaunchModule(f"{receiver.path}.{name}")
@@ -390,45 +402,45 @@ class Walker:
             if name in receiver.attributes:
                 return receiver.attributes[name]
             method = receiver.type.methods.get(name)
-            return Unknown(source_of(node)) if method is None else method._replace(self=receiver)
+            return Unknown(get_source(node)) if method is None else method._replace(self=receiver)
         if isinstance(receiver, Context) and name == "launch_configurations":
             return Context(True)
         if isinstance(receiver, TextValue) and name == "parent":
-            return TextValue(folder_of(receiver.value))
+            return TextValue(make_parent_path(receiver.value))
         if isinstance(receiver, Items) and name == "entities":
             return receiver
         if isinstance(receiver, Unknown):
-            return Unknown(source_of(node))
+            return Unknown(get_source(node))
         return Method(receiver, name)
 
     def value_Subscript(self, node: ast.Subscript) -> Any:
-        holder = self.value(node.value)
-        key = self.value(node.slice) if not isinstance(node.slice, ast.Slice) else None
+        holder = self.evaluate(node.value)
+        key = self.evaluate(node.slice) if not isinstance(node.slice, ast.Slice) else None
         if isinstance(holder, LaunchModule) and holder.path == "os.environ" and isinstance(key, TextValue):
-            return TextValue((named("env", key.value),))
+            return TextValue((make_named("env", key.value),))
         if isinstance(holder, YamlContent) and isinstance(key, TextValue):
             return holder._replace(keys=(*holder.keys, key.value))
         if isinstance(holder, Context) and isinstance(key, TextValue):
-            return TextValue((named("arg", key.value),))
+            return TextValue((make_named("arg", key.value),))
         if isinstance(holder, Pairs):
             found = holder.get(key)
             if found is not None and not isinstance(found, Guarded):
                 return found
         if isinstance(holder, Items) and (place := place_in(holder, key)) is not None:
             return holder.items[place]
-        return Unknown(source_of(node))
+        return Unknown(get_source(node))
 
     def value_List(self, node: ast.List | ast.Tuple) -> Any:
         items: list[Any] = []
         for element in node.elts:
             if isinstance(element, ast.Starred):
-                value = self.value(element.value)
+                value = self.evaluate(element.value)
                 if isinstance(value, Items):
                     items += value.items
                 else:
-                    items.append(Unknown(source_of(element)))
+                    items.append(Unknown(get_source(element)))
             else:
-                items.append(self.value(element))
+                items.append(self.evaluate(element))
         return Items(items, len(self.conditions), "tuple" if isinstance(node, ast.Tuple) else "list")
 
     value_Tuple = value_List
@@ -436,75 +448,77 @@ class Walker:
     def value_Dict(self, node: ast.Dict) -> Any:
         made = Pairs([], len(self.conditions))
         for key, item in zip(node.keys, node.values, strict=True):
-            value = self.value(item)
+            value = self.evaluate(item)
             if key is not None:
-                made.set(self.value(key), value)
+                made.set(self.evaluate(key), value)
             elif isinstance(value, Pairs):
                 for inner, held in value.items:
                     made.set(inner, held)
             else:
-                made.set(Unknown(source_of(item)), value)
+                made.set(Unknown(get_source(item)), value)
         return made
 
     def value_JoinedStr(self, node: ast.JoinedStr) -> Any:
         values: list[Value] = []
         for part in node.values:
             inner = part.value if isinstance(part, ast.FormattedValue) else part
-            values.append(self.text(self.value(inner), inner))
-        return TextValue(together(values))
+            values.append(self.make_text(self.evaluate(inner), inner))
+        return TextValue(join_all(values))
 
     def value_BinOp(self, node: ast.BinOp) -> Any:
-        left, right = self.value(node.left), self.value(node.right)
+        left, right = self.evaluate(node.left), self.evaluate(node.right)
         if isinstance(node.op, ast.Add):
             return self.add(left, right, node)
         if isinstance(node.op, ast.Div) and isinstance(left, TextValue):
-            return TextValue((ValuePart("join", "", (left.value, self.text(right, node.right))),), left.is_str)
+            return TextValue((ValuePart("join", "", (left.value, self.make_text(right, node.right))),), left.is_str)
         if isinstance(node.op, ast.Mod) and isinstance(left, TextValue):
-            pattern = plain(left.value)
+            pattern = find_literal(left.value)
             given = right.items if isinstance(right, Items) else [right]
             if pattern is not None and pattern.count("%s") == len(given) == pattern.count("%"):
-                first, *others = map(literal, pattern.split("%s"))
-                filled = ((self.text(value, node.right), piece) for value, piece in zip(given, others, strict=True))
-                return TextValue(together((first, *(part for pair in filled for part in pair))))
+                first, *others = map(make_literal, pattern.split("%s"))
+                filled = (
+                    (self.make_text(value, node.right), piece) for value, piece in zip(given, others, strict=True)
+                )
+                return TextValue(join_all((first, *(part for pair in filled for part in pair))))
         if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
-            return calculated(node, left.value, right.value)
+            return calculate_result(node, left.value, right.value)
         if isinstance(left, Pairs) and isinstance(right, Pairs) and isinstance(node.op, ast.BitOr):
             made = Pairs(list(left.items), len(self.conditions))
             for key, value in right.items:
                 made.set(key, value)
             return made
-        return Unknown(source_of(node))
+        return Unknown(get_source(node))
 
     def add(self, left: Any, right: Any, node: ast.AST) -> Any:
         if isinstance(left, Items) and isinstance(right, Items):
-            self.spend(len(left.items) + len(right.items))
+            self.count_steps(len(left.items) + len(right.items))
             return Items([*left.items, *right.items], len(self.conditions), left.kind)
         if isinstance(left, TextValue) or isinstance(right, TextValue):
             if isinstance(left, (TextValue, Either)) and isinstance(right, (TextValue, Either)):
-                parts = [self.text(left, node), self.text(right, node)]
-                return TextValue(together(parts), all(getattr(v, "is_str", True) for v in (left, right)))
+                parts = [self.make_text(left, node), self.make_text(right, node)]
+                return TextValue(join_all(parts), all(getattr(v, "is_str", True) for v in (left, right)))
             if isinstance(left, Items) or isinstance(right, Items):
                 # A substitution and a list of them
-                return TextValue(together([self.text(left, node), self.text(right, node)]), False)
+                return TextValue(join_all([self.make_text(left, node), self.make_text(right, node)]), False)
             if isinstance(left, Unknown) or isinstance(right, Unknown):
-                return TextValue(together([self.text(left, node), self.text(right, node)]))
+                return TextValue(join_all([self.make_text(left, node), self.make_text(right, node)]))
         if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant) and isinstance(node, ast.BinOp):
-            return calculated(node, left.value, right.value)
-        return Unknown(source_of(node))
+            return calculate_result(node, left.value, right.value)
+        return Unknown(get_source(node))
 
     def value_BoolOp(self, node: ast.BoolOp) -> Any:
         """`and` and `or`: known where what comes first decides, else a value that tells at launch."""
         is_or = isinstance(node.op, ast.Or)
         open_: list[Value] = []
         for place, part in enumerate(node.values):
-            value = self.value(part)
-            truth = self.truth_of(value, part)
+            value = self.evaluate(part)
+            truth = self.find_truth(value, part)
             if isinstance(truth, bool):
                 if truth == is_or or (place == len(node.values) - 1 and not open_):
                     if not open_:
                         return value
                     if truth == is_or:
-                        open_.append(literal(str(truth)))
+                        open_.append(make_literal(str(truth)))
                         break
                 continue
             open_.append(truth)
@@ -513,31 +527,31 @@ class Walker:
 
     def value_UnaryOp(self, node: ast.UnaryOp) -> Any:
         if isinstance(node.op, ast.Not):
-            truth = self.truth(node.operand)
+            truth = self.evaluate_test(node.operand)
             known = isinstance(truth, bool)
             return LaunchConstant(not truth) if known else TextValue((ValuePart("not", "", (truth,)),))
-        value = self.value(node.operand)
+        value = self.evaluate(node.operand)
         is_number = isinstance(value, LaunchConstant) and isinstance(value.value, (int, float))
         if is_number and not isinstance(node.op, ast.Invert):
             return LaunchConstant(-value.value) if isinstance(node.op, ast.USub) else value
-        return Unknown(source_of(node))
+        return Unknown(get_source(node))
 
     def value_IfExp(self, node: ast.IfExp) -> Any:
-        truth = self.truth(node.test)
+        truth = self.evaluate_test(node.test)
         if isinstance(truth, bool):
-            return self.value(node.body if truth else node.orelse)
-        return Either(truth, self.value(node.body), self.value(node.orelse))
+            return self.evaluate(node.body if truth else node.orelse)
+        return Either(truth, self.evaluate(node.body), self.evaluate(node.orelse))
 
     def value_Lambda(self, node: ast.Lambda) -> Any:
         return LaunchFunction(node, self.scope)
 
     def value_NamedExpr(self, node: ast.NamedExpr) -> Any:
-        value = self.value(node.value)
+        value = self.evaluate(node.value)
         self.bind(node.target, value)
         return value
 
     def value_Starred(self, node: ast.Starred) -> Any:
-        return self.value(node.value)
+        return self.evaluate(node.value)
 
     def value_ListComp(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp) -> Any:
         outer, self.scope = self.scope, LaunchScope(self.scope)
@@ -548,16 +562,16 @@ class Walker:
             if place == len(node.generators):
                 extra = tuple(self.conditions[depth:])
                 if isinstance(node, ast.DictComp):
-                    made.append((self.value(node.key), guarded_by(self.value(node.value), extra)))
+                    made.append((self.evaluate(node.key), add_conditions(self.evaluate(node.value), extra)))
                 else:
-                    made.append(guarded_by(self.value(node.elt), extra))
+                    made.append(add_conditions(self.evaluate(node.elt), extra))
                 return
             generator = node.generators[place]
-            turns = self.turns(self.value(generator.iter))
+            turns = self.list_turns(self.evaluate(generator.iter))
             unknown = turns is None
             if turns is None:
-                over = f"for {source_of(generator.target)} in {source_of(generator.iter)}"
-                self.conditions.append(ActionCondition("each", (other(over),), node.lineno))
+                over = f"for {get_source(generator.target)} in {get_source(generator.iter)}"
+                self.conditions.append(ActionCondition("each", (make_other(over),), node.lineno))
                 turns = [None]
             for turn in turns:
                 start = len(self.conditions)
@@ -565,7 +579,7 @@ class Walker:
                     self.bind_unknown(generator.target)
                 else:
                     self.conditions += self.bind_turn(generator.target, turn)
-                truths = [self.truth(test) for test in generator.ifs]
+                truths = [self.evaluate_test(test) for test in generator.ifs]
                 if not any(truth is False for truth in truths):
                     self.conditions += [
                         ActionCondition("if", t, node.lineno) for t in truths if not isinstance(t, bool)
@@ -584,33 +598,33 @@ class Walker:
 
     value_GeneratorExp = value_SetComp = value_DictComp = value_ListComp
 
-    def guarded(self, value: Any, depth: int) -> Any:
-        return guarded_by(value, tuple(self.conditions[depth:]))
+    def add_conditions(self, value: Any, depth: int) -> Any:
+        return add_conditions(value, tuple(self.conditions[depth:]))
 
     def extend(self, holder: Items, items: Sequence[Any]) -> None:
         for item in items:
-            holder.items.append(self.guarded(item, holder.depth))
+            holder.items.append(self.add_conditions(item, holder.depth))
             if len(holder.items) > MOST_STEPS:
                 raise TooMuch(STEPS)
 
     def value_Call(self, node: ast.Call) -> Any:
-        function = self.value(node.func)
+        function = self.evaluate(node.func)
         self.line = node.lineno
         arguments: list[Any] = []
         for argument in node.args:
-            value = self.value(argument)
+            value = self.evaluate(argument)
             if isinstance(argument, ast.Starred):
-                arguments += value.items if isinstance(value, Items) else [Unknown(source_of(argument))]
+                arguments += value.items if isinstance(value, Items) else [Unknown(get_source(argument))]
             else:
                 arguments.append(value)
         keywords: dict[str, Any] = {}
         for keyword in node.keywords:
-            value = self.value(keyword.value)
+            value = self.evaluate(keyword.value)
             if keyword.arg is not None:
                 keywords[keyword.arg] = value
             elif isinstance(value, Pairs):
                 for key, held in value.items:
-                    name = plain(key.value) if isinstance(key, TextValue) else None
+                    name = find_literal(key.value) if isinstance(key, TextValue) else None
                     if name is not None:
                         keywords[name] = held
         if isinstance(function, LaunchFunction):
@@ -627,7 +641,7 @@ class Walker:
             maker = MAKERS.get(function.path.rpartition(".")[2])
             if maker is not None:
                 return maker(LaunchCall(self, node, function.path, arguments, keywords))
-        return Unknown(source_of(node))
+        return Unknown(get_source(node))
 
     def call_function(self, function: LaunchFunction, arguments: list[Any], keywords: dict[str, Any]) -> Any:
         node = function.node
@@ -638,36 +652,36 @@ class Walker:
         self.scope = function.scope
         positional = iter(arguments if function.self is None else [function.self, *arguments])
         rest = dict(keywords)
-        for kind, parameter, default in parameters_in(node.args):
+        for kind, parameter, default in list_parameters(node.args):
             name = parameter.arg
             if kind == "args":
                 value: Any = Items([*positional], depth)
             elif kind == "kwargs":
-                value = Pairs([(TextValue(literal(key)), each) for key, each in rest.items()], depth)
+                value = Pairs([(TextValue(make_literal(key)), each) for key, each in rest.items()], depth)
             else:
-                missing = Unknown(name) if default is None else self.value(default)
+                missing = Unknown(name) if default is None else self.evaluate(default)
                 value = rest.pop(name, missing if kind == "keyword" else next(positional, missing))
             scope.names[name] = value
         self.scope, self.returns, self.base = scope, [], depth
         self.calls += 1
         try:
             if isinstance(node, ast.Lambda):
-                return self.value(node.body)
-            self.block(node.body)
-            return self.result()
+                return self.evaluate(node.body)
+            self.walk_block(node.body)
+            return self.merge_returns()
         finally:
             self.calls -= 1
             self.scope, self.returns, self.base = outer
 
-    def result(self) -> Any:
+    def merge_returns(self) -> Any:
         """What the return statements reached give together."""
         value: Any = LaunchConstant(None)
         for place, (conditions, returned) in enumerate(reversed(self.returns)):
             if not conditions or place == 0:
                 # The last one is what remains when no earlier one was taken.
-                value = returned if place == 0 and len(self.returns) > 1 else guarded_by(returned, conditions)
+                value = returned if place == 0 and len(self.returns) > 1 else add_conditions(returned, conditions)
             else:
-                value = Either(all_of(conditions), returned, value)
+                value = Either(join_conditions(conditions), returned, value)
         return value
 
     def call_method(self, method: Method, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
@@ -677,16 +691,16 @@ class Walker:
             if name in ("append", "add_action", "add_entity") and arguments:
                 self.extend(receiver, arguments[:1])
             elif name == "extend" and arguments:
-                self.extend(receiver, first.items if isinstance(first, Items) else [Unknown(source_of(node.args[0]))])
+                self.extend(receiver, first.items if isinstance(first, Items) else [Unknown(get_source(node.args[0]))])
             elif name == "insert" and len(arguments) == 2:
                 place = first.value if isinstance(first, LaunchConstant) and isinstance(first.value, int) else 0
-                receiver.items.insert(place, self.guarded(arguments[1], receiver.depth))
+                receiver.items.insert(place, self.add_conditions(arguments[1], receiver.depth))
             elif name == "remove" and first in receiver.items:
                 receiver.items.remove(first)
             elif name == "copy":
                 return Items(list(receiver.items), len(self.conditions), receiver.kind)
             else:
-                return Unknown(source_of(node))
+                return Unknown(get_source(node))
             return LaunchConstant(None)
         if isinstance(receiver, Pairs):
             depth = len(self.conditions)
@@ -694,17 +708,17 @@ class Walker:
                 pairs = [
                     (k, v.value, v.conditions) if isinstance(v, Guarded) else (k, v, ()) for k, v in receiver.items
                 ]
-                return Items([guarded_by(Items([k, v], depth), c) for k, v, c in pairs], depth)
+                return Items([add_conditions(Items([k, v], depth), c) for k, v, c in pairs], depth)
             if name in ("keys", "values"):
                 return Items([pair[name == "values"] for pair in receiver.items], depth)
             if name == "update" and isinstance(first, Pairs):
                 for key, value in first.items:
-                    receiver.set(key, self.guarded(value, receiver.depth))
+                    receiver.set(key, self.add_conditions(value, receiver.depth))
                 return LaunchConstant(None)
             if name in ("get", "pop") and arguments:
                 found = receiver.get(first)
                 if found is not None:
-                    return found if not isinstance(found, Guarded) else Unknown(source_of(node))
+                    return found if not isinstance(found, Guarded) else Unknown(get_source(node))
                 if first is not None and all(isinstance(key, TextValue) for key, _ in receiver.items):
                     return arguments[1] if len(arguments) > 1 else LaunchConstant(None)
             if name == "copy":
@@ -712,107 +726,111 @@ class Walker:
         elif isinstance(receiver, Context):
             if name in ("get", "perform_substitution", "__getitem__") and first is not None:
                 if not receiver.configurations:
-                    return TextValue(self.text(first, node))
-                rest = [self.text(a, node) for a in arguments[1:]]
-                return TextValue((named("arg", self.text(first, node), *rest),))
+                    return TextValue(self.make_text(first, node))
+                rest = [self.make_text(a, node) for a in arguments[1:]]
+                return TextValue((make_named("arg", self.make_text(first, node), *rest),))
         elif isinstance(receiver, ConditionValue) and name == "evaluate":
-            return TextValue(all_of(receiver.conditions))
+            return TextValue(join_conditions(receiver.conditions))
         elif isinstance(receiver, (TextValue, Either)):
-            return self.text_method(receiver, name, arguments, keywords, node)
-        return Unknown(source_of(node))
+            return self.call_text_method(receiver, name, arguments, keywords, node)
+        return Unknown(get_source(node))
 
-    def text_method(
+    def call_text_method(
         self, receiver: Any, name: str, arguments: list[Any], keywords: dict[str, Any], node: ast.Call
     ) -> Any:
-        value = self.text(receiver, node)
+        value = self.make_text(receiver, node)
         if name in ("perform", "resolve", "as_posix", "absolute", "expanduser", "read", "read_text"):
             if name == "read_text":
                 value = (ValuePart("content", "", (value,)),)
             return TextValue(value)
         if name == "joinpath":
-            return TextValue((ValuePart("join", "", (value, *(self.text(a, node) for a in arguments))),))
+            return TextValue((ValuePart("join", "", (value, *(self.make_text(a, node) for a in arguments))),))
         if name == "join" and len(arguments) == 1 and isinstance(arguments[0], Items):
             parts: list[Value] = []
             for item in arguments[0].items:
-                parts += (*([value] if parts else ()), self.text(item, node))
-            return TextValue(together(parts))
+                parts += (*([value] if parts else ()), self.make_text(item, node))
+            return TextValue(join_all(parts))
         if name == "format":
             return self.format(value, arguments, keywords, node)
         if name in STRING_METHODS:
-            return TextValue((ValuePart("method", name, (value, *(self.text(a, node) for a in arguments))),))
-        return Unknown(source_of(node))
+            return TextValue((ValuePart("method", name, (value, *(self.make_text(a, node) for a in arguments))),))
+        return Unknown(get_source(node))
 
     def format(self, value: Value, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        pattern = plain(value)
+        pattern = find_literal(value)
         if pattern is None:
-            return Unknown(source_of(node))
+            return Unknown(get_source(node))
         values: list[Value] = []
         place = 0
         try:
             for text, field, spec, _ in string.Formatter().parse(pattern):
-                values.append(literal(text))
+                values.append(make_literal(text))
                 if field is None:
                     continue
                 if spec:
-                    return Unknown(source_of(node))
+                    return Unknown(get_source(node))
                 if field == "":
                     field, place = str(place), place + 1
                 is_place = field.isdigit() and int(field) < len(arguments)
                 given = arguments[int(field)] if is_place else keywords.get(field)
                 if given is None:
-                    return Unknown(source_of(node))
-                values.append(self.text(given, node))
+                    return Unknown(get_source(node))
+                values.append(self.make_text(given, node))
         except ValueError:
-            return Unknown(source_of(node))
-        return TextValue(together(values))
+            return Unknown(get_source(node))
+        return TextValue(join_all(values))
 
-    def spend(self, steps: int) -> None:
+    def count_steps(self, steps: int) -> None:
         """Counts steps; raises TooMuch when there have been too many."""
         self.steps += steps
         if self.steps > MOST_STEPS:
             raise TooMuch(STEPS)
 
-    def text(self, value: Any, node: ast.AST) -> Value:
+    def make_text(self, value: Any, node: ast.AST) -> Value:
         """A value as text; node: what to show where it is not known."""
-        self.spend(1)
+        self.count_steps(1)
         if isinstance(value, TextValue):
-            self.spend(len(value.value) + len(value.value[0].text) // 100 if value.value else 1)
+            self.count_steps(len(value.value) + len(value.value[0].text) // 100 if value.value else 1)
             return value.value
         if isinstance(value, LaunchConstant):
-            return literal("" if value.value is None else str(value.value))
+            return make_literal("" if value.value is None else str(value.value))
         if isinstance(value, (FilledFile, TypedValue)):
-            return value.value if isinstance(value, FilledFile) else self.text(value.value, node)
+            return value.value if isinstance(value, FilledFile) else self.make_text(value.value, node)
         if isinstance(value, Either):
-            return (ValuePart("choose", "", (value.condition, self.text(value.yes, node), self.text(value.no, node))),)
+            return (
+                ValuePart(
+                    "choose", "", (value.condition, self.make_text(value.yes, node), self.make_text(value.no, node))
+                ),
+            )
         if isinstance(value, Items) and value.kind != "launch":
-            return together([self.text(item, node) for item in value.items])
+            return join_all([self.make_text(item, node) for item in value.items])
         if isinstance(value, Unknown):
-            return (other(value.source),)
-        return (other(source_of(node)),)
+            return (make_other(value.source),)
+        return (make_other(get_source(node)),)
 
-    def actions(self, value: Any, line: int, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:
+    def list_actions(self, value: Any, line: int, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:
         """The actions that a value given for actions holds."""
-        self.spend(1)
+        self.count_steps(1)
         if isinstance(value, Action):
             if extra:
                 value = Action(value.kind, value.line, value.attributes, (*extra, *value.conditions), value.children)
             yield value
         elif isinstance(value, Items):
             for item in value.items:
-                yield from self.actions(item, line, extra)
+                yield from self.list_actions(item, line, extra)
         elif isinstance(value, Guarded):
-            yield from self.actions(value.value, line, (*extra, *value.conditions))
+            yield from self.list_actions(value.value, line, (*extra, *value.conditions))
         elif isinstance(value, Either):
-            yield from self.actions(value.yes, line, (*extra, ActionCondition("if", value.condition, line)))
-            yield from self.actions(value.no, line, (*extra, ActionCondition("unless", value.condition, line)))
+            yield from self.list_actions(value.yes, line, (*extra, ActionCondition("if", value.condition, line)))
+            yield from self.list_actions(value.no, line, (*extra, ActionCondition("unless", value.condition, line)))
         elif isinstance(value, LaunchConstant) or (isinstance(value, Unknown) and value.source.startswith(_NO_ACTION)):
             return
         elif isinstance(value, Pairs):
             for _, item in value.items:
-                yield from self.actions(item, line, extra)
+                yield from self.list_actions(item, line, extra)
         else:
             source = value.source if isinstance(value, Unknown) else getattr(value, "path", type(value).__name__)
-            yield Action("unknown", line, (("text", (other(str(source)),)),), extra)
+            yield Action("unknown", line, (("text", (make_other(str(source)),)),), extra)
 
 
 # Calls whose result is no action, where a lambda stands for an action that is run for its effect.
@@ -824,11 +842,11 @@ STRING_METHODS = frozenset(
 )  # fmt: skip
 
 
-def _continues(body: Sequence[ast.stmt]) -> bool:
+def _jumps_to_next_turn(body: Sequence[ast.stmt]) -> bool:
     """Whether the jump that ends a turn of a loop goes on with the next."""
     kinds = {node.__class__ for statement in body for node in ast.walk(statement)}
     return ast.Continue in kinds and kinds.isdisjoint((ast.Break, ast.Return))
 
 
-_STATEMENTS = node_methods(Walker, "run_")
-_EXPRESSIONS = node_methods(Walker, "value_")
+_STATEMENTS = collect_node_methods(Walker, "run_")
+_EXPRESSIONS = collect_node_methods(Walker, "value_")

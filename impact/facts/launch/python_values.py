@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from ..python.text import ARITHMETIC, COMPARISONS
-from .actions import ActionCondition, Value, ValuePart, literal
+from .actions import ActionCondition, Value, ValuePart, make_literal
 
 
 class TooMuch(Exception):
@@ -153,13 +153,13 @@ class Context(NamedTuple):
     configurations: bool = False
 
 
-def all_of(conditions: Sequence[ActionCondition]) -> Value:
+def join_conditions(conditions: Sequence[ActionCondition]) -> Value:
     """Conditions as one value that is true when they all hold."""
     values = [c.value if c.kind != "unless" else (ValuePart("not", "", (c.value,)),) for c in conditions]
     return values[0] if len(values) == 1 else (ValuePart("and", "", tuple(values)),)
 
 
-def guarded_by(value: Any, conditions: tuple[ActionCondition, ...]) -> Any:
+def add_conditions(value: Any, conditions: tuple[ActionCondition, ...]) -> Any:
     """A value under conditions, itself where there are none."""
     if not conditions:
         return value
@@ -175,7 +175,7 @@ def place_in(holder: Items, key: Any) -> int | None:
     return key.value if -len(holder.items) <= key.value < len(holder.items) else None
 
 
-def source_of(node: ast.AST) -> str:
+def get_source(node: ast.AST) -> str:
     """What a node says, in one line and cut short."""
     try:
         return " ".join(ast.unparse(node).split())[:120]
@@ -183,24 +183,24 @@ def source_of(node: ast.AST) -> str:
         return type(node).__name__
 
 
-def calculated(node: ast.BinOp | ast.Compare, left: Any, right: Any) -> Any:
+def calculate_result(node: ast.BinOp | ast.Compare, left: Any, right: Any) -> Any:
     """Small sums and comparisons of known numbers."""
     op = node.op if isinstance(node, ast.BinOp) else node.ops[0]
     calculate = ARITHMETIC.get(type(op)) or COMPARISONS.get(type(op))
     if calculate is None or left is None or right is None:
-        return Unknown(source_of(node))
+        return Unknown(get_source(node))
     try:
         value = calculate(left, right)
     except (ArithmeticError, TypeError, ValueError):
-        return Unknown(source_of(node))
-    return LaunchConstant(value) if abs(value) < 2**60 else Unknown(source_of(node))
+        return Unknown(get_source(node))
+    return LaunchConstant(value) if abs(value) < 2**60 else Unknown(get_source(node))
 
 
-def folder_of(value: Value) -> Value:
+def make_parent_path(value: Value) -> Value:
     """The folder that a path lies in."""
     if value == (ValuePart("filename"),):
         return (ValuePart("dirname"),)
-    return (ValuePart("join", "", (value, literal(".."))),)
+    return (ValuePart("join", "", (value, make_literal(".."))),)
 
 
 NOTHING = Unknown("nothing()")

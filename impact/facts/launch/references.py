@@ -9,10 +9,10 @@ from functools import partial
 import msgspec
 from msgspec import structs
 
-from ..markup import TOKEN, Attribute, Document, Element, decode, scan, well_formed
+from ..markup import TOKEN, Attribute, Document, Element, decode, find_xml_problems, scan
 from ..place import Problem, Reference
-from ..words import words_of
-from .documents import generation_of, read_document
+from ..words import list_words
+from .documents import find_generation, read_document
 
 
 class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -28,7 +28,7 @@ class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Any file whose only interest is what it mentions. plugins is filled for plugin descriptions. unresolved: mentions
     whose package is only known when the file runs (`$(find-pkg-share $(var robot))`), as written. words: of launch
-    files, YAML and robot descriptions, see words_of().
+    files, YAML and robot descriptions, see list_words().
 
     Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path),
     and a `file` mentioned on a command line (`roslaunch p f`) is a bare file name, to be found anywhere in the package.
@@ -78,9 +78,9 @@ class _Found:
             at = offset + m.start()
             verb = m["verb"]
             if verb is not None:
-                self._substitution(verb, m["args"].split(), m["rest"], text[m.end() :], at, conditional)
+                self._add_substitution(verb, m["args"].split(), m["rest"], text[m.end() :], at, conditional)
             elif m["scheme"] == "package":
-                self._path(m["host"], m["path"], text[m.end() :], at, conditional)
+                self._add_path(m["host"], m["path"], text[m.end() :], at, conditional)
             elif m["scheme"] == "model":
                 self.add("model", "", m["host"] + (m["path"] or ""), at, conditional)
             elif m["eval"] is not None:
@@ -90,7 +90,7 @@ class _Found:
             else:
                 self.unresolved.append(Problem(self.place(at)[0], text[m.start() : m.start() + 80]))
 
-    def _substitution(
+    def _add_substitution(
         self, verb: str, args: list[str], rest: str | None, after: str, at: int, conditional: bool
     ) -> None:
         names = [arg.strip("'\"") for arg in args]
@@ -108,9 +108,9 @@ class _Found:
             else:
                 self.add("package", package, "", at, conditional)
         else:
-            self._path(package, rest, after, at, conditional)
+            self._add_path(package, rest, after, at, conditional)
 
-    def _path(self, package: str, path: str | None, after: str, at: int, conditional: bool) -> None:
+    def _add_path(self, package: str, path: str | None, after: str, at: int, conditional: bool) -> None:
         """A file of a package where its path is all literal, else the folder that is, or the package alone."""
         parts = [part for part in (path or "").split("/") if part not in ("", ".")]
         # What goes on with a variable, or is cut by a character no plain path has, is not the file's whole name.
@@ -123,7 +123,7 @@ class _Found:
         else:
             self.add("file", package, "/".join(parts), at, conditional)
 
-    def file(self, *problems: Problem, plugins: tuple[PluginClass, ...] = ()) -> ReferenceFile:
+    def make_file(self, *problems: Problem, plugins: tuple[PluginClass, ...] = ()) -> ReferenceFile:
         return ReferenceFile(tuple(self.references), plugins, problems, tuple(self.unresolved))
 
 
@@ -134,37 +134,37 @@ def extract(data: bytes, kind: str) -> ReferenceFile:
     that XML of other trades (behaviour trees, GUI layouts) gives nothing at all.
     """
     facts = READERS[kind](data)
-    return structs.replace(facts, words=words_of(data)) if kind in _SPOKEN else facts
+    return structs.replace(facts, words=list_words(data)) if kind in _SPOKEN else facts
 
 
 # What sets parameters or names plugins, as far as its name tells.
 _SPOKEN = frozenset(("launch_xml", "launch_yaml", "params", "xacro"))
 
 
-def _xml(data: bytes) -> ReferenceFile:
-    root = _root(data)
+def _read_xml(data: bytes) -> ReferenceFile:
+    root = _find_root(data)
     if root in ("class_libraries", "library"):
-        return _plugin_description(data)
+        return _read_plugin_description(data)
     if root == "launch":
-        return _launch(data)
+        return _read_launch(data)
     if root in ("robot", "sdf", "gazebo", "world", "model"):
-        return _robot_description(data)
+        return _read_robot_description(data)
     return ReferenceFile(())
 
 
-def _plugin_xml(data: bytes) -> ReferenceFile:
-    return _xml(data) if data.strip() else ReferenceFile((), (), (Problem(1, "is empty"),))
+def _read_plugin_xml(data: bytes) -> ReferenceFile:
+    return _read_xml(data) if data.strip() else ReferenceFile((), (), (Problem(1, "is empty"),))
 
 
-def _test(data: bytes) -> ReferenceFile:
+def _read_test(data: bytes) -> ReferenceFile:
     """A .launch or .test file; one that has no <launch> is something else of the same name."""
-    if _root(data) == "launch":
-        return _launch(data)
+    if _find_root(data) == "launch":
+        return _read_launch(data)
     document = scan(data)
     return ReferenceFile((), (), document.problems or (Problem(1, "has no `<launch>` element"),))
 
 
-def _root(data: bytes) -> str:
+def _find_root(data: bytes) -> str:
     """Name of the first element, found without reading on."""
     for token in TOKEN.finditer(decode(data[:65536])):
         name = token["name"]
@@ -176,17 +176,17 @@ def _root(data: bytes) -> str:
 _ARGUMENT = re.compile(r"\s*\$\((?:arg|var)\s+([\w.-]+)\s*\)\s*\Z")
 
 
-def _conditional(document: Document) -> list[bool]:
+def _find_conditional(document: Document) -> list[bool]:
     """For each element, whether it or one around it stands under an if or unless that keeps it from running when the
     file is started without arguments, or that cannot be told."""
     defaults: dict[str, set[str]] = {}
     for element in document.elements:
-        if element.name == "arg" and (preset := _attribute(element, "default", "value")) is not None:
+        if element.name == "arg" and (preset := _find_attribute(element, "default", "value")) is not None:
             plain = element.parent < 0 or document.elements[element.parent].name == "launch"
             if plain and not any(a.name in ("if", "unless") for a in element.attributes):
                 defaults.setdefault(element.get("name"), set()).add(preset.value)
 
-    def meant(text: str) -> str:
+    def resolve_text(text: str) -> str:
         argument = _ARGUMENT.match(text)
         values = defaults.get(argument.group(1), set()) if argument is not None else {text}
         return next(iter(values)).strip().lower() if len(values) == 1 else ""
@@ -199,19 +199,19 @@ def _conditional(document: Document) -> list[bool]:
                 flag = element.get("value").strip().lower() not in ("true", "1", "${true}")
             else:
                 flag = any(
-                    (a.name == "if" and meant(a.value) not in ("true", "1"))
-                    or (a.name == "unless" and meant(a.value) not in ("false", "0"))
+                    (a.name == "if" and resolve_text(a.value) not in ("true", "1"))
+                    or (a.name == "unless" and resolve_text(a.value) not in ("false", "0"))
                     for a in element.attributes
                 )
         flags.append(flag)
     return flags
 
 
-def _attribute(element: Element, *names: str) -> Attribute | None:
+def _find_attribute(element: Element, *names: str) -> Attribute | None:
     return next((a for a in element.attributes if a.name in names), None)
 
 
-def _everything(found: _Found, element: Element, conditional: bool) -> None:
+def _add_all_mentions(found: _Found, element: Element, conditional: bool) -> None:
     """Mentions in all attributes and the text of an element."""
     for attribute in element.attributes:
         found.mentions(attribute.value, attribute.offset, conditional)
@@ -221,39 +221,39 @@ def _everything(found: _Found, element: Element, conditional: bool) -> None:
 NODES = frozenset({"node", "test", "node_container", "lifecycle_node", "composable_node_container"})
 
 
-def _launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
+def _read_launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
     document = read_document(data, kind)
     if kind == "launch_yaml" and not document.elements:  # arguments or parameters, called like a launch file
-        return structs.replace(_values(data), problems=document.problems)
+        return structs.replace(_read_yaml(data), problems=document.problems)
     found = _Found(document.place)
-    given = _given_to_includes(document)
-    for at, (element, conditional) in enumerate(zip(document.elements, _conditional(document), strict=True)):
+    given = _find_include_arguments(document)
+    for at, (element, conditional) in enumerate(zip(document.elements, _find_conditional(document), strict=True)):
         name = element.name
         found.arguments = given.get(at)
         if name in NODES:
-            _node(found, element, conditional)
+            _add_node(found, element, conditional)
         elif name in ("composable_node", "load_composable_node"):
-            package, plugin = _package(found, element), _attribute(element, "plugin")
+            package, plugin = _find_package(found, element), _find_attribute(element, "plugin")
             if plugin is not None and CLASS.match(plugin.value):
                 known = package.value if package is not None else ""
                 found.add("plugin", known, plugin.value, plugin.offset, conditional)
         elif name == "executable":
-            _command(found, _attribute(element, "cmd"), conditional)
+            _add_command(found, _find_attribute(element, "cmd"), conditional)
         elif name == "param":
-            _command(found, _attribute(element, "command"), conditional)
-            value = _attribute(element, "value")
+            _add_command(found, _find_attribute(element, "command"), conditional)
+            value = _find_attribute(element, "value")
             if value is not None and PLUGIN_KEY.search(element.get("name")):
                 for m in re.finditer(r"[^\s,\[\]'\"]+", value.value):
                     if CLASS.match(m.group()):
                         found.add("plugin", "", m.group(), value.offset + m.start(), conditional)
-        _everything(found, element, conditional)
+        _add_all_mentions(found, element, conditional)
         if name == "rosparam" and element.text and "plugin" in element.text:
-            _plugin_values(found, element.text, element.text_offset, conditional)
-    generation = generation_of(document) if kind == "launch_xml" else 0
-    return structs.replace(found.file(*document.problems), generation=generation)
+            _add_plugin_values(found, element.text, element.text_offset, conditional)
+    generation = find_generation(document) if kind == "launch_xml" else 0
+    return structs.replace(found.make_file(*document.problems), generation=generation)
 
 
-def _given_to_includes(document: Document) -> dict[int, tuple[str, ...]]:
+def _find_include_arguments(document: Document) -> dict[int, tuple[str, ...]]:
     """Names of the arguments that each `<include>` gives, by its place among the elements; those that give all that
     they know themselves are left out."""
     given: dict[int, list[str]] = {
@@ -266,9 +266,9 @@ def _given_to_includes(document: Document) -> dict[int, tuple[str, ...]]:
     return {at: tuple(names) for at, names in given.items() if not any("$" in name for name in names)}
 
 
-def _package(found: _Found, element: Element) -> Attribute | None:
+def _find_package(found: _Found, element: Element) -> Attribute | None:
     """The attribute that names an element's package; one that only running tells is unresolved, and None."""
-    package = _attribute(element, "pkg")
+    package = _find_attribute(element, "pkg")
     if package is None or PACKAGE.match(package.value):
         return package
     if "$" in package.value:
@@ -276,23 +276,23 @@ def _package(found: _Found, element: Element) -> Attribute | None:
     return None
 
 
-def _node(found: _Found, element: Element, conditional: bool) -> None:
-    package = _package(found, element)
-    executable = _attribute(element, "exec", "type")
+def _add_node(found: _Found, element: Element, conditional: bool) -> None:
+    package = _find_package(found, element)
+    executable = _find_attribute(element, "exec", "type")
     if package is None:
         return
     if executable is None or "$" in executable.value or not executable.value.strip():
         found.add("package", package.value, "", package.offset, conditional)
         return
     found.add("executable", package.value, executable.value.strip(), package.offset, conditional)
-    arguments = _attribute(element, "args")
+    arguments = _find_attribute(element, "args")
     if package.value == "nodelet" and arguments is not None:
         loaded = re.match(r"\s*(?:load|standalone)\s+(\S+)", arguments.value)
         if loaded is not None and CLASS.match(loaded.group(1)):
             found.add("plugin", "", loaded.group(1), arguments.offset + loaded.start(1), conditional)
 
 
-def _command(found: _Found, attribute: Attribute | None, conditional: bool) -> None:
+def _add_command(found: _Found, attribute: Attribute | None, conditional: bool) -> None:
     """The program that a command line starts with, where it is named by itself and not by a path."""
     if attribute is None:
         return
@@ -301,12 +301,12 @@ def _command(found: _Found, attribute: Attribute | None, conditional: bool) -> N
         found.add("command", "", first.group(1), attribute.offset + first.start(1), conditional)
 
 
-def _robot_description(data: bytes) -> ReferenceFile:
+def _read_robot_description(data: bytes) -> ReferenceFile:
     document = scan(data)
     found = _Found(document.place)
-    for element, conditional in zip(document.elements, _conditional(document), strict=True):
+    for element, conditional in zip(document.elements, _find_conditional(document), strict=True):
         if element.name == "plugin":
-            library = _attribute(element, "filename")
+            library = _find_attribute(element, "filename")
             if library is not None and library.value and not any(c in library.value for c in "$/{"):
                 found.add("plugin", "", library.value, library.offset, conditional)
             elif element.text and CLASS.match(element.text):
@@ -315,13 +315,13 @@ def _robot_description(data: bytes) -> ReferenceFile:
             element.name == "type" and element.text.startswith("transmission_interface/") and CLASS.match(element.text)
         ):
             found.add("plugin", "", element.text, element.text_offset, conditional)
-        _everything(found, element, conditional)
+        _add_all_mentions(found, element, conditional)
     # xacro reads with Python's strict parser, URDF and SDF are read with TinyXML
-    problems = document.problems if "xacro" in document.text else _tolerated(data, document.problems)
-    return found.file(*problems)
+    problems = document.problems if "xacro" in document.text else _drop_tolerated(data, document.problems)
+    return found.make_file(*problems)
 
 
-def _plugin_description(data: bytes) -> ReferenceFile:
+def _read_plugin_description(data: bytes) -> ReferenceFile:
     document = scan(data)
     classes: list[PluginClass] = []
     library = ""
@@ -335,7 +335,7 @@ def _plugin_description(data: bytes) -> ReferenceFile:
             classes.append(
                 PluginClass(element.get("name", type_), type_, element.get("base_class_type"), library, line)
             )
-    return ReferenceFile((), tuple(classes), _tolerated(data, document.problems))
+    return ReferenceFile((), tuple(classes), _drop_tolerated(data, document.problems))
 
 
 COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
@@ -343,7 +343,7 @@ DECLARATION = re.compile(rb"<\?xml[^>]*\?>")
 VALUE = re.compile(rb"=\s*\"[^\"\n]*\"")
 
 
-def _tolerated(data: bytes, problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
+def _drop_tolerated(data: bytes, problems: tuple[Problem, ...]) -> tuple[Problem, ...]:
     """Problems less those that TinyXML, which pluginlib, urdfdom and sdformat read with, does not mind: `--` in
     comments, several roots, `<` in values, a misspelt or late XML declaration."""
     if not problems:
@@ -354,7 +354,7 @@ def _tolerated(data: bytes, problems: tuple[Problem, ...]) -> tuple[Problem, ...
     if "declaration" in problems[0].message:
         blanked = DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), blanked, count=1)
     blanked = VALUE.sub(lambda m: m.group().replace(b"<", b"&lt;"), blanked)
-    return tuple(p for p in well_formed(blanked) if "junk after document element" not in p.message)
+    return tuple(p for p in find_xml_problems(blanked) if "junk after document element" not in p.message)
 
 
 PLUGIN_KEY = re.compile(r"(?:plugins?|kinematics_solver|_adapters|_layer)\Z")
@@ -376,7 +376,7 @@ TYPE_OF_CLASS = re.compile(
 )
 
 
-def _plugin_values(found: _Found, text: str, offset: int, conditional: bool) -> None:
+def _add_plugin_values(found: _Found, text: str, offset: int, conditional: bool) -> None:
     for m in CLASS_VALUE.finditer(text):
         key, value = m["key"].rpartition(".")[2], m["value"]
         if not (PLUGIN_KEY.search(key) or (key == "type" and TYPE_OF_CLASS.match(value))):
@@ -389,26 +389,26 @@ def _plugin_values(found: _Found, text: str, offset: int, conditional: bool) -> 
             found.add("plugin", "", item["value"], offset + m.start("items") + item.start("value"), conditional)
 
 
-def _params(data: bytes) -> ReferenceFile:
+def _read_params(data: bytes) -> ReferenceFile:
     if data[:4096].lstrip().startswith(b"launch:"):
-        return _launch(data, "launch_yaml")
-    return _values(data)
+        return _read_launch(data, "launch_yaml")
+    return _read_yaml(data)
 
 
-def _values(data: bytes) -> ReferenceFile:
+def _read_yaml(data: bytes) -> ReferenceFile:
     """References of YAML that is no launch file."""
     # Most YAML of a workspace (calibration, CI, statistics) mentions nothing; a search is cheaper than a reading.
     if not YAML_WORTH_READING.search(data):
         return ReferenceFile(())
     text = decode(data)
     found = _Found(Document(text).place)
-    _plugin_values(found, text, 0, False)
+    _add_plugin_values(found, text, 0, False)
     for m in re.finditer(r"^.*(?:\$\(|://).*$", text, re.MULTILINE):
         line = m.group()
         comment = re.search(r"(?:^|\s)#", line)
         found.mentions(line[: comment.start()] if comment is not None else line, m.start(), False)
     found.references.sort(key=lambda r: (r.line, r.column))
-    return found.file()
+    return found.make_file()
 
 
 YAML_WORTH_READING = re.compile(rb"plugin|type|adapters|kinematics_solver|_layer|package://|model://|\$\(find")
@@ -427,7 +427,7 @@ LITERAL = re.compile(r"[A-Za-z0-9_.:+/-]+\Z")
 WITH_VALUE = frozenset({"--prefix", "-p", "--port", "--log", "--skip-log-check"})
 
 
-def _shell(data: bytes) -> ReferenceFile:
+def _read_shell(data: bytes) -> ReferenceFile:
     if not WORTH_READING.search(data):
         return ReferenceFile(())
     text = decode(data)
@@ -452,15 +452,15 @@ def _shell(data: bytes) -> ReferenceFile:
             depth += 1
         for m in SHELL.finditer(line):
             generations.add(2 if m["command"].startswith("ros2") else 1)
-            _shell_command(found, m, start, depth > 0)
+            _add_shell_command(found, m, start, depth > 0)
         for m in re.finditer(r"package://[^\s\"']+", line):
             found.mentions(m.group(), start + m.start(), depth > 0)
         if re.search(r"(?:^|;)\s*(?:fi|esac)\b", stripped):
             depth = max(depth - 1, 0)
-    return msgspec.structs.replace(found.file(), generation=generations.pop() if len(generations) == 1 else 0)
+    return msgspec.structs.replace(found.make_file(), generation=generations.pop() if len(generations) == 1 else 0)
 
 
-def _shell_command(found: _Found, match: re.Match[str], start: int, conditional: bool) -> None:
+def _add_shell_command(found: _Found, match: re.Match[str], start: int, conditional: bool) -> None:
     command = " ".join(match["command"].split())
     words = [(w.group(), w.start()) for w in re.finditer(r"\S+", match["args"])]
     plain: list[tuple[str, int]] = []
@@ -495,11 +495,11 @@ def _shell_command(found: _Found, match: re.Match[str], start: int, conditional:
 
 
 READERS: dict[str, Callable[[bytes], ReferenceFile]] = {
-    "launch_xml": _test,
-    "launch_yaml": partial(_launch, kind="launch_yaml"),
-    "xacro": _robot_description,
-    "plugin_xml": _plugin_xml,
-    "xml": _xml,
-    "params": _params,
-    "shell": _shell,
+    "launch_xml": _read_test,
+    "launch_yaml": partial(_read_launch, kind="launch_yaml"),
+    "xacro": _read_robot_description,
+    "plugin_xml": _read_plugin_xml,
+    "xml": _read_xml,
+    "params": _read_params,
+    "shell": _read_shell,
 }

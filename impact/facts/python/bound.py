@@ -22,7 +22,7 @@ _DYNAMIC = frozenset(("__builtin__", "__builtins__", "__getattr__", "builtins", 
                       "vars"))  # fmt: skip
 
 
-def scope_names(text: str) -> tuple[frozenset[str], frozenset[str]] | None:
+def find_scope_names(text: str) -> tuple[frozenset[str], frozenset[str]] | None:
     """Names that some scope looks up in the module and nothing gives, and names that the module binds; None where that
     cannot be told, star imports aside."""
     if "sys.modules" in text:

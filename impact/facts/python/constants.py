@@ -10,8 +10,8 @@ import ast
 from collections.abc import Callable, Iterable
 from typing import Any, ClassVar, NamedTuple
 
-from ....edges.dispatch import node_methods
-from .text import dotted
+from ....edges.dispatch import collect_node_methods
+from .text import format_dotted
 
 
 class TextConstant(str):
@@ -36,7 +36,7 @@ class UnknownValue:
     @property
     def what(self) -> str:
         """Its source in a clause."""
-        return self._source if isinstance(self._source, str) else source_of(self._source)
+        return self._source if isinstance(self._source, str) else get_source(self._source)
 
 
 class PackagePath(NamedTuple):
@@ -69,7 +69,7 @@ def put_together(parts: Iterable[Any], line: int = 1) -> TextConstant | PackageP
     return TextConstant(text, line) if base is None else PackagePath(base.package, text.lstrip("/"), base.assumed)
 
 
-def path_of(parts: Iterable[Any], line: int) -> Any:
+def join_path(parts: Iterable[Any], line: int) -> Any:
     """Parts of a path put together; None where one is not known."""
     interleaved = [each for part in parts for each in (part, "/")]
     return put_together(interleaved[:-1], line)
@@ -98,15 +98,15 @@ class Constants:
             for element in target.elts:
                 self.assign(element, UnknownValue("a tuple's part"))
         elif isinstance(target, ast.Subscript) and isinstance(target.value, ast.Name):
-            owner, key = self.names.get(target.value.id), self.value(target.slice)
+            owner, key = self.names.get(target.value.id), self.find_value(target.slice)
             if isinstance(owner, dict) and isinstance(key, str):
                 owner[key] = value
 
-    def keywords(self, call: ast.Call) -> dict[str, Any]:
+    def find_keywords(self, call: ast.Call) -> dict[str, Any]:
         """The keyword arguments of a call, those of `**` included where they are known."""
         found: dict[str, Any] = {}
         for keyword in call.keywords:
-            value = self.value(keyword.value)
+            value = self.find_value(keyword.value)
             if keyword.arg is not None:
                 found[keyword.arg] = value
             elif isinstance(value, dict):
@@ -115,7 +115,7 @@ class Constants:
                 self.unresolved.append(f"arguments are {value.what}")
         return found
 
-    def value(self, node: ast.expr) -> Any:
+    def find_value(self, node: ast.expr) -> Any:
         """A str (with its line), PackagePath, list, dict, or Unresolved; a file pattern is a str."""
         evaluate = self.evaluators.get(node.__class__)
         found = evaluate(self, node) if evaluate is not None else None
@@ -125,17 +125,17 @@ class Constants:
         return TextConstant(node.value, node.lineno) if isinstance(node.value, str) else node.value
 
     def value_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
-        return [self.value(element) for element in node.elts]
+        return [self.find_value(element) for element in node.elts]
 
     value_Tuple = value_Set = value_List
 
     def value_Starred(self, node: ast.Starred) -> Any:
-        return self.value(node.value)
+        return self.find_value(node.value)
 
     def value_Dict(self, node: ast.Dict) -> Any:
         merged: dict[str, Any] = {}
         for key_node, value_node in zip(node.keys, node.values, strict=True):
-            key, value = None if key_node is None else self.value(key_node), self.value(value_node)
+            key, value = None if key_node is None else self.find_value(key_node), self.find_value(value_node)
             if isinstance(key, str):
                 merged[key] = value
             elif key is None and isinstance(value, dict):
@@ -146,17 +146,17 @@ class Constants:
         return self.names.get(node.id)
 
     def value_JoinedStr(self, node: ast.JoinedStr) -> Any:
-        parts = (self.value(v.value if isinstance(v, ast.FormattedValue) else v) for v in node.values)
+        parts = (self.find_value(v.value if isinstance(v, ast.FormattedValue) else v) for v in node.values)
         return put_together(parts, node.lineno)
 
     def value_IfExp(self, node: ast.IfExp) -> Any:
-        return self.value(node.body)
+        return self.find_value(node.body)
 
     def value_BinOp(self, node: ast.BinOp) -> Any:
         op = node.op.__class__
         if op not in (ast.Add, ast.Div, ast.Mod):
             return None
-        left, right = self.value(node.left), self.value(node.right)
+        left, right = self.find_value(node.left), self.find_value(node.right)
         if op is not ast.Mod:
             if isinstance(left, list) or isinstance(right, list):
                 return (left if isinstance(left, list) else [left]) + (right if isinstance(right, list) else [right])
@@ -164,44 +164,44 @@ class Constants:
         if isinstance(left, str):
             values = right if isinstance(right, list) else [right]
             if all(isinstance(v, str) for v in values) and left.count("%s") == len(values) == left.count("%"):
-                return _filled(left.split("%s"), values, node)
+                return _fill_pattern(left.split("%s"), values, node)
         return None
 
     def value_Call(self, node: ast.Call) -> Any:
-        return self.result(node)
+        return self.find_result(node)
 
-    def result(self, call: ast.Call) -> Any:
+    def find_result(self, call: ast.Call) -> Any:
         """What a call gives; None where that is not known."""
-        name = dotted(call.func)
+        name = format_dotted(call.func)
         last = name.rpartition(".")[2]
         if name == "dict":
-            return self.keywords(call)
-        arguments = [self.value(argument) for argument in call.args]
+            return self.find_keywords(call)
+        arguments = [self.find_value(argument) for argument in call.args]
         if name in JOINS or last == "Path":
             if arguments and all(isinstance(a, str) for a in arguments):
-                return path_of((a for a in arguments if a), call.lineno)
+                return join_path((a for a in arguments if a), call.lineno)
         elif (name in GLOBS or last == "glob") and len(arguments) >= 1:
             if isinstance(arguments[0], str):
                 return [TextConstant(arguments[0], call.lineno)]
         elif name in SAME and len(arguments) == 1:
             return arguments[0]
         elif last == "format" and isinstance(call.func, ast.Attribute):
-            template = self.value(call.func.value)
+            template = self.find_value(call.func.value)
             if isinstance(template, str) and all(isinstance(a, str) for a in arguments) and not call.keywords:
                 pieces = template.split("{}")
                 if len(pieces) == len(arguments) + 1 and "{" not in "".join(pieces):
-                    return _filled(pieces, arguments, call)
+                    return _fill_pattern(pieces, arguments, call)
         return None
 
 
-def _filled(pieces: list[str], values: list[str], node: ast.expr) -> TextConstant:
+def _fill_pattern(pieces: list[str], values: list[str], node: ast.expr) -> TextConstant:
     """Pieces of a pattern with values in between."""
     return TextConstant(pieces[0] + "".join(v + p for v, p in zip(values, pieces[1:], strict=True)), node.lineno)
 
 
-Constants.evaluators = node_methods(Constants, "value_")
+Constants.evaluators = collect_node_methods(Constants, "value_")
 
 
-def source_of(node: ast.expr) -> str:
+def get_source(node: ast.expr) -> str:
     text = " ".join(ast.unparse(node).split())
     return f"`{text if len(text) <= 60 else text[:57] + '...'}`"

@@ -6,11 +6,20 @@ import ast
 import re
 from collections.abc import Iterator
 
-from ....edges.dispatch import node_methods
+from ....edges.dispatch import collect_node_methods
 from ..flow import Access, Alias, Assignment, FlowExpr, FlowFile
 from ..place import Problem
 from .flow_body import Body, ClassBody
-from .flow_conditions import JUMPS, STAYS, AskedCondition, HoldingCondition, Leaving, either, test, within
+from .flow_conditions import (
+    JUMPS,
+    STAYS,
+    AskedCondition,
+    HoldingCondition,
+    Leaving,
+    combine_with_head,
+    make_condition,
+    merge_leavings,
+)
 from .flow_expressions import ANY, Expressions
 from .source import PythonSource, read
 
@@ -28,10 +37,10 @@ _PROPERTIES = frozenset(("property", "cached_property", "functools.cached_proper
 
 def extract(data: bytes) -> FlowFile:
     """The facts of one Python file, Python 2 included as far as it can be rewritten. Never raises."""
-    return flow(read(data))
+    return extract_flow(read(data))
 
 
-def flow(source: PythonSource) -> FlowFile:
+def extract_flow(source: PythonSource) -> FlowFile:
     """The facts of a source that is already parsed. Never raises."""
     lines = source.parsed.count("\n") + 1
     if source.tree is None:
@@ -43,8 +52,8 @@ def flow(source: PythonSource) -> FlowFile:
     return FlowFile(
         "python",
         aliases=tuple(reader.aliases),
-        classes=tuple(cls.finished() for cls in sorted(reader.classes, key=lambda cls: cls.line)),
-        functions=tuple(body.finished() for body in bodies if body.says_something()),
+        classes=tuple(cls.build_class() for cls in sorted(reader.classes, key=lambda cls: cls.line)),
+        functions=tuple(body.build_function() for body in bodies if body.says_something()),
         constants=tuple(reader.constants),
         unread=tuple(reader.unread),
         problems=(*source.problems, *reader.problems),
@@ -64,7 +73,7 @@ class PythonStatements(Expressions):
         self.problems: list[Problem] = []
 
     def read(self, tree: ast.Module, lines: int) -> None:
-        self.module_functions = {node.name for node in _definitions(tree.body)}
+        self.module_functions = {node.name for node in _list_definitions(tree.body)}
         self.waiting.append((Body("", None, 1, lines), tree.body))
         place = 0
         while place < len(self.waiting):
@@ -74,7 +83,7 @@ class PythonStatements(Expressions):
             self.enter(body)
             try:
                 if code.__class__ is list:
-                    self.block(code)  # type: ignore[arg-type]
+                    self.walk_block(code)  # type: ignore[arg-type]
                 else:
                     self.give(code)  # type: ignore[arg-type]
             except RecursionError:
@@ -85,7 +94,7 @@ class PythonStatements(Expressions):
                 for name in sorted(body.captured):
                     body.outer.accesses.append(Access(name, "escape"))
 
-    def block(self, statements: list[ast.stmt]) -> Leaving:
+    def walk_block(self, statements: list[ast.stmt]) -> Leaving:
         """Reads statements; gives how control leaves them."""
         saved = self.guard
         left: list[HoldingCondition] | None = None
@@ -94,7 +103,7 @@ class PythonStatements(Expressions):
         readers = _STATEMENTS
         for node in statements:
             if jumped is not None and not behind:
-                self.never(jumped)
+                self.add_never_guard(jumped)
                 behind = True
             reader = readers.get(node.__class__)
             if reader is None:
@@ -113,21 +122,21 @@ class PythonStatements(Expressions):
             return JUMPS
         return tuple(left) if left else STAYS
 
-    def never(self, node: ast.stmt) -> None:
+    def add_never_guard(self, node: ast.stmt) -> None:
         """A guard around what stands behind a statement that always leaves."""
         word = "exit" if node.__class__ is ast.Expr else node.__class__.__name__.lower()
         self.push("never", f"after {word}", node.lineno, early=True)
 
-    def test(self, node: ast.expr) -> AskedCondition:
+    def make_condition(self, node: ast.expr) -> AskedCondition:
         operand = ""
         if node.__class__ is ast.UnaryOp and node.op.__class__ is ast.Not:  # type: ignore[attr-defined]
-            operand = self.source(node.operand)  # type: ignore[attr-defined]
-        return test(node, self.source(node), operand)
+            operand = self.format_source(node.operand)  # type: ignore[attr-defined]
+        return make_condition(node, self.format_source(node), operand)
 
-    def under(self, kind: str, text: str, line: int, statements: list[ast.stmt]) -> Leaving:
+    def walk_under(self, kind: str, text: str, line: int, statements: list[ast.stmt]) -> Leaving:
         saved = self.guard
         self.push(kind, text, line)
-        leaving = self.block(statements)
+        leaving = self.walk_block(statements)
         self.guard = saved
         return leaving
 
@@ -138,8 +147,8 @@ class PythonStatements(Expressions):
         last: Leaving = STAYS
         while True:
             self.visit(node.test)
-            asked = self.test(node.test)._replace(line=node.lineno)
-            branches.append((asked, self.under("if", asked.text, node.lineno, node.body)))
+            asked = self.make_condition(node.test)._replace(line=node.lineno)
+            branches.append((asked, self.walk_under("if", asked.text, node.lineno, node.body)))
             other = node.orelse
             if not other:
                 break
@@ -147,36 +156,36 @@ class PythonStatements(Expressions):
             if len(other) == 1 and other[0].__class__ is ast.If:
                 node = other[0]  # type: ignore[assignment]
                 continue
-            last = self.block(other)
+            last = self.walk_block(other)
             break
         self.guard = saved
         for asked, leaving in reversed(branches):
-            last = either(asked, leaving, last)
+            last = merge_leavings(asked, leaving, last)
         return last
 
     def read_While(self, node: ast.While) -> Leaving:
         self.visit(node.test)
-        text = self.source(node.test)
-        self.under("while", text, node.lineno, node.body)
-        broken = breaks(node.body)
+        text = self.format_source(node.test)
+        self.walk_under("while", text, node.lineno, node.body)
+        broken = can_break(node.body)
         endless = node.test.__class__ is ast.Constant and bool(node.test.value)  # type: ignore[attr-defined]
         left: Leaving = STAYS
         if node.orelse:
-            left = self.under("unless", text, node.lineno, node.orelse)
+            left = self.walk_under("unless", text, node.lineno, node.orelse)
         if broken:
             return (HoldingCondition("if", "break", node.lineno),) if left is None else STAYS
         return JUMPS if endless else left
 
     def read_For(self, node: ast.For) -> Leaving:
         saved = self.guard
-        self.walked(node.target, node.iter, node.lineno)
-        self.block(node.body)
+        self.walk_loop_head(node.target, node.iter, node.lineno)
+        self.walk_block(node.body)
         self.guard = saved
         if not node.orelse:
             return STAYS
-        if not breaks(node.body):
-            return self.block(node.orelse)
-        if self.under("unless", "break", node.lineno, node.orelse) is None:
+        if not can_break(node.body):
+            return self.walk_block(node.orelse)
+        if self.walk_under("unless", "break", node.lineno, node.orelse) is None:
             return (HoldingCondition("if", "break", node.lineno),)
         return STAYS
 
@@ -184,25 +193,25 @@ class PythonStatements(Expressions):
 
     def read_Try(self, node: ast.Try) -> Leaving:
         saved = self.guard
-        left = self.block(node.body)
+        left = self.walk_block(node.body)
         caught: list[tuple[str, int, Leaving]] = []
         for handler in node.handlers:
             what = "BaseException"
             if handler.type is not None:
                 self.visit(handler.type)
-                what = self.source(handler.type)
+                what = self.format_source(handler.type)
             if handler.name:
                 self.locals.add(handler.name)
-            caught.append((what, handler.lineno, self.under("catch", what, handler.lineno, handler.body)))
+            caught.append((what, handler.lineno, self.walk_under("catch", what, handler.lineno, handler.body)))
         if node.orelse and left is not None:
             for condition in left:
                 self.push(condition.kind, condition.text, condition.line, early=True)
             for what, line, _ in caught:
                 self.push("unless", f"except {what}", line)
-            more = self.block(node.orelse)
+            more = self.walk_block(node.orelse)
             left = JUMPS if more is None else (*left, *more)
             self.guard = saved
-        last = self.block(node.finalbody)
+        last = self.walk_block(node.finalbody)
         if last is None:
             return JUMPS
         going_on = [(what, line) for what, line, leaving in caught if leaving is not None]
@@ -223,20 +232,20 @@ class PythonStatements(Expressions):
             variable = item.optional_vars
             if variable is None:
                 self.visit(item.context_expr)
-                heads.append(self.source(item.context_expr))
+                heads.append(self.format_source(item.context_expr))
             else:
-                value = self.value(item.context_expr, "read", self.spelt(variable))
+                value = self.follow(item.context_expr, "read", self.find_target(variable))
                 self.bind(variable, value, node.lineno)
-                heads.append(f"{self.source(item.context_expr)} as {self.source(variable)}")
-        leaving = self.under("with", ", ".join(heads), node.lineno, node.body)
+                heads.append(f"{self.format_source(item.context_expr)} as {self.format_source(variable)}")
+        leaving = self.walk_under("with", ", ".join(heads), node.lineno, node.body)
         swallows = leaving is None and any(_SWALLOWS.match(head) for head in heads)
         return STAYS if swallows else leaving
 
     read_AsyncWith = read_With
 
     def read_Match(self, node: ast.Match) -> Leaving:
-        subject = self.value(node.subject, "read")
-        head = self.source(node.subject)
+        subject = self.follow(node.subject, "read")
+        head = self.format_source(node.subject)
         if node.subject.__class__ not in (ast.Name, ast.Attribute, ast.Call, ast.Subscript):
             head = f"({head})"
         # Values that a case takes whatever else holds, cases that ask more, and how those that are taken are left.
@@ -248,11 +257,11 @@ class PythonStatements(Expressions):
         other: Leaving = STAYS
         for case in node.cases:
             saved, line = self.guard, case.pattern.lineno
-            values = self.pattern(case.pattern)
+            values = self.walk_case_pattern(case.pattern)
             entered = [" or ".join(f"{head} == {value}" for value in values)] if values else []
             if len(values) > 1:
                 entered = [f"({entered[0]})"]
-            self.captured(case.pattern, subject, line)
+            self.bind_captured(case.pattern, subject, line)
             if values:
                 self.push("case", f"{head} == {' or '.join(values)}", line)
             elif taken:
@@ -263,9 +272,9 @@ class PythonStatements(Expressions):
                     self.push("unless", text, line)
             if case.guard is not None:
                 self.visit(case.guard)
-                self.push("if", self.source(case.guard), line)
-                entered.append(self.test(case.guard).conjunct)
-            leaving = self.block(case.body)
+                self.push("if", self.format_source(case.guard), line)
+                entered.append(self.make_condition(case.guard).conjunct)
+            leaving = self.walk_block(case.body)
             self.guard = saved
             text = " and ".join(entered)
             if leaving is None:
@@ -277,7 +286,7 @@ class PythonStatements(Expressions):
                     other = JUMPS
             else:
                 staying.append((values if case.guard is None else [], text))
-                conditions += within(text, leaving)
+                conditions += combine_with_head(text, leaving)
             if case.guard is None:
                 taken += values
             else:
@@ -299,17 +308,17 @@ class PythonStatements(Expressions):
             conditions.append(HoldingCondition("case", text, node.lineno, f"({opposite})"))
         return tuple(conditions)
 
-    def pattern(self, node) -> list[str]:
+    def walk_case_pattern(self, node) -> list[str]:
         """The values a pattern stands for; none for one that takes everything."""
         cls = node.__class__
         if cls is ast.MatchAs:
-            return [] if node.pattern is None else self.pattern(node.pattern)
+            return [] if node.pattern is None else self.walk_case_pattern(node.pattern)
         if cls is ast.MatchOr:
-            parts = [self.pattern(part) for part in node.patterns]
+            parts = [self.walk_case_pattern(part) for part in node.patterns]
             return [text for part in parts for text in part] if all(parts) else []
-        return [self.source(node)]
+        return [self.format_source(node)]
 
-    def captured(self, pattern, subject: FlowExpr, line: int) -> None:
+    def bind_captured(self, pattern, subject: FlowExpr, line: int) -> None:
         """The names that a pattern binds."""
         for node in ast.walk(pattern):
             name = getattr(node, "name", None) or getattr(node, "rest", None)
@@ -319,17 +328,17 @@ class PythonStatements(Expressions):
 
     def read_Return(self, node: ast.Return) -> Leaving:
         if node.value is not None:
-            value = self.value(node.value, "escape", "return")
+            value = self.follow(node.value, "escape", "return")
             self.add_assignment("", value, node.lineno, "return")
         return JUMPS
 
     def give(self, node: ast.expr) -> None:
         """The body of a lambda, which is what it returns."""
-        self.add_assignment("", self.value(node, "escape", "return"), node.lineno, "return")
+        self.add_assignment("", self.follow(node, "escape", "return"), node.lineno, "return")
 
     def read_Raise(self, node: ast.Raise) -> Leaving:
         if node.exc is not None:
-            self.value(node.exc, "escape")
+            self.follow(node.exc, "escape")
         if node.cause is not None:
             self.visit(node.cause)
         return JUMPS
@@ -343,7 +352,7 @@ class PythonStatements(Expressions):
         self.visit(node.test)
         if node.msg is not None:
             self.visit(node.msg)
-        return (HoldingCondition("if", self.source(node.test), node.lineno),)
+        return (HoldingCondition("if", self.format_source(node.test), node.lineno),)
 
     def read_Expr(self, node: ast.Expr) -> Leaving:
         value = node.value
@@ -356,11 +365,11 @@ class PythonStatements(Expressions):
         targets = node.targets
         first = targets[0]
         if len(targets) == 1 and first.__class__ in (ast.Tuple, ast.List):
-            value = self.unpacked(first, node.value)
+            value = self.walk_unpacked(first, node.value)
         else:
-            to = self.spelt(first)
+            to = self.find_target(first)
             use = "read" if self.is_local(first) or to.partition(".")[0] in self.locals else "escape"
-            value = self.value(node.value, use, to)
+            value = self.follow(node.value, use, to)
         for place, target in enumerate(targets):
             self.bind(target, value if place < MOST_TARGETS else ANY, node.lineno)
         return STAYS
@@ -369,19 +378,21 @@ class PythonStatements(Expressions):
         """Whether a target is a variable of the function itself."""
         return target.__class__ is ast.Name and not self.in_class and target.id not in self.body.outside  # type: ignore[attr-defined]
 
-    def unpacked(self, target, value: ast.expr) -> FlowExpr:
+    def walk_unpacked(self, target, value: ast.expr) -> FlowExpr:
         """The value of `a, b = ...`, in which each part knows what it is kept in."""
         parts = target.elts
         if value.__class__ in (ast.Tuple, ast.List) and len(value.elts) == len(parts):  # type: ignore[attr-defined]
             pairs = zip(parts, value.elts)  # type: ignore[attr-defined] # noqa: B905
-            return FlowExpr("list", "", tuple(self.value(each, "escape", self.spelt(part)) for part, each in pairs))
-        return self.value(value, "escape")
+            return FlowExpr(
+                "list", "", tuple(self.follow(each, "escape", self.find_target(part)) for part, each in pairs)
+            )
+        return self.follow(value, "escape")
 
     def read_AnnAssign(self, node: ast.AnnAssign) -> Leaving:
-        type = self.annotation(node.annotation)
+        type = self.format_annotation(node.annotation)
         target = node.target
         if node.value is not None:
-            value = self.value(node.value, "read" if self.is_local(target) else "escape", self.spelt(target))
+            value = self.follow(node.value, "read" if self.is_local(target) else "escape", self.find_target(target))
             self.bind(target, value, node.lineno, type)
         elif target.__class__ is ast.Name:
             if self.in_class:
@@ -390,20 +401,20 @@ class PythonStatements(Expressions):
             else:
                 self.locals.add(target.id)  # type: ignore[attr-defined]
         elif target.__class__ is ast.Attribute:
-            path = self.spelt(target)
+            path = self.find_target(target)
             if path.startswith("this.") and path.count(".") == 1:
                 self.declare(path[5:], type, node.lineno)
         return STAYS
 
     def declare(self, name: str, type: str, line: int) -> None:
         if self.body.cls is not None:
-            self.body.cls.member(name, type, line, None)
+            self.body.cls.add_member(name, type, line, None)
 
     def read_AugAssign(self, node: ast.AugAssign) -> Leaving:
         target = node.target
         self.visit(target)
-        path = self.spelt(target)
-        value = self.value(node.value, "read", path if node.op.__class__ is ast.Add else "")
+        path = self.find_target(target)
+        value = self.follow(node.value, "read", path if node.op.__class__ is ast.Add else "")
         self.bind(target, value, node.lineno, operator=_OPERATORS[node.op.__class__])
         return STAYS
 
@@ -447,7 +458,7 @@ class PythonStatements(Expressions):
                 self.aliases.append(Alias(alias.asname or alias.name, f"{module}{dot}{alias.name}", scope))
         return STAYS
 
-    def decorators(self, node) -> tuple[str, ...]:
+    def list_decorators(self, node) -> tuple[str, ...]:
         found: list[str] = []
         for decorator in node.decorator_list:
             if decorator.__class__ is ast.Call:
@@ -457,13 +468,13 @@ class PythonStatements(Expressions):
         return tuple(found)
 
     def read_FunctionDef(self, node) -> Leaving:
-        decorators = self.decorators(node)
+        decorators = self.list_decorators(node)
         current = self.body
         method = self.in_class
         name = f"{current.name}.{node.name}" if current.name else node.name
-        body = self.new_body(name, node, node.args)
+        body = self.make_body(name, node, node.args)
         body.decorators = decorators
-        body.returns = self.annotation(node.returns)
+        body.returns = self.format_annotation(node.returns)
         if not method:
             if current.name:
                 current.functions.add(node.name)
@@ -480,13 +491,13 @@ class PythonStatements(Expressions):
     read_AsyncFunctionDef = read_FunctionDef
 
     def read_ClassDef(self, node: ast.ClassDef) -> Leaving:
-        self.decorators(node)
+        self.list_decorators(node)
         outer, saved, in_class, own = self.body, self.guard, self.in_class, self.own
         name = f"{outer.name}.{node.name}" if outer.name else node.name
         bases: list[str] = []
         for base in node.bases:
             self.visit(base)
-            bases.append(self.source(base))
+            bases.append(self.format_source(base))
         for keyword in node.keywords:
             self.visit(keyword.value)
         last = node.end_lineno or node.lineno
@@ -494,10 +505,10 @@ class PythonStatements(Expressions):
         for base in bases:
             if base in self.class_bodies:
                 cls.callbacks |= self.class_bodies[base].callbacks
-        for method in _definitions(node.body):
+        for method in _list_definitions(node.body):
             if method.name not in cls.methods:
                 cls.methods.append(method.name)
-            if not any(self.spelt(decorator) in _PROPERTIES for decorator in method.decorator_list):
+            if not any(self.find_target(decorator) in _PROPERTIES for decorator in method.decorator_list):
                 cls.callbacks.add(method.name)
         self.classes.append(cls)
         self.class_bodies[name] = cls
@@ -507,7 +518,7 @@ class PythonStatements(Expressions):
         self.bodies.append(body)
         self.enter(body)
         self.own, self.in_class = set(cls.methods), True
-        self.block(node.body)
+        self.walk_block(node.body)
         self.enter(outer)
         self.guard, self.in_class, self.own = saved, in_class, own
         return STAYS
@@ -516,7 +527,7 @@ class PythonStatements(Expressions):
         self.assignments.append(Assignment(target, value, line, self.guard, "", operator))
 
 
-def breaks(statements: list[ast.stmt]) -> bool:
+def can_break(statements: list[ast.stmt]) -> bool:
     """Whether a loop over these statements can be left by `break`."""
     stack: list[ast.AST] = list(statements)
     while stack:
@@ -526,11 +537,11 @@ def breaks(statements: list[ast.stmt]) -> bool:
         if node.__class__ in (ast.For, ast.While, ast.AsyncFor):
             stack += node.orelse  # type: ignore[attr-defined]
         elif not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-            stack += _inside(node)
+            stack += _list_inner_statements(node)
     return False
 
 
-def _definitions(statements: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
+def _list_definitions(statements: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
     """The functions defined by statements, under an if or try too."""
     stack: list[ast.AST] = list(reversed(statements))
     while stack:
@@ -538,10 +549,10 @@ def _definitions(statements: list[ast.stmt]) -> Iterator[ast.FunctionDef | ast.A
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             yield node
         elif node.__class__ in (ast.If, ast.Try):
-            stack += reversed(_inside(node))
+            stack += reversed(_list_inner_statements(node))
 
 
-def _inside(node: ast.AST) -> list[ast.stmt]:
+def _list_inner_statements(node: ast.AST) -> list[ast.stmt]:
     """The statements right in another one."""
     parts = (node, *getattr(node, "handlers", ()), *getattr(node, "cases", ()))
     fields = ((part, field) for part in parts for field in ("body", "orelse", "finalbody"))
@@ -549,4 +560,4 @@ def _inside(node: ast.AST) -> list[ast.stmt]:
 
 
 _SWALLOWS = re.compile(r"(?:[\w.]+\.)?(?:suppress|raises|assertRaises\w*)\(")
-_STATEMENTS = node_methods(PythonStatements, "read_")
+_STATEMENTS = collect_node_methods(PythonStatements, "read_")

@@ -19,13 +19,13 @@ class ClassBody(msgspec.Struct, eq=False):
     callbacks: set[str] = set()
     members: dict[str, DataMember] = {}
 
-    def member(self, name: str, type: str, line: int, value: FlowExpr | None) -> None:
+    def add_member(self, name: str, type: str, line: int, value: FlowExpr | None) -> None:
         """Keeps the first mention of a member that tells its type, else the first."""
         known = self.members.get(name)
         if known is None or (type and not known.type):
             self.members[name] = DataMember(name, type, line, value)
 
-    def finished(self) -> FlowClass:
+    def build_class(self) -> FlowClass:
         members = tuple(sorted(self.members.values(), key=lambda member: member.line))
         return FlowClass(self.name, self.bases, members, tuple(self.methods), self.line, self.end)
 
@@ -54,7 +54,7 @@ class Body(msgspec.Struct, eq=False):
     assignments: list[Assignment] = []
     accesses: list[Access] = []
 
-    def sees(self, name: str) -> bool:
+    def is_captured(self, name: str) -> bool:
         """Whether a function around this one has such a variable; it is then captured by all between."""
         outer = self.outer
         while outer is not None:
@@ -72,7 +72,7 @@ class Body(msgspec.Struct, eq=False):
         """False for the body of a class that does nothing but define."""
         return not self.is_class or bool(self.calls or self.assignments or self.guards)
 
-    def finished(self) -> FlowFunction:
+    def build_function(self) -> FlowFunction:
         owner = self.cls.name if self.cls is not None else ""
         return FlowFunction(
             self.name, owner, self.parameters, self.line, self.end, tuple(self.guards), tuple(self.calls),

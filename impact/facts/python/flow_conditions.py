@@ -34,7 +34,7 @@ class AskedCondition(NamedTuple):
     negation: str
 
 
-def test(node: ast.expr, text: str, operand: str) -> AskedCondition:
+def make_condition(node: ast.expr, text: str, operand: str) -> AskedCondition:
     """The condition of an if. operand: the source of what it negates, empty for none."""
     cls = node.__class__
     loose = cls in _LOOSE or (cls is ast.BoolOp and node.op.__class__ is ast.Or)  # type: ignore[attr-defined]
@@ -46,7 +46,7 @@ def test(node: ast.expr, text: str, operand: str) -> AskedCondition:
     return AskedCondition(text, node.lineno, conjunct, f"not {text}" if simple else f"not ({text})")
 
 
-def either(asked: AskedCondition, yes: Leaving, no: Leaving) -> Leaving:
+def merge_leavings(asked: AskedCondition, yes: Leaving, no: Leaving) -> Leaving:
     """How control leaves an if, from how it leaves its two branches."""
     if yes is None:
         return JUMPS if no is None else (HoldingCondition("unless", asked.text, asked.line), *no)
@@ -57,20 +57,20 @@ def either(asked: AskedCondition, yes: Leaving, no: Leaving) -> Leaving:
     if not yes and len(no) == 1 and no[0].kind == "if" and len(asked.text) + len(no[0].text) < LONGEST_COMPOSED:
         texts = (f"({text})" if " else " in text else text for text in (asked.text, no[0].text))
         return (HoldingCondition("if", " or ".join(texts), asked.line),)
-    return (*within(asked.conjunct, yes), *within(asked.negation, no))
+    return (*combine_with_head(asked.conjunct, yes), *combine_with_head(asked.negation, no))
 
 
-def within(head: str, leaving: tuple[HoldingCondition, ...]) -> tuple[HoldingCondition, ...]:
+def combine_with_head(head: str, leaving: tuple[HoldingCondition, ...]) -> tuple[HoldingCondition, ...]:
     """What holds behind a branch that is entered when `head` holds and is left at its end under conditions."""
     result: list[HoldingCondition] = []
     for condition in leaving:
-        tail = _opposite(condition)
+        tail = _negate_condition(condition)
         if tail and len(head) + len(tail) < LONGEST_COMPOSED:
             result.append(HoldingCondition("unless", f"{head} and {tail}" if head else tail, condition.line))
     return tuple(result)
 
 
-def _opposite(condition: HoldingCondition) -> str:
+def _negate_condition(condition: HoldingCondition) -> str:
     """The text of when a condition does not hold, beside an `and`; empty when that has no words."""
     if condition.opposite or condition.text.startswith("except"):
         return condition.opposite

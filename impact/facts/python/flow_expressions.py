@@ -12,10 +12,10 @@ from __future__ import annotations
 import ast
 from itertools import pairwise
 
-from ....edges.dispatch import node_methods
+from ....edges.dispatch import collect_node_methods
 from ..flow import Access, Assignment, DataMember, FlowCall, FlowExpr, FlowParameter, Guard
 from .flow_body import Body, ClassBody
-from .text import SourceText, child_fields, format_pieces, parameters_in, percent_pieces, printable
+from .text import SourceText, drop_surrogates, find_child_fields, format_pieces, list_parameters, split_percent_format
 
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500
@@ -30,7 +30,7 @@ _READING = frozenset(
 )
 # Methods whose argument becomes an element of what they are called on.
 _KEEPING = {"append": 0, "add": 0, "appendleft": 0, "insert": 1, "setdefault": 1, "put": 0}
-_CHILDREN = child_fields("ctx", "id", "attr", "op", "ops", "kind", "conversion", "n", "s", "value_kind")
+_CHILDREN = find_child_fields("ctx", "id", "attr", "op", "ops", "kind", "conversion", "n", "s", "value_kind")
 _PATHS = (ast.Name, ast.Attribute, ast.Subscript)
 LONGEST_OTHER = 120
 ANY = FlowExpr("other")
@@ -82,7 +82,7 @@ class Expressions(SourceText):
 
     def knows(self, name: str) -> bool:
         """Whether a name is a variable of the function, or of one around it, which then is captured."""
-        return name in self.locals or (self.body.outer is not None and self.body.sees(name))
+        return name in self.locals or (self.body.outer is not None and self.body.is_captured(name))
 
     def touch(self, path: str, use: str) -> None:
         """Notes what may change a variable of the function."""
@@ -101,7 +101,7 @@ class Expressions(SourceText):
             body = body.outer
         return name in self.module_functions
 
-    def spelt(self, node) -> str:
+    def find_target(self, node) -> str:
         """The path of what is assigned to, nothing visited; empty for several."""
         cls = node.__class__
         if cls is ast.Name:
@@ -109,37 +109,37 @@ class Expressions(SourceText):
                 return "this"
             return "this." + node.id if node.id in self.own or self.in_class else node.id
         if cls is ast.Attribute:
-            return f"{self.spelt(node.value)}.{node.attr}"
+            return f"{self.find_target(node.value)}.{node.attr}"
         if cls is ast.Subscript:
-            inner = self.spelt(node.value)
+            inner = self.find_target(node.value)
             return inner if node.slice.__class__ is ast.Slice else f"{inner}.[]"
         return "" if cls in (ast.Tuple, ast.List, ast.Starred) else "()"
 
-    def member(self, path: str, name: str) -> FlowExpr:
+    def make_member(self, path: str, name: str) -> FlowExpr:
         cls = self.body.cls
         return FlowExpr("function" if cls is not None and name in cls.callbacks else "name", path)
 
-    def other(self, node) -> FlowExpr:
-        return FlowExpr("other", self.source(node)[:LONGEST_OTHER])
+    def make_other(self, node) -> FlowExpr:
+        return FlowExpr("other", self.format_source(node)[:LONGEST_OTHER])
 
-    def constant(self, node: ast.Constant) -> FlowExpr:
+    def make_constant(self, node: ast.Constant) -> FlowExpr:
         value = node.value
         cls = value.__class__
         if cls is str:
-            return FlowExpr("text", value if value.isascii() else printable(value))  # type: ignore[union-attr]
+            return FlowExpr("text", value if value.isascii() else drop_surrogates(value))  # type: ignore[union-attr]
         if value is None or cls is bool:
             return _NUMBERS[value]  # type: ignore[index]
         if cls is int or cls is float or cls is complex:
-            return FlowExpr("number", self.source(node))
-        return self.other(node)
+            return FlowExpr("number", self.format_source(node))
+        return self.make_other(node)
 
-    def annotation(self, node) -> str:
+    def format_annotation(self, node) -> str:
         """A type as written, quotes around it left out."""
         if node is None:
             return ""
         if node.__class__ is ast.Constant and node.value.__class__ is str:
-            return printable(node.value)
-        return self.source(node)
+            return drop_surrogates(node.value)
+        return self.format_source(node)
 
 
     # Visiting, for calls and uses alone
@@ -171,14 +171,14 @@ class Expressions(SourceText):
         self.visit(values[0])
         facts = self.count_notes()
         for before, value in pairwise(values):
-            self.push(kind, self.source(before), before.lineno)
+            self.push(kind, self.format_source(before), before.lineno)
             self.visit(value)
         self.guard = saved
         if facts == self.count_notes():
             del self.guards[count:]
 
     def visit_IfExp(self, node) -> None:
-        self.value(node, "read")
+        self.follow(node, "read")
 
     visit_Lambda = visit_NamedExpr = visit_JoinedStr = visit_IfExp
     visit_ListComp = visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_IfExp
@@ -188,7 +188,7 @@ class Expressions(SourceText):
 
     def visit_Yield(self, node) -> None:
         if node.value is not None:
-            self.value(node.value, "escape")
+            self.follow(node.value, "escape")
 
     visit_YieldFrom = visit_Yield
 
@@ -231,12 +231,12 @@ class Expressions(SourceText):
         parts.reverse()
         return ".".join(parts), local
 
-    def value(self, node, use: str, target: str = "") -> FlowExpr:
+    def follow(self, node, use: str, target: str = "") -> FlowExpr:
         """An expression. use: the Access that it is if it is a path, `read` for none; target: what it is kept in,
         `return` for what the function returns."""
         cls = node.__class__
         if cls is ast.Constant:
-            return self.constant(node)
+            return self.make_constant(node)
         if cls is ast.Name:
             name = node.id
             if name == self.this:
@@ -245,7 +245,7 @@ class Expressions(SourceText):
                 self.touch(name, use)
                 return FlowExpr("name", name)
             if name in self.own:
-                return self.member("this." + name, name)
+                return self.make_member("this." + name, name)
             return FlowExpr("function" if self.is_function(name) else "name", name)
         if cls is ast.Attribute:
             path, local = self.reach(node)
@@ -254,29 +254,29 @@ class Expressions(SourceText):
                 return FlowExpr("name", path)
             head, _, name = path.rpartition(".")
             if head == "this":
-                return self.member(path, name)
+                return self.make_member(path, name)
             known = self.class_bodies.get(head)
             return FlowExpr("function" if known is not None and name in known.callbacks else "name", path)
         if cls is ast.Call:
-            return self.called(node, target)
+            return self.walk_call(node, target)
         maker = _VALUES.get(cls)
         if maker is not None:
             return maker(self, node, use, target)
         self.visit(node)
-        return self.other(node)
+        return self.make_other(node)
 
     def value_Subscript(self, node: ast.Subscript, use: str, target: str) -> FlowExpr:
-        container = self.value(node.value, "read")
+        container = self.follow(node.value, "read")
         if node.slice.__class__ is ast.Slice:
             self.visit(node.slice)
-            index = self.other(node.slice)
+            index = self.make_other(node.slice)
             suffix = ""
         else:
-            index = self.value(node.slice, "read")
+            index = self.follow(node.slice, "read")
             suffix = ".[]"
         # The element is used, not the container.
         if node.value.__class__ in _PATHS:
-            path = self.spelt(node.value)
+            path = self.find_target(node.value)
             if self.knows(path.partition(".")[0]):
                 self.touch(path + suffix, use)
         return FlowExpr("index", "", (container, index))
@@ -284,14 +284,14 @@ class Expressions(SourceText):
     def value_IfExp(self, node: ast.IfExp, use: str, target: str) -> FlowExpr:
         saved = self.guard
         self.visit(node.test)
-        text, line = self.source(node.test), node.test.lineno
+        text, line = self.format_source(node.test), node.test.lineno
         count = len(self.guards)
         facts = self.count_notes()
         self.push("if", text, line)
-        true = self.value(node.body, use, target)
+        true = self.follow(node.body, use, target)
         self.guard = saved
         self.push("unless", text, line)
-        false = self.value(node.orelse, use, target)
+        false = self.follow(node.orelse, use, target)
         self.guard = saved
         if facts == self.count_notes():
             del self.guards[count:]
@@ -307,10 +307,10 @@ class Expressions(SourceText):
         for operand in node.values:
             if texts:
                 self.push("if" if both else "unless", texts[-1], operand.lineno)
-            values.append(self.value(operand, use, target))
+            values.append(self.follow(operand, use, target))
             if not texts:
                 facts = self.count_notes()
-            texts.append(self.source(operand))
+            texts.append(self.format_source(operand))
         self.guard = saved
         if facts == self.count_notes():
             del self.guards[count:]
@@ -325,14 +325,14 @@ class Expressions(SourceText):
     def value_UnaryOp(self, node: ast.UnaryOp, *_: object) -> FlowExpr:
         operand = node.operand
         if node.op.__class__ is ast.USub and operand.__class__ is ast.Constant:
-            return FlowExpr("number", self.source(node))
+            return FlowExpr("number", self.format_source(node))
         self.visit(operand)
-        return self.other(node)
+        return self.make_other(node)
 
     def value_Tuple(self, node, use: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
         elements = node.elts
-        kept = [self.value(each, "escape", element) for each in elements[:LONGEST_LIST]]
+        kept = [self.follow(each, "escape", element) for each in elements[:LONGEST_LIST]]
         if len(elements) > LONGEST_LIST:
             for each in elements[LONGEST_LIST:]:
                 self.visit(each)
@@ -350,39 +350,39 @@ class Expressions(SourceText):
             if len(pairs) > LONGEST_LIST:
                 self.visit(value)
             elif key is None:
-                pairs.append(FlowExpr("keyword", "**", (self.value(value, "escape"),)))
+                pairs.append(FlowExpr("keyword", "**", (self.follow(value, "escape"),)))
             else:
-                name = self.value(key, "read")
-                pairs.append(FlowExpr("list", "", (name, self.value(value, "escape", element))))
+                name = self.follow(key, "read")
+                pairs.append(FlowExpr("list", "", (name, self.follow(value, "escape", element))))
         return FlowExpr("list", "", tuple(pairs))
 
     def value_Starred(self, node: ast.Starred, use: str, *_: object) -> FlowExpr:
-        return FlowExpr("keyword", "*", (self.value(node.value, "escape"),))
+        return FlowExpr("keyword", "*", (self.follow(node.value, "escape"),))
 
     def value_Await(self, node: ast.Await, use: str, target: str) -> FlowExpr:
-        return self.value(node.value, use, target)
+        return self.follow(node.value, use, target)
 
     def value_NamedExpr(self, node: ast.NamedExpr, use: str, *_: object) -> FlowExpr:
-        target = self.spelt(node.target)
-        value = self.value(node.value, "read", target)
+        target = self.find_target(node.target)
+        value = self.follow(node.value, "read", target)
         self.bind(node.target, value, node.lineno)
         return value
 
     def value_Lambda(self, node: ast.Lambda, use: str, *_: object) -> FlowExpr:
         around = self.body.name
-        own = f"lambda@{node.lineno}:{self.column(node.lineno, node.col_offset)}"
+        own = f"lambda@{node.lineno}:{self.find_column(node.lineno, node.col_offset)}"
         name = f"{around}.{own}" if around else own
-        body = self.new_body(name, node, node.args)
+        body = self.make_body(name, node, node.args)
         self.waiting.append((body, node.body))
         return FlowExpr("lambda", name)
 
-    def new_body(self, name: str, node, arguments: ast.arguments) -> Body:
+    def make_body(self, name: str, node, arguments: ast.arguments) -> Body:
         """A function that stands where the reader is, with its parameters; defaults are visited here."""
         current = self.body
         outer = current.outer if current.is_class else current if current.name else None
         body = Body(name, current.cls, node.lineno, node.end_lineno, outer)
         body.this = current.this
-        body.parameters = self.parameters(arguments)
+        body.parameters = self.list_parameters(arguments)
         for parameter in body.parameters:
             bare = parameter.name.lstrip("*")
             body.locals.add(bare)
@@ -390,41 +390,41 @@ class Expressions(SourceText):
                 body.this = ""
         return body
 
-    def parameters(self, arguments: ast.arguments) -> tuple[FlowParameter, ...]:
+    def list_parameters(self, arguments: ast.arguments) -> tuple[FlowParameter, ...]:
         found: list[FlowParameter] = []
         starred = False
-        for kind, argument, default in parameters_in(arguments):
+        for kind, argument, default in list_parameters(arguments):
             if kind == "keyword" and not starred:
                 found.append(FlowParameter("*"))
             starred = starred or kind in ("args", "keyword")
-            value = None if default is None else self.value(default, "escape")
+            value = None if default is None else self.follow(default, "escape")
             name = {"args": "*", "kwargs": "**"}.get(kind, "") + argument.arg
-            found.append(FlowParameter(name, self.annotation(argument.annotation), value))
+            found.append(FlowParameter(name, self.format_annotation(argument.annotation), value))
         return tuple(found)
 
     def value_ListComp(self, node, use: str, target: str) -> FlowExpr:
         saved, in_class = self.guard, self.in_class
         self.in_class = False
         for generator in node.generators:
-            self.walked(generator.target, generator.iter, generator.iter.lineno)
+            self.walk_loop_head(generator.target, generator.iter, generator.iter.lineno)
             for condition in generator.ifs:
                 self.visit(condition)
-                self.push("if", self.source(condition), condition.lineno)
+                self.push("if", self.format_source(condition), condition.lineno)
         element = target + ".[]" if target and target != "return" else ""
         if node.__class__ is ast.DictComp:
             self.visit(node.key)
-            each = self.value(node.value, "escape", element)
+            each = self.follow(node.value, "escape", element)
         else:
-            each = self.value(node.elt, "escape", element)
+            each = self.follow(node.elt, "escape", element)
         self.guard, self.in_class = saved, in_class
-        return FlowExpr("other", self.other(node).text, (each,))
+        return FlowExpr("other", self.make_other(node).text, (each,))
 
     value_SetComp = value_GeneratorExp = value_DictComp = value_ListComp
 
-    def walked(self, target, iterated, line: int) -> None:
+    def walk_loop_head(self, target, iterated, line: int) -> None:
         """The head of a for: what is walked through and the variable that is each of it, under the loop's guard."""
-        container = self.elements(iterated)
-        self.push("for", f"{self.source(target)} in {self.source(iterated)}", line)
+        container = self.walk_elements(iterated)
+        self.push("for", f"{self.format_source(target)} in {self.format_source(iterated)}", line)
         value = container if container.kind == "list" and container.text == "each" else None
         if value is not None and target.__class__ in (ast.Tuple, ast.List) and len(target.elts) == len(value.parts):
             for part, each in zip(target.elts, value.parts, strict=False):
@@ -433,7 +433,7 @@ class Expressions(SourceText):
             plain = FlowExpr("list", "", container.parts) if value is not None else container
             self.bind(target, FlowExpr("index", "", (plain, ANY)), line)
 
-    def elements(self, node) -> FlowExpr:
+    def walk_elements(self, node) -> FlowExpr:
         """What is walked through by an expression; a list `each` for what goes beside another, as zip does."""
         if node.__class__ is ast.Call and node.func.__class__ is ast.Name and node.func.id not in self.locals:
             name, arguments = node.func.id, node.args
@@ -441,14 +441,14 @@ class Expressions(SourceText):
                 if name in ("sorted", "reversed", "list", "tuple", "set", "iter"):
                     for keyword in node.keywords:
                         self.visit(keyword.value)
-                    return self.elements(arguments[0])
+                    return self.walk_elements(arguments[0])
                 if name == "enumerate":
                     for argument in arguments[1:]:
                         self.visit(argument)
-                    return FlowExpr("list", "each", (ANY, self.elements(arguments[0])))
+                    return FlowExpr("list", "each", (ANY, self.walk_elements(arguments[0])))
                 if name in ("zip", "izip"):
-                    return FlowExpr("list", "each", tuple(self.elements(argument) for argument in arguments))
-        return self.value(node, "read")
+                    return FlowExpr("list", "each", tuple(self.walk_elements(argument) for argument in arguments))
+        return self.follow(node, "read")
 
     def bind(self, target, value: FlowExpr, line: int, type: str = "", operator: str = "=") -> None:
         """An assignment of a value, already read, to a name, a member, an element or several of them."""
@@ -458,7 +458,7 @@ class Expressions(SourceText):
             body = self.body
             if self.in_class:
                 self.own.add(name)
-                body.cls.member(name, type or made(value), line, value)  # type: ignore[union-attr]
+                body.cls.add_member(name, type or find_made_class(value), line, value)  # type: ignore[union-attr]
                 path = "this." + name
             else:
                 path = name
@@ -476,9 +476,9 @@ class Expressions(SourceText):
             if local:
                 self.touch(path, "write")
             elif path.startswith("this.") and path.count(".") == 1 and operator == "=" and self.body.cls is not None:
-                self.body.cls.member(path[5:], type or made(value), line, value)
+                self.body.cls.add_member(path[5:], type or find_made_class(value), line, value)
             key = target.slice if cls is ast.Subscript and target.slice.__class__ is ast.Constant else None
-            named = self.value(key, "read") if key is not None else None
+            named = self.follow(key, "read") if key is not None else None
             self.assignments.append(Assignment(path, value, line, self.guard, type, operator, named))
         elif cls is ast.Tuple or cls is ast.List:
             parts = target.elts
@@ -510,12 +510,12 @@ class Expressions(SourceText):
                 left = left.left  # type: ignore[attr-defined]
             operands.append(left)
             operands.reverse()
-            return FlowExpr("join", "+", tuple(self.value(operand, "read") for operand in operands))
+            return FlowExpr("join", "+", tuple(self.follow(operand, "read") for operand in operands))
         if op is ast.Mod and node.left.__class__ is ast.Constant and node.left.value.__class__ is str:  # type: ignore[attr-defined]
-            return self.percent(node)
+            return self.walk_percent_format(node)
         if op is ast.Div:
-            left = self.value(node.left, "read")
-            right = self.value(node.right, "read")
+            left = self.follow(node.left, "read")
+            right = self.follow(node.right, "read")
             if (
                 "text" in (left.kind, right.kind)
                 or left.text.endswith("Path")
@@ -523,24 +523,24 @@ class Expressions(SourceText):
             ):
                 parts = left.parts if (left.kind, left.text) == ("join", "/") else (left,)
                 return FlowExpr("join", "/", (*parts, right))
-            return self.other(node)
+            return self.make_other(node)
         self.visit(node.left)
         self.visit(node.right)
-        return self.other(node)
+        return self.make_other(node)
 
-    def percent(self, node: ast.BinOp) -> FlowExpr:
-        pieces = percent_pieces(node.left.value)  # type: ignore[attr-defined]
+    def walk_percent_format(self, node: ast.BinOp) -> FlowExpr:
+        pieces = split_percent_format(node.left.value)  # type: ignore[attr-defined]
         right = node.right
         values: dict[int | str, FlowExpr] = {}
         if right.__class__ is ast.Tuple:
             for place, element in enumerate(right.elts):  # type: ignore[attr-defined]
-                values[place] = self.value(element, "read")
+                values[place] = self.follow(element, "read")
         elif right.__class__ is ast.Dict and None not in right.keys:  # type: ignore[attr-defined]
             for key, element in zip(right.keys, right.values, strict=False):  # type: ignore[attr-defined]
                 known = key.value if key.__class__ is ast.Constant else ""
-                values[known if known.__class__ is str else ""] = self.value(element, "read")
+                values[known if known.__class__ is str else ""] = self.follow(element, "read")
         else:
-            values[0] = self.value(right, "read")
+            values[0] = self.follow(right, "read")
         return self.put_together(node, pieces, values)
 
     def put_together(
@@ -548,35 +548,35 @@ class Expressions(SourceText):
     ) -> FlowExpr:
         """The join of literal pieces and values; other when a value is not told apart."""
         if pieces is None:
-            return self.other(node)
+            return self.make_other(node)
         parts: list[FlowExpr] = []
         for piece in pieces:
             if piece.__class__ is str:
-                parts.append(FlowExpr("text", printable(piece)))  # type: ignore[arg-type]
+                parts.append(FlowExpr("text", drop_surrogates(piece)))  # type: ignore[arg-type]
             elif piece.__class__ is int:
                 if piece not in values:
-                    return self.other(node)
+                    return self.make_other(node)
                 parts.append(values[piece])  # type: ignore[index]
             else:
                 key = piece[0]  # type: ignore[index]
-                parts.append(values[key] if key in values else FlowExpr("other", printable(key)[:LONGEST_OTHER]))
+                parts.append(values[key] if key in values else FlowExpr("other", drop_surrogates(key)[:LONGEST_OTHER]))
         if len(parts) == 1 and parts[0].kind == "text":
             return parts[0]
         return FlowExpr("join", "", tuple(parts))
 
-    def formatted(self, node: ast.Call) -> FlowExpr:
+    def walk_format_call(self, node: ast.Call) -> FlowExpr:
         """`"...".format(...)`."""
         values: dict[int | str, FlowExpr] = {}
         unpacked = False
         for place, argument in enumerate(node.args):
             unpacked = unpacked or argument.__class__ is ast.Starred
-            values[place] = self.value(argument, "read")
+            values[place] = self.follow(argument, "read")
         for keyword in node.keywords:
-            value = self.value(keyword.value, "read")
+            value = self.follow(keyword.value, "read")
             if keyword.arg is not None:
                 values[keyword.arg] = value
         if unpacked:
-            return self.other(node)
+            return self.make_other(node)
         return self.put_together(node, format_pieces(node.func.value.value), values)  # type: ignore[attr-defined]
 
     def value_JoinedStr(self, node: ast.JoinedStr, use: str, *_: object) -> FlowExpr:
@@ -591,9 +591,9 @@ class Expressions(SourceText):
         parts: list[FlowExpr] = []
         for piece in node.values:
             if piece.__class__ is ast.Constant:
-                parts.append(self.constant(piece))  # type: ignore[arg-type]
+                parts.append(self.make_constant(piece))  # type: ignore[arg-type]
             elif piece.__class__ is ast.FormattedValue:
-                parts.append(self.value(piece.value, "read"))  # type: ignore[attr-defined]
+                parts.append(self.follow(piece.value, "read"))  # type: ignore[attr-defined]
                 if piece.format_spec is not None:  # type: ignore[attr-defined]
                     self.visit(piece.format_spec)  # type: ignore[attr-defined]
             else:
@@ -605,7 +605,7 @@ class Expressions(SourceText):
             return FlowExpr("text", "")
         return parts[0] if len(parts) == 1 and parts[0].kind == "text" else FlowExpr("join", "", tuple(parts))
 
-    def called(self, node: ast.Call, target: str = "") -> FlowExpr:
+    def walk_call(self, node: ast.Call, target: str = "") -> FlowExpr:
         """A call as a value."""
         func = node.func
         if (
@@ -614,7 +614,7 @@ class Expressions(SourceText):
             and func.value.__class__ is ast.Constant  # type: ignore[attr-defined]
             and func.value.value.__class__ is str  # type: ignore[attr-defined]
         ):
-            return self.formatted(node)
+            return self.walk_format_call(node)
         callee, arguments = self.call(node, target)
         if callee in _PARTIAL and arguments:
             return FlowExpr("bind", "", arguments)
@@ -651,35 +651,35 @@ class Expressions(SourceText):
         for place, argument in enumerate(node.args):
             inside = argument.__class__
             if inside is ast.Constant:
-                arguments.append(self.constant(argument))  # type: ignore[arg-type]
+                arguments.append(self.make_constant(argument))  # type: ignore[arg-type]
             elif reading:
-                arguments.append(self.value(argument, "read"))
+                arguments.append(self.follow(argument, "read"))
             elif inside in _PATHS:
-                arguments.append(self.value(argument, "pass"))
+                arguments.append(self.follow(argument, "pass"))
             else:
                 inner = kept if place == keeping else ""
-                arguments.append(self.value(argument, "escape", inner))
+                arguments.append(self.follow(argument, "escape", inner))
         for keyword in node.keywords:
             value, name = keyword.value, keyword.arg
             if name is None:
-                arguments.append(FlowExpr("keyword", "**", (self.value(value, "escape"),)))
+                arguments.append(FlowExpr("keyword", "**", (self.follow(value, "escape"),)))
             else:
                 use = "pass" if value.__class__ in _PATHS else "escape"
-                arguments.append(FlowExpr("keyword", name, (self.value(value, use),)))
+                arguments.append(FlowExpr("keyword", name, (self.follow(value, use),)))
         given = tuple(arguments)
         if callee != "super":
             returned = target == "return"
-            column = self.column(line, node.col_offset)
+            column = self.find_column(line, node.col_offset)
             self.calls.append(
                 FlowCall(callee, given, line, column, self.guard, "", "" if returned else target, returned)
             )
         return callee, given
 
 
-def made(value: FlowExpr) -> str:
+def find_made_class(value: FlowExpr) -> str:
     """The class that a value is an object of, as written; empty for what is not made here."""
     return value.text if value.kind == "make" else ""
 
 
-_VISITORS = node_methods(Expressions, "visit_")
-_VALUES = node_methods(Expressions, "value_")
+_VISITORS = collect_node_methods(Expressions, "visit_")
+_VALUES = collect_node_methods(Expressions, "value_")

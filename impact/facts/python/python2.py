@@ -57,17 +57,17 @@ _KEYWORD_NAME = re.compile(
 def mask(text: str) -> str:
     """The text with the inside of strings and comments blanked; quotes, newlines and offsets stay."""
 
-    def blank(match: re.Match[str]) -> str:
+    def blank_match(match: re.Match[str]) -> str:
         hidden = match.group()
         if hidden[0] == "#" or len(hidden) < 2:
             return " " * len(hidden)
         inside = _NOT_NEWLINE.sub(lambda line: " " * len(line.group()), hidden[1:-1])
         return hidden[0] + inside + ("\n" if hidden[-1] == "\n" else hidden[0])
 
-    return _HIDDEN.sub(blank, text)
+    return _HIDDEN.sub(blank_match, text)
 
 
-def without_tabs(text: str) -> str:
+def expand_tabs(text: str) -> str:
     """The text with its indentation in spaces, as Python 2 reads it: a tab goes on to the next multiple of eight."""
     return _INDENTATION.sub(lambda match: match.group().expandtabs(8), text)
 

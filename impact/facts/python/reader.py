@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 import msgspec
 
-from ....edges.dispatch import node_methods
+from ....edges.dispatch import collect_node_methods
 from ..condition import Condition
 from ..place import Problem, Reference
 from .bound import PYTHON2_BUILTINS, PYTHON2_METHODS
-from .text import SourceText, caught_by, child_fields
-from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, field_type
+from .text import SourceText, find_child_fields, list_caught_exceptions
+from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, make_field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
 
 
@@ -73,7 +73,7 @@ _GENERIC = frozenset(("dict", "frozenset", "list", "set", "tuple", "type"))
 _TYPES = _GENERIC | {"bool", "bytes", "complex", "float", "int", "object", "str"}
 _QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
 _TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
-_CHILDREN = child_fields(
+_CHILDREN = find_child_fields(
     *("arg", "attr", "asname", "conversion", "ctx", "id", "kind", "level", "lineno", "module", "name", "op", "ops"),
     *("rest", "simple", "str", "tag", "type_comment", "type_ignores", "is_async", "kwd_attrs"),
 )
@@ -114,17 +114,17 @@ class PythonReader(ObjectUses, SourceText):
     def read(self, tree: ast.Module) -> None:
         future = (node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module == "__future__")
         self.postponed = any(alias.name == "annotations" for node in future for alias in node.names)
-        self.block(tree.body)
-        self.looked_up_by_functions()
+        self.walk_all(tree.body)
+        self.add_lookup_calls()
 
-    def block(self, nodes) -> None:
+    def walk_all(self, nodes) -> None:
         for node in nodes:
             self.visit(node)
 
     def visit(self, node) -> None:
-        _HANDLERS.get(node.__class__, PythonReader.inside)(self, node)
+        _HANDLERS.get(node.__class__, PythonReader.walk_children)(self, node)
 
-    def inside(self, node) -> None:
+    def walk_children(self, node) -> None:
         """Visits the children of a node."""
         for field in _CHILDREN.get(node.__class__, ()):
             child = getattr(node, field)
@@ -132,11 +132,11 @@ class PythonReader(ObjectUses, SourceText):
                 if one is not None:
                     self.visit(one)
 
-    def column(self, line: int, offset: int) -> int:
+    def find_column(self, line: int, offset: int) -> int:
         """The same, in the text as it was before Python 2 was rewritten."""
         if line > len(self.lines):
             return offset + 1
-        column = super().column(line, offset)
+        column = super().find_column(line, offset)
         return max(1, column - len(self.lines[line - 1]) + len(self.original[line - 1])) if self.original else column
 
     def need(self, minor: int, reason: str, node) -> None:
@@ -164,7 +164,7 @@ class PythonReader(ObjectUses, SourceText):
 
     def visit_Attribute(self, node: ast.Attribute, call: ast.Call | None = None) -> None:
         if call is not None and node.attr in PYTHON2_METHODS:
-            of_module = node.value.__class__ is ast.Name and self.imported(node.value.id)  # type: ignore[attr-defined]
+            of_module = node.value.__class__ is ast.Name and self.find_imported(node.value.id)  # type: ignore[attr-defined]
             if not of_module:  # six.iteritems is no method
                 self.note_use(f".{node.attr}", node.end_lineno or 0, (node.end_col_offset or 0) - len(node.attr))
         steps = [node]
@@ -176,14 +176,14 @@ class PythonReader(ObjectUses, SourceText):
         if value.__class__ is not ast.Name:
             if value.__class__ is ast.Call and getattr(value.func, "id", "") == "super":  # type: ignore[attr-defined]
                 self.use_of_super(steps[0].attr, call if len(steps) == 1 else None, node)
-            elif type_ := self.type_of(value):
+            elif type_ := self.find_type(value):
                 self.use_member(type_, steps, call)
             self.visit(value)
             return
         head = value.id  # type: ignore[attr-defined]
         parts = [step.attr for step in steps]
         own = head == self.me and self.inside_class is not None
-        if type_ := f"{OWN}{id(self.inside_class)}" if own else self.object(head):
+        if type_ := f"{OWN}{id(self.inside_class)}" if own else self.find_object_type(head):
             self.use_member(type_, steps, call)
         elif self.has_interfaces:
             self.use_constant(steps, call)
@@ -195,14 +195,14 @@ class PythonReader(ObjectUses, SourceText):
             self.assigned.add((self.scope, f"{head}.{'.'.join(parts)}"))
         self.note_use(f"{head}.{'.'.join(parts)}", value.lineno, value.col_offset)
 
-    def dotted(self, scope: PythonScope, text: str) -> Iterator[str]:
+    def resolve_dotted(self, scope: PythonScope, text: str) -> Iterator[str]:
         """What a name with parts stands for, import aliases resolved."""
         head, _, rest = text.partition(".")
-        return (f"{dotted}.{rest}" for dotted, _ in self.imported(head, scope))
+        return (f"{dotted}.{rest}" for dotted, _ in self.find_imported(head, scope))
 
-    def attributes(self) -> tuple[AttributeUse, ...]:
+    def list_attributes(self) -> tuple[AttributeUse, ...]:
         """Names of other modules that the file uses. What it assigns itself (`sys.maxint = sys.maxsize`) is there."""
-        own = {dotted for scope, text in self.assigned for dotted in self.dotted(scope, text)}
+        own = {dotted for scope, text in self.assigned for dotted in self.resolve_dotted(scope, text)}
         found: dict[tuple[str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
         for attribute in self.imported_names:
             found.setdefault((attribute.text, attribute.conditions), (attribute.line, attribute.column, attribute.lazy))
@@ -210,12 +210,12 @@ class PythonReader(ObjectUses, SourceText):
             head, _, rest = text.partition(".")
             if not rest:
                 continue
-            for dotted, extra in self.imported(head, scope):
+            for dotted, extra in self.find_imported(head, scope):
                 if dotted.startswith(".") or f"{dotted}.{rest}" in own:
                     continue
                 both = conditions if not extra else (*extra, *(c for c in conditions if c not in extra))
                 key = (f"{dotted}.{rest}", both)
-                place = (line, self.column(line, offset))
+                place = (line, self.find_column(line, offset))
                 known = found.get(key, (*place, lazy))
                 found[key] = (*min(place, known[:2]), lazy and known[2])
         return tuple(
@@ -223,7 +223,7 @@ class PythonReader(ObjectUses, SourceText):
             for (text, conditions), (line, column, lazy) in sorted(found.items(), key=lambda item: item[1][:2])
         )
 
-    def unbound_names(self) -> tuple[AttributeUse, ...]:
+    def list_unbound_names(self) -> tuple[AttributeUse, ...]:
         """The first use of each name that nothing binds, a sure one where there is any; and calls of methods that only
         Python 2 has and the file does not define, each with its dot."""
         found: dict[str, AttributeUse] = {}
@@ -239,7 +239,7 @@ class PythonReader(ObjectUses, SourceText):
             name = head or text
             if not head and any(f"def {text[1:]}" in one for one in self.lines):
                 continue
-            use = AttributeUse(name, line, self.column(line, offset), conditions, lazy)
+            use = AttributeUse(name, line, self.find_column(line, offset), conditions, lazy)
             known = found.get(name, use)
             found[name] = min(known, use, key=lambda one: (bool(one.conditions), one.lazy, one.line, one.column))
         return tuple(sorted(found.values(), key=lambda one: (one.line, one.column)))
@@ -251,7 +251,7 @@ class PythonReader(ObjectUses, SourceText):
 
     def visit_Import(self, node: ast.Import) -> None:
         for alias in node.names:
-            column = self.column(alias.lineno, alias.col_offset)
+            column = self.find_column(alias.lineno, alias.col_offset)
             module = sys.intern(alias.name)
             self.imports.append(Import(module, (), 0, alias.lineno, column, self.function, self.conditions))
             head = module.partition(".")[0]
@@ -260,7 +260,7 @@ class PythonReader(ObjectUses, SourceText):
     def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
         module = sys.intern(node.module or "")
         dotted = "." * node.level + module
-        column = self.column(node.lineno, node.col_offset)
+        column = self.find_column(node.lineno, node.col_offset)
         names = tuple(sys.intern(alias.name) for alias in node.names)
         self.imports.append(Import(module, names, node.level, node.lineno, column, self.function, self.conditions))
         for alias in node.names:
@@ -268,12 +268,12 @@ class PythonReader(ObjectUses, SourceText):
                 continue
             self.bind_import(alias.asname or alias.name, f"{dotted}.{alias.name}", self.use_conditions)
             if not node.level:
-                column = self.column(alias.lineno, alias.col_offset)
+                column = self.find_column(alias.lineno, alias.col_offset)
                 self.imported_names.append(
                     AttributeUse(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions, self.may_not_run)
                 )
 
-    def under(self, nodes, condition: Condition | None, use: Condition | None) -> None:
+    def walk_under(self, nodes, condition: Condition | None, use: Condition | None) -> None:
         """Visits statements with one more condition for imports and one for uses."""
         before = self.conditions, self.use_conditions, self.conditional
         if condition is not None:
@@ -281,15 +281,15 @@ class PythonReader(ObjectUses, SourceText):
         if use is not None:
             self.use_conditions = (*self.use_conditions, use)
         self.conditional = True
-        self.branch(nodes)
+        self.walk_branch(nodes)
         self.conditions, self.use_conditions, self.conditional = before
 
-    def branch(self, nodes) -> None:
+    def walk_branch(self, nodes) -> None:
         """Visits statements, what these bind is noted in `ways` and holds no longer."""
         scope = self.scope
         before = scope.objects
         scope.objects = dict(before)
-        self.block(nodes)
+        self.walk_all(nodes)
         self.ways.append(scope.objects)
         scope.objects = before
 
@@ -302,8 +302,8 @@ class PythonReader(ObjectUses, SourceText):
         else:
             self.visit(node.iter)
             self.bind_element(node.target, node.iter)
-        self.branch(node.body)
-        self.branch(node.orelse)
+        self.walk_branch(node.body)
+        self.walk_branch(node.orelse)
         self.merge(first)
 
     visit_AsyncFor = visit_While = visit_For
@@ -311,8 +311,8 @@ class PythonReader(ObjectUses, SourceText):
     def bind_element(self, target, over) -> None:
         """The variable of a loop, which holds an element of what is walked through."""
         self.visit(target)
-        if self.has_interfaces and target.__class__ is ast.Name and (type_ := self.type_of(over)):
-            self.hold(target.id, field_type(type_, ELEMENT))
+        if self.has_interfaces and target.__class__ is ast.Name and (type_ := self.find_type(over)):
+            self.hold(target.id, make_field_type(type_, ELEMENT))
 
     def visit_ListComp(self, node) -> None:
         outer = self.scope
@@ -321,37 +321,37 @@ class PythonReader(ObjectUses, SourceText):
         for generator in node.generators:
             self.visit(generator.iter)
             self.bind_element(generator.target, generator.iter)
-            self.block(generator.ifs)
-        self.block([node.key, node.value] if node.__class__ is ast.DictComp else [node.elt])
+            self.walk_all(generator.ifs)
+        self.walk_all([node.key, node.value] if node.__class__ is ast.DictComp else [node.elt])
         self.scope = outer
 
     visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_ListComp
 
     def visit_If(self, node: ast.If) -> None:
-        test = self.source(node.test)
+        test = self.format_source(node.test)
         self.visit(node.test)
         if "__main__" in test and "__name__" in test:
             self.main_lines = range(node.body[0].lineno, (node.body[-1].end_lineno or 0) + 1)
-            self.block(node.body)
-            self.block(node.orelse)
+            self.walk_all(node.body)
+            self.walk_all(node.orelse)
             return
         negated = False
         plain = node.test
         if isinstance(plain, ast.UnaryOp) and isinstance(plain.op, ast.Not):
             plain, negated = plain.operand, True
-            test = self.source(plain)
+            test = self.format_source(plain)
         if test.endswith(".TYPE_CHECKING"):
             test = "TYPE_CHECKING"
         about_machine = _ABOUT_MACHINE.search(test) is not None
         first = len(self.ways)
         for branch, denied in ((node.body, negated), (node.orelse, not negated)):
             condition = Condition("python", test, denied)
-            self.under(branch, condition, condition if about_machine else None)
+            self.walk_under(branch, condition, condition if about_machine else None)
         self.merge(first)
 
     def visit_IfExp(self, node: ast.IfExp) -> None:
         self.visit(node.test)
-        test = self.source(node.test)
+        test = self.format_source(node.test)
         before = self.use_conditions, self.conditional
         self.conditional = True
         about_machine = _ABOUT_MACHINE.search(test) is not None
@@ -362,7 +362,7 @@ class PythonReader(ObjectUses, SourceText):
         self.use_conditions, self.conditional = before
 
     def visit_Try(self, node) -> None:
-        caught = caught_by(node.handlers)
+        caught = list_caught_exceptions(node.handlers)
         covers_import = not caught.isdisjoint(IMPORT_ERRORS)
         covers_use = covers_import or not caught.isdisjoint(_NAME_ERRORS)
         # An except for TypeError expects that a call is refused, and nothing else of what is looked for here.
@@ -370,7 +370,7 @@ class PythonReader(ObjectUses, SourceText):
         refusal = "TypeError" in caught and not covers_use
         self.call_conditions = (*outside, TRY) if refusal else outside
         first, before = len(self.ways), self.scope.objects
-        self.under(node.body, TRY if covers_import else None, TRY if covers_use else None)
+        self.walk_under(node.body, TRY if covers_import else None, TRY if covers_use else None)
         done = self.ways[-1]
         # Handlers run after any part of the body.
         self.scope.objects = {name: type_ if done.get(name) == type_ else "" for name, type_ in before.items()}
@@ -382,13 +382,13 @@ class PythonReader(ObjectUses, SourceText):
             if handler.name:
                 self.scope.bound.add(handler.name)
                 self.hold(handler.name, "")
-            self.under(handler.body, EXCEPT if covers_import else None, instead if covers_use else None)
+            self.walk_under(handler.body, EXCEPT if covers_import else None, instead if covers_use else None)
         self.call_conditions = outside
         self.scope.objects = done
-        self.under(node.orelse, TRY if covers_import else None, TRY if covers_use else None)
+        self.walk_under(node.orelse, TRY if covers_import else None, TRY if covers_use else None)
         self.ways[first] = self.ways.pop()
         self.merge(first)
-        self.block(node.finalbody)
+        self.walk_all(node.finalbody)
 
     def visit_TryStar(self, node) -> None:
         self.need(11, "`except*`", node)
@@ -398,27 +398,27 @@ class PythonReader(ObjectUses, SourceText):
         suppressed = False
         for item in node.items:
             call = item.context_expr
-            if isinstance(call, ast.Call) and _last_name(call.func) == "suppress":
-                suppressed |= any(_last_name(argument) in IMPORT_ERRORS for argument in call.args)
+            if isinstance(call, ast.Call) and _find_last_name(call.func) == "suppress":
+                suppressed |= any(_find_last_name(argument) in IMPORT_ERRORS for argument in call.args)
             self.visit(call)
             if item.optional_vars is not None:
                 self.visit(item.optional_vars)
-        if self.parenthesised(node):
+        if self.is_parenthesised(node):
             self.need(9, "parenthesised context managers", node)
         if suppressed:
-            self.under(node.body, TRY, TRY)
+            self.walk_under(node.body, TRY, TRY)
             self.merge(len(self.ways) - 1, self.scope.objects)
         else:
-            self.block(node.body)
+            self.walk_all(node.body)
 
     visit_AsyncWith = visit_With
 
-    def parenthesised(self, node) -> bool:
+    def is_parenthesised(self, node) -> bool:
         """`with (a as b, c as d):`. The tree does not tell; the text around the items does."""
         first, last = node.items[0], node.items[-1]
         if len(node.items) == 1 and first.optional_vars is None:
             return False
-        line = self.line_bytes(first.context_expr.lineno)
+        line = self.get_line_bytes(first.context_expr.lineno)
         before = line[: first.context_expr.col_offset].decode("utf-8", "replace")
         if first.context_expr.lineno > node.lineno:
             before = self.lines[node.lineno - 1] + before
@@ -426,16 +426,16 @@ class PythonReader(ObjectUses, SourceText):
             return False
         end = last.optional_vars or last.context_expr
         inner = first.context_expr
-        after = self.line_bytes(end.end_lineno)[end.end_col_offset :].lstrip()[:1]
-        after_inner = self.line_bytes(inner.end_lineno)[inner.end_col_offset :].lstrip()[:1]
+        after = self.get_line_bytes(end.end_lineno)[end.end_col_offset :].lstrip()[:1]
+        after_inner = self.get_line_bytes(inner.end_lineno)[inner.end_col_offset :].lstrip()[:1]
         return after in (b")", b",", b"") and after_inner != b")"
 
-    def line_bytes(self, line: int) -> bytes:
+    def get_line_bytes(self, line: int) -> bytes:
         return self.lines[line - 1].encode("utf-8", "replace")
 
     def visit_FunctionDef(self, node) -> None:
         self.scope.bound.add(node.name)
-        self.block(node.decorator_list)
+        self.walk_all(node.decorator_list)
         arguments = node.args
         if arguments.posonlyargs:
             self.need(8, "positional-only parameters", node)
@@ -443,11 +443,11 @@ class PythonReader(ObjectUses, SourceText):
             self.need(0, "keyword-only parameters", node)
         if getattr(node, "type_params", None):
             self.need(12, "type parameters", node)
-            self.block(node.type_params)
-        self.arguments(arguments)
+            self.walk_all(node.type_params)
+        self.walk_defaults(arguments)
         if node.returns is not None:
             self.need(0, "annotations", node)
-            self.evaluated(node.returns)
+            self.walk_annotation(node.returns)
         before = self.scope, self.function, self.defining, self.lazy, self.me
         self.defining = (self.scope, node.name)
         self.lazy = self.lazy or self.scope.parent is not None or node.name not in SURE_TO_RUN
@@ -459,28 +459,28 @@ class PythonReader(ObjectUses, SourceText):
         types = [
             (argument.arg, type_)
             for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)
-            if argument.annotation is not None and (type_ := self.annotated(argument.annotation))
+            if argument.annotation is not None and (type_ := self.find_annotated(argument.annotation))
         ]
         self.scope = PythonScope(self.scope, False)
         self.function = True
-        self.parameters(arguments)
+        self.bind_parameters(arguments)
         self.note_parameters(node)
         self.scope.objects.update(types)
-        self.block(node.body)
+        self.walk_all(node.body)
         self.scope, self.function, self.defining, self.lazy, self.me = before
 
     def visit_AsyncFunctionDef(self, node) -> None:
         self.need(5, "async functions", node)
         self.visit_FunctionDef(node)
 
-    def arguments(self, arguments: ast.arguments) -> None:
-        self.block(filter(None, (*arguments.defaults, *arguments.kw_defaults)))
+    def walk_defaults(self, arguments: ast.arguments) -> None:
+        self.walk_all(filter(None, (*arguments.defaults, *arguments.kw_defaults)))
         for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
             if argument.annotation is not None:
                 self.need(0, "annotations", argument)
-                self.evaluated(argument.annotation)
+                self.walk_annotation(argument.annotation)
 
-    def evaluated(self, annotation: ast.expr) -> None:
+    def walk_annotation(self, annotation: ast.expr) -> None:
         """Visits an annotation. Where it is sure to be evaluated, what it needs is a need of the file."""
         self.visit(annotation)
         simple = isinstance(annotation, (ast.Name, ast.Attribute, ast.Constant))
@@ -501,31 +501,31 @@ class PythonReader(ObjectUses, SourceText):
             return False
         return not any(node.id in scope.bound or node.id in scope.imports for scope in self.scope.chain)
 
-    def parameters(self, arguments: ast.arguments) -> None:
+    def bind_parameters(self, arguments: ast.arguments) -> None:
         self.scope.parameters = names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
         others = filter(None, (*arguments.kwonlyargs, arguments.vararg, arguments.kwarg))
         self.scope.bound.update(names, (argument.arg for argument in others))
 
     def visit_Lambda(self, node: ast.Lambda) -> None:
-        self.arguments(node.args)
+        self.walk_defaults(node.args)
         before = self.scope, self.function, self.lazy
         self.scope = PythonScope(self.scope, False)
         self.function = self.lazy = True
-        self.parameters(node.args)
+        self.bind_parameters(node.args)
         self.visit(node.body)
         self.scope, self.function, self.lazy = before
 
     def visit_ClassDef(self, node: ast.ClassDef) -> None:
         self.scope.bound.add(node.name)
-        self.block(node.decorator_list)
-        self.block(node.bases)
-        self.block(keyword.value for keyword in node.keywords)
+        self.walk_all(node.decorator_list)
+        self.walk_all(node.bases)
+        self.walk_all(keyword.value for keyword in node.keywords)
         if getattr(node, "type_params", None):
             self.need(12, "type parameters", node)
         before = self.scope, self.inside_class, self.me
         self.inside_class, self.me = self.enter_class(node), ""
         self.scope = PythonScope(self.scope, True)
-        self.block(node.body)
+        self.walk_all(node.body)
         self.inside_class.members |= self.scope.bound
         self.scope, self.inside_class, self.me = before
 
@@ -539,84 +539,84 @@ class PythonReader(ObjectUses, SourceText):
         for target in node.targets:
             if target.__class__ is ast.Name:
                 self.remember(target.id, node.value)  # type: ignore[attr-defined]
-            elif target.__class__ is not ast.Attribute or not self.hold_own(target, self.type_of(node.value)):  # type: ignore
+            elif target.__class__ is not ast.Attribute or not self.hold_own(target, self.find_type(node.value)):  # type: ignore
                 self.visit(target)
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
         self.need(6, "variable annotations", node)
-        self.evaluated(node.annotation)
+        self.walk_annotation(node.annotation)
         if node.value is not None:
             self.visit(node.value)
             if isinstance(node.target, ast.Name):
-                self.remember(node.target.id, node.value, self.annotated(node.annotation))
+                self.remember(node.target.id, node.value, self.find_annotated(node.annotation))
                 return
-        if isinstance(node.target, ast.Attribute) and self.hold_own(node.target, self.annotated(node.annotation)):
+        if isinstance(node.target, ast.Attribute) and self.hold_own(node.target, self.find_annotated(node.annotation)):
             return
         self.visit(node.target)
         if isinstance(node.target, ast.Name):
-            self.hold(node.target.id, self.annotated(node.annotation))
+            self.hold(node.target.id, self.find_annotated(node.annotation))
 
     def remember(self, name: str, node: ast.expr, annotated: str = "") -> None:
         scope = self.scope
         scope.bound.add(name)
-        value = self.text(node)
+        value = self.find_text(node)
         if name in scope.values and scope.values[name] != value:
             value = None
         scope.values[name] = value
         if node.__class__ is ast.Constant and node.value is None:  # type: ignore[attr-defined]
             scope.objects.pop(name, None)
         else:
-            self.hold(name, annotated or self.type_of(node))
+            self.hold(name, annotated or self.find_type(node))
 
     def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
         self.need(8, "assignment expression", node)
         self.visit(node.value)
         self.visit(node.target)
-        self.hold(node.target.id, self.type_of(node.value))
+        self.hold(node.target.id, self.find_type(node.value))
 
     def visit_Match(self, node) -> None:
         self.need(10, "match statement", node)
         self.visit(node.subject)
         first = len(self.ways)
         for case in node.cases:
-            self.branch([case])
+            self.walk_branch([case])
         self.merge(first, self.scope.objects)
 
     def visit_TemplateStr(self, node) -> None:
         self.need(*_NEEDED[node.__class__.__name__], node)
-        self.inside(node)
+        self.walk_children(node)
 
     visit_TypeAlias = visit_Nonlocal = visit_YieldFrom = visit_TemplateStr
 
     def visit_Raise(self, node: ast.Raise) -> None:
         if node.cause is not None:
             self.need(0, "raise from", node)
-        self.inside(node)
+        self.walk_children(node)
 
     def visit_Constant(self, node: ast.Constant) -> None:
         if self.has_paths and node.value.__class__ is str:
-            self.mentioned_in(node.value, node)  # type: ignore[arg-type]
+            self.add_mentions(node.value, node)  # type: ignore[arg-type]
 
-    def mentioned_in(self, text: str, node) -> None:
+    def add_mentions(self, text: str, node) -> None:
         for match in _IN_STRING.finditer(text):
             package = match.group("url") or match.group("find")
             path = (match.group("url_path") or match.group("find_path") or "").strip("/")
-            self.refer("file" if path else "package", package, path, node)
+            self.refer_to("file" if path else "package", package, path, node)
 
     def visit_Expr(self, node: ast.Expr) -> None:
         # A string on its own is documentation.
         if node.value.__class__ is not ast.Constant:
             self.visit(node.value)
 
-    def refer(self, kind: str, package: str, name: str, node, conditional: bool = False) -> None:
-        column = self.column(node.lineno, node.col_offset)
+    def refer_to(self, kind: str, package: str, name: str, node, conditional: bool = False) -> None:
+        column = self.find_column(node.lineno, node.col_offset)
         arguments = self.included if kind == "file" else None
         reference = Reference(kind, package, name, node.lineno, column, self.conditional or conditional, arguments)
         self.references[reference] = None
 
     def visit_BinOp(self, node: ast.BinOp) -> None:
         if node.op.__class__ is ast.Add or node.op.__class__ is ast.Div:
-            self.path(node)
+            self.add_path(node)
         elif node.op.__class__ is ast.MatMult:
             self.need(5, "`@` operator", node)
         elif node.op.__class__ is ast.RShift and getattr(node.left, "id", "") == "print":
@@ -627,42 +627,42 @@ class PythonReader(ObjectUses, SourceText):
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
         self.need(6, "f-string", node)
         if sys.version_info >= (3, 12):
-            self.quotes(node)
-        self.path(node)
+            self.check_quotes(node)
+        self.add_path(node)
         for value in node.values:
             if self.has_paths or value.__class__ is ast.FormattedValue:
                 self.visit(value)
 
-    def quotes(self, node: ast.JoinedStr) -> None:
+    def check_quotes(self, node: ast.JoinedStr) -> None:
         """Before 3.12 an expression in an f-string could hold neither the f-string's own quotes nor a backslash."""
-        start = self.line_bytes(node.lineno)[node.col_offset :].decode("utf-8", "replace")
+        start = self.get_line_bytes(node.lineno)[node.col_offset :].decode("utf-8", "replace")
         match = _QUOTE.match(start)
         if match is None:
             return
         for value in node.values:
             if isinstance(value, ast.FormattedValue):
-                expression = self.source(value.value)
+                expression = self.format_source(value.value)
                 if match.group(1) in expression or "\\" in expression:
                     self.need(12, "quotes or backslash inside an f-string", node)
 
     def visit_List(self, node) -> None:
         if len(node.elts) > 1:
-            self.path(node)
-        self.block(node.elts)
+            self.add_path(node)
+        self.walk_all(node.elts)
 
     visit_Tuple = visit_List
 
-    def path(self, node) -> None:
+    def add_path(self, node) -> None:
         """A file reference, when the expression names a file in a package's share folder and nothing around it does."""
         if id(node) in self.consumed:
             return
-        value = self.text(node)
+        value = self.find_text(node)
         if isinstance(value, PackagePath) and value.path:
             self.consumed.update(map(id, ast.walk(node)))
-            self.refer("file", value.package, value.path, node, value.assumed)
+            self.refer_to("file", value.package, value.path, node, value.assumed)
 
     def visit_Call(self, node: ast.Call) -> None:
-        function = self.callee(node.func)
+        function = self.find_callee(node.func)
         keywords = {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
         if keywords and getattr(node.func, "id", "") == "print" and "print_function" not in "".join(self.lines):
             self.need(0, "`print` with keywords", node)
@@ -670,33 +670,33 @@ class PythonReader(ObjectUses, SourceText):
         if "condition" in keywords and not isinstance(keywords["condition"], ast.Constant):
             self.conditional = True
         if function in JOINS or function in WRAPPERS:
-            self.path(node)
+            self.add_path(node)
         elif function in PACKAGE_CALLS or (function in ("get_path", "find") and node.args):
-            self.package_call(node, function)
+            self.add_package_call(node, function)
         elif function == "DeclareLaunchArgument":
-            name = self.text(node.args[0]) if node.args else None
-            default = self.text(keywords["default_value"]) if "default_value" in keywords else None
+            name = self.find_text(node.args[0]) if node.args else None
+            default = self.find_text(keywords["default_value"]) if "default_value" in keywords else None
             if isinstance(name, str) and isinstance(default, str):
                 self.launch_defaults[name] = default
         elif "package" in keywords:
-            self.launched(keywords)
+            self.add_launched_node(keywords)
         elif function in _COMMAND_CALLS:
-            self.command(node, keywords)
+            self.add_command(node, keywords)
         elif function == "FindExecutable":
-            name = self.text(keywords.get("name") or (node.args[0] if node.args else node.func))
+            name = self.find_text(keywords.get("name") or (node.args[0] if node.args else node.func))
             if isinstance(name, str) and _PROGRAM.fullmatch(name):
-                self.refer("command", "", name, node)
+                self.refer_to("command", "", name, node)
         elif function == "find_node" or function == "find_resource":
-            texts = [self.text(argument) for argument in node.args[:2]]
+            texts = [self.find_text(argument) for argument in node.args[:2]]
             if len(texts) == 2 and all(isinstance(text, str) for text in texts):
-                self.refer("executable" if function == "find_node" else "file", str(texts[0]), str(texts[1]), node)
+                self.refer_to("executable" if function == "find_node" else "file", str(texts[0]), str(texts[1]), node)
         elif function == "MoveItConfigsBuilder":
             # moveit_configs_utils looks for <robot>_moveit_config unless told the package.
             named = keywords.get("package_name")
             robot = keywords.get("robot_name") or (node.args[0] if node.args else None)
-            told = self.text(named or robot) if named is not None or robot is not None else None
+            told = self.find_text(named or robot) if named is not None or robot is not None else None
             if isinstance(told, str) and PACKAGE_NAME.fullmatch(told):
-                self.refer("package", told if named is not None else f"{told}_moveit_config", "", node)
+                self.refer_to("package", told if named is not None else f"{told}_moveit_config", "", node)
         elif node.func.__class__ is ast.Name:
             self.calls.append((self.scope, node.func.id, node, self.conditional))  # type: ignore[attr-defined]
         if function in CALLBACK_CALLS and self.has_interfaces:
@@ -710,25 +710,25 @@ class PythonReader(ObjectUses, SourceText):
             self.included = _launch_arguments(keywords.get("launch_arguments"))
             self.visit(node.args[0])
             self.included = None
-            self.block(node.args[1:])
+            self.walk_all(node.args[1:])
         else:
-            self.block(node.args)
-        self.block(keyword.value for keyword in node.keywords)
+            self.walk_all(node.args)
+        self.walk_all(keyword.value for keyword in node.keywords)
         self.conditional = before
 
-    def package_call(self, node: ast.Call, function: str) -> None:
-        value = self.text(node)
+    def add_package_call(self, node: ast.Call, function: str) -> None:
+        value = self.find_text(node)
         argument = node.args[0] if node.args else node.keywords[0].value if node.keywords else node
         if isinstance(value, PackagePath):
             if id(node) not in self.consumed:
                 self.consumed.update(map(id, ast.walk(node)))
-                self.refer("package", value.package, "", argument, value.assumed)
+                self.refer_to("package", value.package, "", argument, value.assumed)
         elif function == "find" or self.defining is None or not isinstance(argument, ast.Name):
             return
         elif argument.id in self.scope.parameters:
             self.lookups[self.defining] = (self.scope.parameters.index(argument.id), argument.id)
 
-    def looked_up_by_functions(self) -> None:
+    def add_lookup_calls(self) -> None:
         """Packages named in calls of this file's own functions that look up a package by a parameter."""
         for scope, name, node, conditional in self.calls if self.lookups else ():
             looking = next((each for each in scope.chain if (each, name) in self.lookups), None)
@@ -737,29 +737,29 @@ class PythonReader(ObjectUses, SourceText):
             index, parameter = self.lookups[looking, name]
             given = [keyword.value for keyword in node.keywords if keyword.arg == parameter] or node.args[index:]
             self.scope = scope
-            package = self.package_name(given[0]) if given else None
+            package = self.find_package_name(given[0]) if given else None
             if package is not None:
-                self.refer("package", package[0], "", given[0], conditional or package[1])
+                self.refer_to("package", package[0], "", given[0], conditional or package[1])
 
-    def launched(self, keywords: dict) -> None:
+    def add_launched_node(self, keywords: dict) -> None:
         """Node(package=, executable=), ComposableNode(package=, plugin=) and everything that looks like them."""
-        package = self.package_name(keywords["package"])
+        package = self.find_package_name(keywords["package"])
         if package is None:
             return
         executable = keywords.get("executable") or keywords.get("node_executable") or keywords.get("exec_name")
         plugin = keywords.get("plugin") or keywords.get("node_plugin")
-        name = self.text(executable or plugin) if executable or plugin else None
+        name = self.find_text(executable or plugin) if executable or plugin else None
         kind, at = ("executable" if executable else "plugin"), executable or plugin
         if not isinstance(name, str) or not name:
             kind, name, at = "package", "", keywords["package"]
-        self.refer(kind, package[0], name, at, package[1])
+        self.refer_to(kind, package[0], name, at, package[1])
 
-    def command(self, node: ast.Call, keywords: dict) -> None:
+    def add_command(self, node: ast.Call, keywords: dict) -> None:
         """A program started with literal arguments, and what rosrun, roslaunch and ros2 are told to start."""
         given = keywords.get("cmd") or keywords.get("args") or keywords.get("command") or next(iter(node.args), None)
         words: list[str | None] = []
         for item in given.elts if isinstance(given, (ast.List, ast.Tuple)) else filter(None, (given,)):
-            text = self.text(item)
+            text = self.find_text(item)
             words += text.split() if isinstance(text, str) else [None]
         program = words[0] if words else None
         if program is None or not _PROGRAM.fullmatch(program):
@@ -769,11 +769,11 @@ class PythonReader(ObjectUses, SourceText):
         elif program in ("rosrun", "roslaunch") and len(words) > 2:
             kind, words = ("executable" if program == "rosrun" else "file"), words[1:]
         else:
-            self.refer("command", "", program, node)
+            self.refer_to("command", "", program, node)
             return
         package, name = words[0], words[1]
         if package and name and PACKAGE_NAME.fullmatch(package):
-            self.refer(kind, package, name, node)
+            self.refer_to(kind, package, name, node)
 
 
 def _launch_arguments(node: ast.expr | None) -> tuple[str, ...] | None:
@@ -795,8 +795,8 @@ def _launch_arguments(node: ast.expr | None) -> tuple[str, ...] | None:
     return found if len(found) == len(names) else None
 
 
-def _last_name(node) -> str:
+def _find_last_name(node) -> str:
     return getattr(node, "id", None) or getattr(node, "attr", "")
 
 
-_HANDLERS = node_methods(PythonReader, "visit_")
+_HANDLERS = collect_node_methods(PythonReader, "visit_")

@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 import msgspec
 
-from ..markup import text_encoding
+from ..markup import find_text_encoding
 from ..place import Problem, Reference
-from ..words import words_of
+from ..words import list_words
 from . import python2
-from .bound import scope_names
+from .bound import find_scope_names
 from .reader import TRY, AttributeUse, Import, PythonReader
 from .uses import FieldUse, PythonUse
 
@@ -30,7 +30,7 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
     has and Python 2 has not; NO_PYTHON), or None. interpreter: the first line when it is a `#!` that names python.
     uses: what calls and objects tell besides the attributes. fields: of
-    interfaces. words: see words_of(). unbound: names that nothing in the file binds, and methods, with a dot before,
+    interfaces. words: see list_words(). unbound: names that nothing in the file binds, and methods, with a dot before,
     that nothing in it defines and only Python 2 has. bound: names, between spaces, that others can import from it;
     empty where that cannot be told, and two spaces where there are none.
     """
@@ -89,7 +89,7 @@ def _decode(data: bytes) -> tuple[str, tuple[Problem, ...]]:
         if line.strip() and not line.lstrip().startswith(b"#"):
             break
     try:
-        text = data.decode(text_encoding(encoding))
+        text = data.decode(find_text_encoding(encoding))
     except LookupError:
         problems.append(Problem(cookie_line, f"unknown encoding `{encoding}`"))
         text = data.decode("utf-8", "replace")
@@ -111,14 +111,14 @@ def _parse(text: str) -> ast.Module:
         return ast.parse(text)
 
 
-def _as_python2(text: str, error: SyntaxError) -> tuple[tuple[Problem, ...], ast.Module | None, str]:
+def _parse_python2(text: str, error: SyntaxError) -> tuple[tuple[Problem, ...], ast.Module | None, str]:
     """What only Python 2 reads in a refused text, the tree of the text rewritten, when that parses, and that text."""
     old, rewritten = python2.find(text)
     tabs = error if isinstance(error, TabError) else None
     for _ in range(2):
         if tabs is not None:
             old = (*old, Problem(tabs.lineno or 1, "tabs mixed with spaces"))
-            rewritten = python2.without_tabs(rewritten)
+            rewritten = python2.expand_tabs(rewritten)
         if not old:
             break
         try:
@@ -141,7 +141,7 @@ def read(data: bytes) -> PythonSource:
     try:
         return PythonSource(text, text, _parse(text), (), problems)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        old, tree, rewritten = _as_python2(text, error) if isinstance(error, SyntaxError) else ((), None, text)
+        old, tree, rewritten = _parse_python2(text, error) if isinstance(error, SyntaxError) else ((), None, text)
         if not old:
             line = min(getattr(error, "lineno", None) or 1, text.count("\n") + 1)
             what = error.msg if isinstance(error, SyntaxError) else str(error) or type(error).__name__
@@ -163,39 +163,39 @@ def extract(data: bytes) -> PythonFile:
         try:
             reader = PythonReader(parsed, text)
             # What was rewritten may have lost names that it binds.
-            reader.unbound, bound = (None if old else scope_names(parsed)) or (frozenset(), None)
+            reader.unbound, bound = (None if old else find_scope_names(parsed)) or (frozenset(), None)
             reader.read(tree)
             if any("*" in item.names for item in reader.imports):
                 reader.unbound, bound = frozenset(), None
             return PythonFile(
                 imports=tuple(reader.imports),
-                attributes=reader.attributes(),
+                attributes=reader.list_attributes(),
                 references=tuple(sorted(reader.references, key=attrgetter("line", "column"))),
                 python2_only=old or tuple(reader.python2_only),
                 needs=None if old else reader.needs,
                 interpreter=interpreter,
                 problems=problems,
-                uses=reader.object_uses(reader.column),
-                words=words_of(data),
-                fields=reader.field_uses(reader.column),
-                unbound=() if old else reader.unbound_names(),
+                uses=reader.list_object_uses(reader.find_column),
+                words=list_words(data),
+                fields=reader.list_field_uses(reader.find_column),
+                unbound=() if old else reader.list_unbound_names(),
                 bound="" if bound is None else f" {' '.join(sorted(bound))} ",
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))
     return PythonFile(
-        imports=_imports_by_line(text),
+        imports=_find_imports_by_line(text),
         attributes=(),
         references=(),
         python2_only=old,
         needs=(NO_PYTHON, refused, "SyntaxError") if refused else None,
         interpreter=interpreter,
         problems=problems,
-        words=words_of(data),
+        words=list_words(data),
     )
 
 
-def _imports_by_line(text: str) -> tuple[Import, ...]:
+def _find_imports_by_line(text: str) -> tuple[Import, ...]:
     """Imports of text that no parser reads: by their look. An indented one is taken for optional, whatever it is in."""
     visible = python2.mask(text)
     imports: list[Import] = []

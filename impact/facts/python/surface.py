@@ -13,7 +13,7 @@ import msgspec
 
 from ..condition import Condition
 from ..place import Problem
-from .text import parameters_in
+from .text import list_parameters
 
 
 class PythonParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -100,9 +100,9 @@ def is_private(part: str) -> bool:
     return part.startswith("_") and not (part.startswith("__") and part.endswith("__") and len(part) > 4)
 
 
-def parameters_of(arguments: ast.arguments) -> Iterator[PythonParameter]:
+def make_parameters(arguments: ast.arguments) -> Iterator[PythonParameter]:
     """Parameters in order, `self` and `cls` among them."""
-    for kind, argument, default in parameters_in(arguments):
+    for kind, argument, default in list_parameters(arguments):
         annotation = even_source(argument.annotation) if argument.annotation is not None else ""
         yield PythonParameter(argument.arg, kind, None if default is None else even_source(default), annotation)
 

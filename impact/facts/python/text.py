@@ -39,7 +39,7 @@ COMPARISONS: dict[type, Callable[[Any, Any], Any]] = {
 }
 
 
-def child_fields(*left_out: str) -> dict[type, tuple[str, ...]]:
+def find_child_fields(*left_out: str) -> dict[type, tuple[str, ...]]:
     """For every node class the fields that can hold nodes, all but those left out."""
     fields = {
         cls: tuple(field for field in cls._fields if field not in left_out)
@@ -50,7 +50,7 @@ def child_fields(*left_out: str) -> dict[type, tuple[str, ...]]:
     return {**fields, **dict.fromkeys((ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton), ())}
 
 
-def parameters_in(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, ast.expr | None]]:
+def list_parameters(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, ast.expr | None]]:
     """(kind, parameter, default) in order. kind: `positional` (before `/`), `normal`, `args` (`*args`), `keyword`
     (behind `*`) or `kwargs`."""
     kinds = ["positional"] * len(arguments.posonlyargs) + ["normal"] * len(arguments.args)
@@ -64,7 +64,7 @@ def parameters_in(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, ast.
         yield "kwargs", arguments.kwarg, None
 
 
-def dotted(node: ast.expr) -> str:
+def format_dotted(node: ast.expr) -> str:
     """A path of names; nothing stands before the first dot of one that begins with anything else."""
     parts: list[str] = []
     while isinstance(node, ast.Attribute):
@@ -74,12 +74,12 @@ def dotted(node: ast.expr) -> str:
     return ".".join(reversed(parts))
 
 
-def caught_by(handlers: Iterable[ast.ExceptHandler]) -> set[str]:
+def list_caught_exceptions(handlers: Iterable[ast.ExceptHandler]) -> set[str]:
     """The last parts of the names of exceptions that are caught; `Exception` for all of them."""
     caught: set[str] = set()
     for handler in handlers:
         for kind in handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]:
-            caught.add("Exception" if kind is None else dotted(kind).rpartition(".")[2])
+            caught.add("Exception" if kind is None else format_dotted(kind).rpartition(".")[2])
     return caught
 
 
@@ -91,10 +91,10 @@ class SourceText:
         # Inside strings of several lines, the places that nodes tell differ between interpreters.
         self.unplaced = False
 
-    def source(self, node) -> str:
+    def format_source(self, node) -> str:
         """The source of an expression or pattern, white space as single blanks, comments left out."""
         if self.unplaced:
-            return " ".join(printable(ast.unparse(node)).split())
+            return " ".join(drop_surrogates(ast.unparse(node)).split())
         first, last = node.lineno - 1, node.end_lineno - 1
         lines = self.lines
         if first == last:
@@ -112,7 +112,7 @@ class SourceText:
         text = b"\n".join(parts).decode("utf-8", "replace")
         return " ".join(_COMMENT.sub(lambda match: match.group(1) or " ", text).split())
 
-    def column(self, line: int, offset: int) -> int:
+    def find_column(self, line: int, offset: int) -> int:
         """A parser's offset in UTF-8 bytes as a column in characters, from 1."""
         text = self.lines[line - 1]
         if text.isascii():
@@ -120,12 +120,12 @@ class SourceText:
         return len(text.encode("utf-8", "replace")[:offset].decode("utf-8", "ignore")) + 1
 
 
-def printable(text: str) -> str:
+def drop_surrogates(text: str) -> str:
     """The text without lone surrogates, which no fact can hold."""
     return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")
 
 
-def percent_pieces(text: str) -> list[str | int | tuple[str]] | None:
+def split_percent_format(text: str) -> list[str | int | tuple[str]] | None:
     """What `text % values` is made of: literal text, places in a tuple of values, or (key,) of a mapping; None for what
     is no format or takes its widths from values."""
     pieces: list[str | int | tuple[str]] = []

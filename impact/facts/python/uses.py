@@ -101,7 +101,7 @@ SURE_TO_RUN = frozenset(("generate_launch_description", "main"))
 
 
 class ObjectUses(PythonValues):
-    """What the walk notes of objects and calls; finished by object_uses()."""
+    """What the walk notes of objects and calls; finished by list_object_uses()."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
@@ -130,23 +130,23 @@ class ObjectUses(PythonValues):
         """True where reading or starting the file does not surely come by."""
         return self.lazy or self.conditional
 
-    def type_of(self, node) -> str:
+    def find_type(self, node) -> str:
         """The type of an expression's value, empty where it does not show."""
         if node.__class__ is ast.Call:
-            return self.called(node.func)
+            return self.resolve_callee(node.func)
         if node.__class__ is ast.Name:
-            return self.object(node.id)
+            return self.find_object_type(node.id)
         if not self.has_interfaces:
             return ""
         if node.__class__ is ast.Attribute:
             if node.value.__class__ is ast.Name and node.value.id == self.me and self.inside_class is not None:
                 return f"{OWN}{id(self.inside_class)}.{node.attr}"
-            return field_type(self.type_of(node.value), node.attr)
+            return make_field_type(self.find_type(node.value), node.attr)
         if node.__class__ is ast.Subscript and node.slice.__class__ is not ast.Slice:
-            return field_type(self.type_of(node.value), ELEMENT)
+            return make_field_type(self.find_type(node.value), ELEMENT)
         return ""
 
-    def called(self, node) -> str:
+    def resolve_callee(self, node) -> str:
         """What a callee is: a dotted name of another module, or a class of the file."""
         parts: list[str] = []
         while node.__class__ is ast.Attribute:
@@ -164,21 +164,21 @@ class ObjectUses(PythonValues):
                 return f"{OWN}{node.id}" if not parts and node.id in self.classes else ""
         return ""
 
-    def object(self, name: str) -> str:
+    def find_object_type(self, name: str) -> str:
         """The type of what a variable holds."""
         for looking in self.scope.chain:
             if name in looking.objects or name in looking.bound:
                 return looking.objects.get(name, "")
         return ""
 
-    def annotated(self, node) -> str:
+    def find_annotated(self, node) -> str:
         """The type that an annotation names, in quotes or not."""
         if node.__class__ is ast.Constant and node.value.__class__ is str and _DOTTED.match(node.value):
             try:
                 node = ast.parse(node.value, mode="eval").body
             except (SyntaxError, ValueError):
                 return ""
-        return self.called(node) if node.__class__ in (ast.Name, ast.Attribute) else ""
+        return self.resolve_callee(node) if node.__class__ in (ast.Name, ast.Attribute) else ""
 
     def hold(self, name: str, type_: str) -> None:
         """A variable of the scope is bound."""
@@ -190,7 +190,7 @@ class ObjectUses(PythonValues):
         same: set[int] = set()
         for node in ast.walk(loop) if any(objects.values()) else ():
             if node.__class__ is ast.Assign:
-                type_ = self.type_of(node.value)  # type: ignore[attr-defined]
+                type_ = self.find_type(node.value)  # type: ignore[attr-defined]
                 targets = node.targets if type_ else ()  # type: ignore[attr-defined]
                 same.update(id(target) for target in targets if objects.get(getattr(target, "id", "")) == type_)
             elif getattr(node, "id", "") in objects and isinstance(node.ctx, ast.Store) and id(node) not in same:  # type: ignore[attr-defined]
@@ -212,7 +212,7 @@ class ObjectUses(PythonValues):
     def note_callback(self, call: ast.Call, function: str) -> None:
         """A call that asks for messages or requests of one interface, and names who gets them."""
         arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
-        types = [type_ for one in arguments if _INTERFACE.fullmatch(type_ := self.annotated(one))]
+        types = [type_ for one in arguments if _INTERFACE.fullmatch(type_ := self.find_annotated(one))]
         if len(types) != 1:
             return
         given = (types[0],) if function in _ASK_FOR_MESSAGES else (f"{types[0]}.Request", f"{types[0]}.Response")
@@ -245,7 +245,7 @@ class ObjectUses(PythonValues):
         """`object.a.b`, called or not. type_: of the object. steps: the nodes of its members, the last is the whole."""
         own, outer = type_[:1] == OWN and "." not in type_, steps[-1]
         if outer.ctx.__class__ is ast.Load:
-            given = _given(call) if call is not None else None
+            given = _make_call_arguments(call) if call is not None else None
             if type_ != f"{OWN}{id(self.inside_class)}" or len(steps) == 1:
                 self.note(type_, steps[0].attr, given if len(steps) == 1 else None, outer)
             elif len(steps) == 2:
@@ -257,7 +257,7 @@ class ObjectUses(PythonValues):
 
     def use_constant(self, steps: list[ast.Attribute], call: ast.Call | None) -> None:
         """`Name.CONSTANT`, and what follows, of an interface that an import brings."""
-        path = self.called(steps[-1])
+        path = self.resolve_callee(steps[-1])
         known = _INTERFACE.match(path)
         if known is not None:
             self.use_fields(known.group(), steps[len(steps) - path.count(".", known.end()) :], call)
@@ -269,18 +269,18 @@ class ObjectUses(PythonValues):
                 break
             line, end = step.end_lineno or 0, step.end_col_offset or 0
             self.use_field(type_, step.attr, (line, end - len(step.attr.encode())))
-            type_ = field_type(type_, step.attr)
+            type_ = make_field_type(type_, step.attr)
 
     def use_of_super(self, member: str, call: ast.Call | None, node) -> None:
         """`super().member`."""
         for base in self.inside_class.bases if self.inside_class is not None else ():
-            self.note(base, member, _given(call) if call is not None else None, node)
+            self.note(base, member, _make_call_arguments(call) if call is not None else None, node)
 
     def use_call(self, call: ast.Call) -> None:
         """A call of something that an import brought."""
-        name = self.called(call.func)
-        if name and name[0] != OWN and not _standard(name):
-            self.note(name, "", _given(call), call.func)
+        name = self.resolve_callee(call.func)
+        if name and name[0] != OWN and not _is_stdlib(name):
+            self.note(name, "", _make_call_arguments(call), call.func)
             if _INTERFACE.fullmatch(name):
                 for keyword in call.keywords:
                     if keyword.arg is not None:
@@ -290,7 +290,7 @@ class ObjectUses(PythonValues):
         self.raw_fields[type_, name] = min(place, self.raw_fields.get((type_, name), place))
 
     def note(self, type_: str, member: str, given: CallArguments | None, node) -> None:
-        if not type_ or (type_[0] != OWN and _standard(type_)) or _is_field(type_):
+        if not type_ or (type_[0] != OWN and _is_stdlib(type_)) or _is_field(type_):
             return
         conditions = self.use_conditions if given is None else (*self.use_conditions, *self.call_conditions)
         lazy = self.may_not_run
@@ -302,7 +302,7 @@ class ObjectUses(PythonValues):
 
     def enter_class(self, node: ast.ClassDef) -> _Class:
         """A class of the file, from here on known by its name."""
-        found = _Class([self.called(base) for base in node.bases])
+        found = _Class([self.resolve_callee(base) for base in node.bases])
         if node.keywords:
             found.bases.append("")  # a metaclass may add members
         known = self.classes.get(node.name)
@@ -322,14 +322,14 @@ class ObjectUses(PythonValues):
         plain = all(getattr(d, "id", "") in ("", "override") for d in node.decorator_list)
         if plain and not node.name.startswith("_"):
             column = node.col_offset + (4 if node.__class__ is ast.FunctionDef else 10)
-            inside.methods[node.name] = (node.lineno, column, _parameters(node.args))
+            inside.methods[node.name] = (node.lineno, column, _format_parameters(node.args))
 
-    def object_uses(self, column: Callable[[int, int], int]) -> tuple[PythonUse, ...]:
+    def list_object_uses(self, column: Callable[[int, int], int]) -> tuple[PythonUse, ...]:
         """Every use of what is not the file's own, in the order of the source. column: of a line and an offset."""
         found: dict[tuple, PythonUse] = {}
         for raw in self.raw.values():
             how = "member" if raw.given is None else "method" if raw.member else "call"
-            for type_, alone in self.types(raw):
+            for type_, alone in self.list_types(raw):
                 name = f"{type_}.{raw.member}" if raw.member else type_
                 key = (name, how, raw.given, raw.conditions)
                 more = tuple((line, column(line, offset)) for line, offset in raw.more)
@@ -343,14 +343,14 @@ class ObjectUses(PythonValues):
                 elif known is None or (known.lazy and not raw.lazy):
                     found[key] = use
         for key, one in self.classes.items():
-            bases = [] if key.isdigit() else [base for base, _ in self.bases(one) if base and not _standard(base)]
+            bases = [] if key.isdigit() else [base for base, _ in self.list_bases(one) if base and not _is_stdlib(base)]
             for base in bases:
                 for method, (line, offset, parameters) in one.methods.items():
                     name, at = f"{base}.{method}", column(line, offset)
                     found[name, line] = PythonUse(name, "override", line, at, None, parameters)
         return tuple(sorted(found.values(), key=lambda use: (use.line, use.column, use.name)))
 
-    def field_uses(self, column: Callable[[int, int], int]) -> tuple[FieldUse, ...]:
+    def list_field_uses(self, column: Callable[[int, int], int]) -> tuple[FieldUse, ...]:
         """Every use of a field or constant of an interface, in the order of the source."""
         found: dict[str, FieldUse] = {}
         for (type_, member), (line, offset) in self.raw_fields.items():
@@ -372,36 +372,36 @@ class ObjectUses(PythonValues):
                 type_ = types[int(place)] if not others and int(count) <= len(types) else ""
             elif type_[:1] == OWN and rest and head in self.classes:
                 name, _, rest = rest.partition(".")
-                type_ = self.held(self.classes[head], name)
+                type_ = self.find_member_type(self.classes[head], name)
             else:
                 return type_
             if rest:
                 type_ = f"{type_}.{rest}" if type_ and (type_[0] == OWN or _has_fields(type_)) else ""
         return ""
 
-    def types(self, raw: _Raw) -> Iterator[tuple[str, bool]]:
+    def list_types(self, raw: _Raw) -> Iterator[tuple[str, bool]]:
         """The types of other modules that a use may be of, and whether it is the only one."""
         type_ = self.resolve(raw.type) if "." in raw.type else raw.type
         if type_[:1] != OWN:
-            if type_ and (type_ == raw.type or not _standard(type_)):
+            if type_ and (type_ == raw.type or not _is_stdlib(type_)):
                 yield type_, True
             return
         one = self.classes.get(type_[1:])
         if one is None:
             return
-        bases = list(self.bases(one))
+        bases = list(self.list_bases(one))
         if raw.member in one.members or any(raw.member in self.classes[own].members for _, own in bases if own):
             return
         outside = [base for base, own in bases if not own]
-        yield from ((base, len(outside) == 1) for base in outside if base and not _standard(base))
+        yield from ((base, len(outside) == 1) for base in outside if base and not _is_stdlib(base))
 
-    def held(self, one: _Class, attribute: str) -> str:
-        for own in (one, *(self.classes[name] for _, name in self.bases(one) if name)):
+    def find_member_type(self, one: _Class, attribute: str) -> str:
+        for own in (one, *(self.classes[name] for _, name in self.list_bases(one) if name)):
             if attribute in own.objects:
                 return own.objects[attribute]
         return ""
 
-    def bases(self, one: _Class) -> Iterator[tuple[str, str]]:
+    def list_bases(self, one: _Class) -> Iterator[tuple[str, str]]:
         """All base classes over any number of steps: (dotted, "") of other modules, ("", name) of the file, ("", "")
         where it is not known."""
         seen: set[str] = set()
@@ -429,17 +429,17 @@ def _is_field(type_: str) -> bool:
     return known is not None and known.end() < len(type_)
 
 
-def field_type(type_: str, name: str) -> str:
+def make_field_type(type_: str, name: str) -> str:
     """The type of a field of an object, empty where it has none that anybody asks for."""
     return f"{type_}.{name}" if type_ and _has_fields(type_) and type_.count(".") < _DEEPEST else ""
 
 
-def _standard(name: str) -> bool:
+def _is_stdlib(name: str) -> bool:
     """Whether a dotted name is one of Python's own library, in which no package of ROS has anything."""
     return name.partition(".")[0] in sys.stdlib_module_names
 
 
-def _given(call: ast.Call) -> CallArguments:
+def _make_call_arguments(call: ast.Call) -> CallArguments:
     positional = [a for a in call.args if a.__class__ is not ast.Starred]
     keywords = tuple(k.arg for k in call.keywords if k.arg is not None)
     return CallArguments(
@@ -447,7 +447,7 @@ def _given(call: ast.Call) -> CallArguments:
     )
 
 
-def _parameters(arguments: ast.arguments) -> str:
+def _format_parameters(arguments: ast.arguments) -> str:
     """Parameters of a method without the first, as Python writes them, with `...` for defaults."""
     some = ast.Constant(...)
     first = [ast.arg(one.arg) for one in arguments.posonlyargs[1:]]

@@ -8,9 +8,9 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from ....edges.dispatch import node_methods
+from ....edges.dispatch import collect_node_methods
 from ..condition import Condition
-from .constants import Constants, PackagePath, path_of, put_together
+from .constants import Constants, PackagePath, join_path, put_together
 
 # Functions and launch substitutions whose first argument is a package's name.
 PACKAGE_CALLS = frozenset((
@@ -58,7 +58,7 @@ class PythonValues(Constants):
         self.scope = PythonScope(None, False)
         self.launch_defaults: dict[str, str] = {}
 
-    def imported(self, name: str, scope: PythonScope | None = None) -> list[tuple[str, tuple[Condition, ...]]]:
+    def find_imported(self, name: str, scope: PythonScope | None = None) -> list[tuple[str, tuple[Condition, ...]]]:
         """What a name stands for by the imports in view; empty when it is bound otherwise."""
         for looking in (scope or self.scope).chain:
             if name in looking.imports:
@@ -67,12 +67,12 @@ class PythonValues(Constants):
                 return []
         return []
 
-    def text(self, node) -> str | PackagePath | None:
+    def find_text(self, node) -> str | PackagePath | None:
         """The text or the place in a package that an expression is known to be. A list is one text, as substitutions
         of a launch file are."""
-        value = self.value(node) if node.__class__ in VALUED else None
+        value = self.find_value(node) if node.__class__ in VALUED else None
         if isinstance(value, list):
-            value = put_together(_flat(value))
+            value = put_together(_flatten_list(value))
         return str(value) if isinstance(value, str) else value if isinstance(value, PackagePath) else None
 
     def value_Name(self, node: ast.Name) -> Any:
@@ -89,61 +89,65 @@ class PythonValues(Constants):
     def value_IfExp(self, node: ast.IfExp) -> None:
         return None
 
-    def result(self, call: ast.Call) -> Any:
-        function, receiver = self.callee(call.func), getattr(call.func, "value", None)
+    def find_result(self, call: ast.Call) -> Any:
+        function, receiver = self.find_callee(call.func), getattr(call.func, "value", None)
         if function in PACKAGE_CALLS or (function == "get_path" and self.has_rospkg):
-            return self.package_folder(call)
-        if function == "find" and isinstance(receiver, ast.Call) and self.callee(receiver.func) in PACKAGE_CALLS:
-            return self.package_folder(call)
+            return self.find_package_folder(call)
+        if function == "find" and isinstance(receiver, ast.Call) and self.find_callee(receiver.func) in PACKAGE_CALLS:
+            return self.find_package_folder(call)
         if function in JOINS:
             arguments = call.args
             if len(arguments) == 1 and isinstance(arguments[0], (ast.List, ast.Tuple)):
                 arguments = arguments[0].elts
             if function == "joinpath" and receiver is not None:
                 arguments = [receiver, *arguments]
-            return path_of(map(self.text, arguments), call.lineno)
+            return join_path(map(self.find_text, arguments), call.lineno)
         if function in ("as_posix", "resolve") and receiver is not None:
-            return self.text(receiver)
+            return self.find_text(receiver)
         if function in WRAPPERS:
             inner = call.args or [keyword.value for keyword in call.keywords if keyword.arg in ("text", "param_file")]
-            return self.text(inner[0]) if inner else None
+            return self.find_text(inner[0]) if inner else None
         return None
 
-    def package_folder(self, call: ast.Call) -> PackagePath | None:
-        package = self.package_argument(call)
+    def find_package_folder(self, call: ast.Call) -> PackagePath | None:
+        package = self.find_package_argument(call)
         return None if package is None else PackagePath(package[0], "", package[1])
 
-    def callee(self, node) -> str:
+    def find_callee(self, node) -> str:
         """The last name of what is called, import aliases resolved."""
         if node.__class__ is ast.Attribute:
             return node.attr
         if node.__class__ is not ast.Name:
             return ""
-        imported = self.imported(node.id)
+        imported = self.find_imported(node.id)
         return imported[0][0].rpartition(".")[2] if imported else node.id
 
-    def package_argument(self, node: ast.Call) -> tuple[str, bool] | None:
+    def find_package_argument(self, node: ast.Call) -> tuple[str, bool] | None:
         """The package a call names, and whether that rests on a launch argument's default."""
         named = [keyword.value for keyword in node.keywords if keyword.arg in ("package", "package_name")]
         given = named[-1:] or node.args
-        return self.package_name(given[0]) if given else None
+        return self.find_package_name(given[0]) if given else None
 
-    def package_name(self, argument) -> tuple[str, bool] | None:
-        value = self.text(argument)
+    def find_package_name(self, argument) -> tuple[str, bool] | None:
+        value = self.find_text(argument)
         if isinstance(value, str) and PACKAGE_NAME.fullmatch(value):
             return value, False
-        if isinstance(argument, ast.Call) and self.callee(argument.func) == "LaunchConfiguration" and argument.args:
-            name = self.text(argument.args[0])
+        if (
+            isinstance(argument, ast.Call)
+            and self.find_callee(argument.func) == "LaunchConfiguration"
+            and argument.args
+        ):
+            name = self.find_text(argument.args[0])
             default = self.launch_defaults.get(name) if isinstance(name, str) else None
             if default and PACKAGE_NAME.fullmatch(default):
                 return default, True
         return None
 
 
-PythonValues.evaluators = node_methods(PythonValues, "value_")
+PythonValues.evaluators = collect_node_methods(PythonValues, "value_")
 
 
-def _flat(value: Any) -> Iterator[Any]:
+def _flatten_list(value: Any) -> Iterator[Any]:
     """The items of a list, of those in it too; what is none as the only one."""
     for item in value if isinstance(value, list) else (value,):
-        yield from _flat(item) if isinstance(item, list) else (item,)
+        yield from _flatten_list(item) if isinstance(item, list) else (item,)

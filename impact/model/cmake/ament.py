@@ -8,23 +8,23 @@ import posixpath
 from .blocks import CommandCall
 from .build import FoundPackage, GeneratedInterfaces
 from .interpreter import Interpreter, handles, stands_in_for
-from .names import name_set
-from .targets import add_links, add_sources, known, makes_archives, note_signature
-from .values import Word, sections, split_words, word
+from .names import make_name_set
+from .targets import add_links, add_sources, makes_archives, note_signature, resolve_target
+from .values import Word, group_by_keyword, split_words, wrap
 
 _CPP_SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
 
 
-def package_name(run: Interpreter) -> str:
+def get_package_name(run: Interpreter) -> str:
     """The name under which the package installs itself."""
     return run.project or run.package
 
 
 @handles("ament_target_dependencies", least=1)
-def ament_target_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """ament_target_dependencies()."""
+def add_target_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """add_target_dependencies()."""
     items = [item for item in split_words(args[1:]) if item != "SYSTEM"]
-    draft = known(run, args[0])
+    draft = resolve_target(run, args[0])
     # What has neither libraries nor targets (Eigen3) is not linked; packages of ROS are taken to have some.
     declared = run.declared.names
     if any(item in declared or "$" in item for item in items):
@@ -45,45 +45,45 @@ _EXPORTS = {
 
 
 @handles(*_EXPORTS)
-def ament_export(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_ament_export(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_export_dependencies() and kin."""
     how = _EXPORTS[call.name]
-    given = sections(args, frozenset({"HAS_LIBRARY_TARGET", "NAMESPACE"}))
+    given = group_by_keyword(args, frozenset({"HAS_LIBRARY_TARGET", "NAMESPACE"}))
     space = str(given["NAMESPACE"][0]) if given.get("NAMESPACE") else ""
     for item in split_words([*given[""], *given.get("HAS_LIBRARY_TARGET", ()), *given.get("NAMESPACE", ())[1:]]):
         # Folders are relative to the install prefix here, unlike in catkin_package().
-        run.add_export(item, how, item.at, run.under(item), space)
+        run.add_export(item, how, item.at, run.merge_with(item), space)
 
 
 @handles("ament_package")
-def ament_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_ament_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_package(CONFIG_EXTRAS ...)."""
     run.refuse_project()
     if not run.silent:
-        run.ament_package = run.place(call.at)
-    given = sections(args, frozenset({"CONFIG_EXTRAS", "CONFIG_EXTRAS_POST"}))
-    held = run.get(f"{package_name(run)}_CONFIG_EXTRAS")
+        run.ament_package = run.locate(call.at)
+    given = group_by_keyword(args, frozenset({"CONFIG_EXTRAS", "CONFIG_EXTRAS_POST"}))
+    held = run.get(f"{get_package_name(run)}_CONFIG_EXTRAS")
     extras = [*given.get("CONFIG_EXTRAS", []), *given.get("CONFIG_EXTRAS_POST", []), *(held.words if held else ())]
     for item in split_words(extras):
-        path = run.tree_path(item)
-        run.add_export(path, "cfg_extras", item.at, run.under(item))
+        path = run.resolve_tree_path(item)
+        run.add_export(path, "cfg_extras", item.at, run.merge_with(item))
         run.hand_on(path, item.at)
 
 
 @handles("ament_package_xml", "catkin_package_xml")
-def package_xml(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def read_package_xml(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_package_xml() and catkin_package_xml(): the version is known from here on."""
     run.refuse_project()
 
 
 @handles("ament_register_extension")
-def ament_register_extension(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def register_extension(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_register_extension(point package file): in a script that is given to others, the file runs for them."""
     if run.handing_on and len(args) >= 3:
-        run.hand_on(run.tree_path(args[2]), call.at)
+        run.hand_on(run.resolve_tree_path(args[2]), call.at)
 
 
-_ROSIDL = name_set(
+_ROSIDL = make_name_set(
     """
     DEPENDENCIES LIBRARY_NAME SKIP_INSTALL SKIP_GROUP_MEMBERSHIP_CHECK ADD_LINTER_TESTS
     """
@@ -91,12 +91,12 @@ _ROSIDL = name_set(
 
 
 @handles("rosidl_generate_interfaces", least=1)
-def rosidl_generate_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def generate_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosidl_generate_interfaces(target files... DEPENDENCIES packages...)."""
     if run.silent:
         return
     target = args[0]
-    given = sections(args[1:], _ROSIDL)
+    given = group_by_keyword(args[1:], _ROSIDL)
     if given.get("LIBRARY_NAME"):
         given[""].extend(given["LIBRARY_NAME"][1:])
     for flag in ("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK", "ADD_LINTER_TESTS"):
@@ -106,17 +106,17 @@ def rosidl_generate_interfaces(run: Interpreter, call: CommandCall, args: list[W
         # `folder:path` gives the folder that the path is relative to.
         base, separator, rest = item.partition(":")
         text = posixpath.join(base, rest) if separator else str(item)
-        path = run.tree_path(word(text, item.at))
+        path = run.resolve_tree_path(wrap(text, item.at))
         files.append(path)
-    wanted = tuple((str(item), run.place(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
+    wanted = tuple((str(item), run.locate(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
     run.generated.append(
         GeneratedInterfaces(
             "rosidl",
             str(target),
             tuple(files),
             wanted,
-            run.place(call.at),
-            run.under(target),
+            run.locate(call.at),
+            run.merge_with(target),
             "SKIP_INSTALL" not in given,
         )
     )
@@ -125,69 +125,69 @@ def rosidl_generate_interfaces(run: Interpreter, call: CommandCall, args: list[W
     run.set_text("rosidl_generate_interfaces_TARGET", str(target), call.at)
     for language in ("rosidl_typesupport_cpp", "rosidl_typesupport_c", "rosidl_generator_c", "rosidl_generator_cpp",
                      "rosidl_generator_py", "cpp", "py"):  # fmt: skip
-        run.new_target(f"{target}__{language}", "generated", target.at)
+        run.ensure_target(f"{target}__{language}", "generated", target.at)
 
 
 @handles("rosidl_target_interfaces", least=2)
-def rosidl_target_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def link_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosidl_target_interfaces(target interfaces typesupport), until Humble."""
-    add_links(run, known(run, args[0]), [args[1]], "interfaces")
+    add_links(run, resolve_target(run, args[0]), [args[1]], "interfaces")
 
 
 @handles("rosidl_get_typesupport_target", least=3)
-def rosidl_get_typesupport_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def get_typesupport_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosidl_get_typesupport_target(variable interfaces typesupport)."""
     run.set_text(args[0], f"{args[1]}__{args[2]}", args[1].at)
 
 
 @handles("rclcpp_components_register_nodes")
-def rclcpp_components_register_nodes(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def register_component_nodes(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rclcpp_components_register_nodes(target classes...)."""
     for item in split_words(args[1:]):
         if item not in ("RESOURCE_INDEX", "rclcpp_components"):
-            run.add_export(item, "component", item.at, run.under(item), str(args[0]))
+            run.add_export(item, "component", item.at, run.merge_with(item), str(args[0]))
 
 
 @handles("rclcpp_components_register_node", least=1)
-def rclcpp_components_register_node(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def register_component_node(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rclcpp_components_register_node(target PLUGIN class EXECUTABLE name): also makes and installs an executable."""
-    given = sections(args[1:], name_set("PLUGIN EXECUTABLE EXECUTOR RESOURCE_INDEX NO_UNDEFINED_SYMBOLS"))
+    given = group_by_keyword(args[1:], make_name_set("PLUGIN EXECUTABLE EXECUTOR RESOURCE_INDEX NO_UNDEFINED_SYMBOLS"))
     programs = given.get("EXECUTABLE", [])[:1]
     for item in given.get("PLUGIN", [])[:1]:
-        program = "".join(run.shown(one) for one in programs)
-        run.add_export(item, "component", item.at, run.under(item), str(args[0]), program)
+        program = "".join(run.clean(one) for one in programs)
+        run.add_export(item, "component", item.at, run.merge_with(item), str(args[0]), program)
     for item in programs:
-        run.new_target(item, "executable", item.at)
-        run.add_install("targets", (str(item),), f"lib/{package_name(run)}", item)
+        run.ensure_target(item, "executable", item.at)
+        run.add_install("targets", (str(item),), f"lib/{get_package_name(run)}", item)
 
 
 @handles("pluginlib_export_plugin_description_file", least=2)
-def pluginlib_export_plugin_description_file(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def export_plugin_description(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """pluginlib_export_plugin_description_file(base_package file): the file is installed too."""
     item = args[1]
-    path = run.tree_path(item)
-    run.add_export(path, "plugin_description", item.at, run.under(item), str(args[0]))
+    path = run.resolve_tree_path(item)
+    run.add_export(path, "plugin_description", item.at, run.merge_with(item), str(args[0]))
     folder = "" if item.startswith("/") else posixpath.dirname(item)
-    destination = posixpath.join("share", package_name(run), folder).rstrip("/")
+    destination = posixpath.join("share", get_package_name(run), folder).rstrip("/")
     run.add_install("files", (path,), destination, item)
 
 
 @handles("ament_python_install_package", "_ament_cmake_python_install_package", least=1)
-def ament_python_install_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def install_python_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_python_install_package(name PACKAGE_DIR folder)."""
-    given = sections(
+    given = group_by_keyword(
         args[1:],
-        name_set("PACKAGE_DIR VERSION SETUP_CFG DESTINATION SCRIPTS_DESTINATION SKIP_COMPILE"),
+        make_name_set("PACKAGE_DIR VERSION SETUP_CFG DESTINATION SCRIPTS_DESTINATION SKIP_COMPILE"),
     )
     folder = given["PACKAGE_DIR"][0] if given.get("PACKAGE_DIR") else args[0]
-    run.add_install("python", (run.tree_path(folder),), str(args[0]), args[0])
+    run.add_install("python", (run.resolve_tree_path(folder),), str(args[0]), args[0])
 
 
 @handles("ament_python_install_module")
-def ament_python_install_module(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def install_python_module(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_python_install_module(file)."""
     for item in args[:1]:
-        run.add_install("python", (run.tree_path(item),), "", item)
+        run.add_install("python", (run.resolve_tree_path(item),), "", item)
 
 
 @handles("generate_parameter_library", "generate_parameter_module", least=2)
@@ -195,14 +195,14 @@ def generate_parameter_library(run: Interpreter, call: CommandCall, args: list[W
     """generate_parameter_library(target yaml [validation header])."""
     if run.silent:
         return
-    files = tuple(run.tree_path(item) for item in args[1:])
+    files = tuple(run.resolve_tree_path(item) for item in args[1:])
     run.generated.append(
-        GeneratedInterfaces("parameters", str(args[0]), files, (), run.place(call.at), run.under(args[0]))
+        GeneratedInterfaces("parameters", str(args[0]), files, (), run.locate(call.at), run.merge_with(args[0]))
     )
-    run.new_target(args[0], "generated", args[0].at)
+    run.ensure_target(args[0], "generated", args[0].at)
 
 
-_TEST_OPTIONS = name_set(
+_TEST_OPTIONS = make_name_set(
     """
     RUNNER TIMEOUT WORKING_DIRECTORY ENV APPEND_ENV APPEND_LIBRARY_DIRS SKIP_LINKING_MAIN_LIBRARIES SKIP_TEST
     SKIP_RETURN_CODE PYTHON_EXECUTABLE COMMAND OUTPUT_FILE RESULT_FILE GENERATE_RESULT_FOR_RETURN_CODE_ZERO ARGS
@@ -212,9 +212,9 @@ _TEST_OPTIONS = name_set(
 _FLAGS = frozenset({"SKIP_LINKING_MAIN_LIBRARIES", "SKIP_TEST", "EXCLUDE_FROM_ALL"})
 
 
-def test_arguments(args: list[Word]) -> dict[str, list[Word]]:
+def group_test_arguments(args: list[Word]) -> dict[str, list[Word]]:
     """Arguments of a test command by keyword; a flag takes none, so sources may follow it."""
-    found = sections(args, _TEST_OPTIONS)
+    found = group_by_keyword(args, _TEST_OPTIONS)
     for flag in _FLAGS:
         found[""].extend(found.get(flag, []))
     return found
@@ -231,65 +231,65 @@ def test_arguments(args: list[Word]) -> dict[str, list[Word]]:
     "ament_add_ros_isolated_gmock",
     "ament_add_catch2",
 )
-def ament_add_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def add_ament_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that are executables."""
     if args:
-        draft = run.new_target(args[0], "test", args[0].at)
-        add_sources(run, draft, test_arguments(args[1:])[""])
+        draft = run.ensure_target(args[0], "test", args[0].at)
+        add_sources(run, draft, group_test_arguments(args[1:])[""])
 
 
 @handles("ament_add_pytest_test", "ament_add_nose_test", "add_launch_test", "add_ros_test", "ament_add_test",
          "ament_add_ros_isolated_pytest_test", "add_ros_isolated_launch_test", least=1)  # fmt: skip
-def ament_add_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def add_ament_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that run a file; add_launch_test() names its test after the file unless TARGET says otherwise."""
-    given = test_arguments(args[1:])
+    given = group_test_arguments(args[1:])
     name = args[0]
     sources = given[""][:1]
     if call.name in ("add_launch_test", "add_ros_test", "add_ros_isolated_launch_test"):
         sources = [name]
-        name = given["TARGET"][0] if given.get("TARGET") else word(name.replace("/", "_"), name.at, name.conditions)
+        name = given["TARGET"][0] if given.get("TARGET") else wrap(name.replace("/", "_"), name.at, name.conditions)
     if name in run.targets:
         return
-    draft = run.new_target(name, "test", name.at)
+    draft = run.ensure_target(name, "test", name.at)
     if call.name != "ament_add_test":
         add_sources(run, draft, sources)
 
 
 @handles("ament_add_gtest_test", "ament_add_gmock_test", "ament_add_google_benchmark_test", "ament_add_test_label")
-def ament_known_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def accept_known_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Commands about a test executable that is there already."""
 
 
 @handles("ament_vendor", least=1)
-def ament_vendor(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """ament_vendor(): downloads and builds a project."""
-    run.new_target(args[0], "external", args[0].at)
+def add_vendor_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """add_vendor_target(): downloads and builds a project."""
+    run.ensure_target(args[0], "external", args[0].at)
 
 
 @handles("ament_auto_find_build_dependencies", "ament_auto_find_test_dependencies")
-def ament_auto_find_build_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """ament_auto_find_build_dependencies() and its twin for tests: find every dependency declared for it."""
-    given = sections(args, frozenset({"REQUIRED"}))
+def find_build_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """find_build_dependencies() and its twin for tests: find every dependency declared for it."""
+    given = group_by_keyword(args, frozenset({"REQUIRED"}))
     required = {str(item) for item in given.get("REQUIRED", [])}
     declared = run.declared.test if call.name.endswith("test_dependencies") else run.declared.build
     names = [name for name in declared if name not in required]
     for item in split_words(given.get("REQUIRED", [])):
-        run.add_found(FoundPackage(str(item), "ament_auto", run.place(item.at), True, conditions=run.under(item)))
+        run.add_found(FoundPackage(str(item), "ament_auto", run.locate(item.at), True, conditions=run.merge_with(item)))
         run.extend(str(item), item.at)
     for name in names:
-        conditions = run.declared.under(name, run.conditions)
-        run.add_found(FoundPackage(name, "ament_auto", run.place(call.at), conditions=conditions))
+        conditions = run.declared.add_condition(name, run.conditions)
+        run.add_found(FoundPackage(name, "ament_auto", run.locate(call.at), conditions=conditions))
         run.extend(name, call.at)
 
 
 @handles("ament_auto_add_library", "ament_auto_add_executable", "ament_auto_add_gtest", "ament_auto_add_gmock", least=1)
-def ament_auto_add_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def add_auto_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ament_auto_add_library() and kin; DIRECTORY takes all sources of a folder."""
     name = args[0]
     kind = {"library": "library", "executable": "executable"}.get(call.name.rpartition("_")[2], "test")
-    given = sections(
+    given = group_by_keyword(
         args[1:],
-        name_set(
+        make_name_set(
             """
     DIRECTORY STATIC SHARED MODULE INTERFACE EXCLUDE_FROM_ALL NO_TARGET_LINK_LIBRARIES
     """
@@ -298,7 +298,7 @@ def ament_auto_add_target(run: Interpreter, call: CommandCall, args: list[Word])
     )
     if "INTERFACE" in given:
         kind = "interface"
-    draft = run.new_target(name, kind, name.at)
+    draft = run.ensure_target(name, kind, name.at)
     if "STATIC" in given:
         draft.installed_as = "static"
     draft.archive = "STATIC" in given or (given.keys().isdisjoint(("SHARED", "MODULE")) and makes_archives(run))
@@ -306,92 +306,92 @@ def ament_auto_add_target(run: Interpreter, call: CommandCall, args: list[Word])
                     "SKIP_LINKING_MAIN_LIBRARIES", "SKIP_TEST"):  # fmt: skip
         add_sources(run, draft, given.get(section, []))
     for directory in given.get("DIRECTORY", []):
-        relative = run.relative(run.resolve(directory))
+        relative = run.make_relative(run.resolve(directory))
         hits = run.glob(posixpath.join(relative, "*"), True) if relative is not None else []
         for path in sorted(hits):
             if path.endswith(_CPP_SOURCES):
-                draft.add_source(path, run.under(directory))
-    if run.path_exists(run.resolve("include"), True):
-        add_links(run, draft, [word("include", call.at)], "include", "PUBLIC")
+                draft.add_source(path, run.merge_with(directory))
+    if run.has_path(run.resolve("include"), True):
+        add_links(run, draft, [wrap("include", call.at)], "include", "PUBLIC")
     if kind in ("executable", "test") and "NO_TARGET_LINK_LIBRARIES" not in given:
         libraries = [made.name for made in run.automatic if made.kind == "library"]
-        add_links(run, draft, [word(name, call.at) for name in libraries], "link")
+        add_links(run, draft, [wrap(name, call.at) for name in libraries], "link")
     dependencies = run.declared.build + (run.declared.test if kind == "test" else ())
-    add_links(run, draft, [word(name, call.at, run.declared.under(name, ())) for name in dependencies], "ament")
+    add_links(run, draft, [wrap(name, call.at, run.declared.add_condition(name, ())) for name in dependencies], "ament")
     if kind == "test":
         framework = f"ament_cmake_{call.name.rpartition('_')[2]}"
-        run.add_found(FoundPackage(framework, "find_package", run.place(call.at), True, True, conditions=run.conditions,
-                            via=call.name))  # fmt: skip
+        run.add_found(FoundPackage(framework, "find_package", run.locate(call.at), True, True,
+                                   conditions=run.conditions, via=call.name))  # fmt: skip
     else:
         run.automatic.append(draft)
 
 
 @handles("ament_auto_package", "autoware_ament_auto_package", "autoware_auto_package")
-def ament_auto_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """ament_auto_package(): installs what ament_auto_add_*() made, include/, and INSTALL_TO_SHARE folders."""
-    given = sections(
+def run_auto_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """run_auto_package(): installs what ament_auto_add_*() made, include/, and INSTALL_TO_SHARE folders."""
+    given = group_by_keyword(
         args,
-        name_set(
+        make_name_set(
             """
     INSTALL_TO_PATH INSTALL_TO_SHARE CONFIG_EXTRAS CONFIG_EXTRAS_POST USE_SCOPED_HEADER_INSTALL_DIR
     """
         ),
     )
-    package = package_name(run)
+    package = get_package_name(run)
     path_destination = "bin" if "INSTALL_TO_PATH" in given else f"lib/{package}"
     for draft in run.automatic:
         destination = path_destination if draft.kind == "executable" else "lib"
         run.add_install("targets", (draft.name,), destination, call, conditions=draft.conditions)
         if draft.kind in ("library", "interface"):
             run.add_export(draft.name, "ament_export_libraries", call.at, run.conditions)
-    include = run.tree_path("include/")
-    if run.path_exists(run.resolve("include"), True):
+    include = run.resolve_tree_path("include/")
+    if run.has_path(run.resolve("include"), True):
         headers = f"include/{package}" if "USE_SCOPED_HEADER_INSTALL_DIR" in given else "include"
         run.add_install("directory", (include,), headers, call)
         run.add_export(headers, "ament_export_include_directories", call.at, run.conditions)
     share = split_words([*given.get("INSTALL_TO_SHARE", []), *given.get("USE_SCOPED_HEADER_INSTALL_DIR", [])])
     for item in share:
-        run.add_install("directory", (run.tree_path(item),), f"share/{package}", item)
+        run.add_install("directory", (run.resolve_tree_path(item),), f"share/{package}", item)
     for dependency in run.declared.build:
         if dependency in run.declared.exported:
-            conditions = run.declared.under(dependency, run.conditions)
+            conditions = run.declared.add_condition(dependency, run.conditions)
             run.add_export(dependency, "ament_export_dependencies", call.at, conditions)
-    ament_package(
+    run_ament_package(
         run, call, [item for item in args if item in ("CONFIG_EXTRAS",) or item in given.get("CONFIG_EXTRAS", [])]
     )
 
 
 @stands_in_for("autoware_package")
-def autoware_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """autoware_package() of autoware_cmake: C++17, ament_cmake_auto, all declared dependencies, Eigen."""
-    _wrapper_standard(run, call, 17)
+def run_autoware_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """run_autoware_package() of autoware_cmake: C++17, ament_cmake_auto, all declared dependencies, Eigen."""
+    _set_wrapper_standard(run, call, 17)
     for name in ("ament_cmake_auto", "eigen3_cmake_module", "Eigen3"):
-        run.add_found(FoundPackage(name, "find_package", run.place(call.at), conditions=run.conditions, via=call.name))
-    ament_auto_find_build_dependencies(run, call, [])
+        run.add_found(FoundPackage(name, "find_package", run.locate(call.at), conditions=run.conditions, via=call.name))
+    find_build_dependencies(run, call, [])
 
 
 @stands_in_for("nav2_package", "moveit_package")
-def compile_defaults(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def set_compile_defaults(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """nav2_package() of nav2_common and moveit_package() of moveit_common: C++17 unless another is set."""
-    _wrapper_standard(run, call, 17)
+    _set_wrapper_standard(run, call, 17)
 
 
 @stands_in_for("set_compiler_options", "export_windows_symbols")
-def ros2_control_defaults(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def set_ros2_control_defaults(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set_compiler_options() and export_windows_symbols() of ros2_control_cmake: warnings, and C++17 unless set."""
     if call.name == "set_compiler_options":
-        _wrapper_standard(run, call, 17)
+        _set_wrapper_standard(run, call, 17)
 
 
-def _wrapper_standard(run: Interpreter, call: CommandCall, number: int) -> None:
+def _set_wrapper_standard(run: Interpreter, call: CommandCall, number: int) -> None:
     if run.get("CMAKE_CXX_STANDARD") is None and not run.silent:
-        run.standards.append((number, run.place(call.at), True, False, run.conditions))
+        run.standards.append((number, run.locate(call.at), True, False, run.conditions))
 
 
 @handles("ament_lint_auto_find_test_dependencies")
-def ament_lint_auto_find_test_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """ament_lint_auto_find_test_dependencies(): finds every declared test dependency."""
+def find_lint_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """find_lint_dependencies(): finds every declared test dependency."""
     for name in run.declared.test:
-        conditions = run.declared.under(name, run.conditions)
-        run.add_found(FoundPackage(name, "ament_lint_auto", run.place(call.at), conditions=conditions))
+        conditions = run.declared.add_condition(name, run.conditions)
+        run.add_found(FoundPackage(name, "ament_lint_auto", run.locate(call.at), conditions=conditions))
         run.extend(name, call.at)

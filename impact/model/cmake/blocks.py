@@ -53,7 +53,7 @@ class Block:
         self.branches: list[tuple[CommandCall, list[CommandCall | Block]]] = [(head, self.body)] if kind == "if" else []
 
 
-def blocks(facts: CMakeFile, path: str) -> tuple[list[CommandCall | Block], list[tuple[At, str]]]:
+def build_blocks(facts: CMakeFile, path: str) -> tuple[list[CommandCall | Block], list[tuple[At, str]]]:
     """The file's commands in their blocks, and what does not match. An end without a start is skipped, a block without
     an end lasts until its parent's."""
     top: list[CommandCall | Block] = []

@@ -160,7 +160,7 @@ class GeneratedInterfaces(msgspec.Struct, frozen=True, array_like=True, gc=False
     @property
     def offered(self) -> bool:
         """Whether others find what is made."""
-        return self.installed and not for_tests(self.conditions)
+        return self.installed and not is_for_tests(self.conditions)
 
 
 class ReadFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -205,7 +205,7 @@ class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...] = ()
 
 
-def for_tests(conditions: Iterable[Condition]) -> bool:
+def is_for_tests(conditions: Iterable[Condition]) -> bool:
     """True for what CMake finds or makes only where tests are built."""
     return any("TESTING" in c.text for c in conditions)
 
@@ -284,7 +284,7 @@ class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):
         """All of them, whatever they are declared for."""
         return frozenset((*self.build, *self.test, *self.exported))
 
-    def under(self, name: str, conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
+    def add_condition(self, name: str, conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
         """The conditions, and that of a declared package."""
         own = self.conditions.get(name)
         return conditions if own is None else (*conditions, own)

@@ -9,11 +9,11 @@ from ...facts.condition import Condition
 from .blocks import CommandCall
 from .build import At, GeneratedInterfaces
 from .interpreter import Interpreter, handles
-from .names import name_set
+from .names import make_name_set
 from .targets import add_links, add_sources, note_made
-from .values import CMakeValue, Word, sections, split_words, word
+from .values import CMakeValue, Word, group_by_keyword, split_words, wrap
 
-_PACKAGE = name_set(
+_PACKAGE = make_name_set(
     """
     INCLUDE_DIRS LIBRARIES CATKIN_DEPENDS DEPENDS CFG_EXTRAS EXPORTED_TARGETS SKIP_CMAKE_CONFIG_GENERATION
     SKIP_PKG_CONFIG_GENERATION
@@ -29,34 +29,34 @@ _PROMISES = {
 
 
 @handles("catkin_package")
-def catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_package()."""
     run.refuse_project()
     if not run.silent:
-        run.catkin_package = run.place(call.at)
+        run.catkin_package = run.locate(call.at)
         opposite = {(held.text, not held.negated) for held in run.conditions}
         run.before_catkin_package = tuple(
             target.name
             for target in run.targets.finish()
             if not any((held.text, held.negated) in opposite for held in target.conditions)
         )
-    for keyword, items in sections(_mark_forgotten(args), _PACKAGE).items():
+    for keyword, items in group_by_keyword(_mark_forgotten(args), _PACKAGE).items():
         how = _PROMISES.get(keyword)
         if how is None:
             continue
         for item in split_words(items):
             text: str = item
             if how == "include_dirs":
-                text = run.tree_path(item)
+                text = run.resolve_tree_path(item)
             elif how == "cfg_extras":
-                text = _extras_path(run, item)
+                text = _resolve_extras_path(run, item)
                 run.hand_on(text, item.at)
-            run.add_export(text, how, item.at, run.under(item))
+            run.add_export(text, how, item.at, run.merge_with(item))
     package = run.project or run.package
     run.set_unknown(f"{package}_EXPORTED_TARGETS", call.at)
 
 
-# cmake_parse_arguments() as a script, which it was before CMake 3.5, forgets what followed a keyword that comes again.
+# parse_cmake_arguments() as a script, which it was before CMake 3.5, forgets what followed a keyword that comes again.
 _KEEPS_ALL = Condition("cmake", "CMAKE_VERSION VERSION_LESS 3.5", negated=True)
 
 
@@ -68,27 +68,27 @@ def _mark_forgotten(args: list[Word]) -> list[Word]:
         if item in last:
             keyword = str(item)
         elif place < last.get(keyword, 0):
-            item = word(item, item.at, (*item.conditions, _KEEPS_ALL), item.sure)
+            item = wrap(item, item.at, (*item.conditions, _KEEPS_ALL), item.sure)
         found.append(item)
     return found
 
 
-def _extras_path(run: Interpreter, item: Word) -> str:
+def _resolve_extras_path(run: Interpreter, item: Word) -> str:
     """The file a CFG_EXTRAS entry is made from: `cmake/x.cmake`, or the same with `.in` or `.em`."""
-    base = run.tree_path(item if "/" in item else word(f"cmake/{item}", item.at))
+    base = run.resolve_tree_path(item if "/" in item else wrap(f"cmake/{item}", item.at))
     return next((path for path in (base, f"{base}.in", f"{base}.em") if run.exists(path)), base)
 
 
 @handles("catkin_metapackage")
-def catkin_metapackage(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """catkin_metapackage()."""
+def run_catkin_metapackage(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """run_catkin_metapackage()."""
     run.refuse_project()
     if not run.silent:
-        run.catkin_package = run.place(call.at)
+        run.catkin_package = run.locate(call.at)
 
 
 _MESSAGE_FOLDERS = {"add_message_files": "msg", "add_service_files": "srv", "add_action_files": "action"}
-_ADD_FILES = name_set("DIRECTORY FILES PACKAGE BASE_DIR NOINSTALL")
+_ADD_FILES = make_name_set("DIRECTORY FILES PACKAGE BASE_DIR NOINSTALL")
 
 
 @handles(*_MESSAGE_FOLDERS)
@@ -97,18 +97,18 @@ def add_interface_files(run: Interpreter, call: CommandCall, args: list[Word]) -
     if run.silent:
         return
     kind = _MESSAGE_FOLDERS[call.name]
-    given = sections(args, _ADD_FILES)
+    given = group_by_keyword(args, _ADD_FILES)
     folder = str(given["DIRECTORY"][0]) if given.get("DIRECTORY") else kind
     files = split_words([*given.get("FILES", []), *given[""]])
     if "FILES" not in given and not files:
-        relative = run.relative(run.resolve(folder))
+        relative = run.make_relative(run.resolve(folder))
         hits = run.glob(posixpath.join(relative, f"*.{kind}"), False) if relative is not None else []
         for path in sorted(hits):
-            run.message_files[(path, run.place(call.at))] = None
+            run.message_files[(path, run.locate(call.at))] = None
         return
     for item in files:
-        path = run.tree_path(word(posixpath.join(folder, item), item.at))
-        run.message_files[(path, run.place(item.at))] = None
+        path = run.resolve_tree_path(wrap(posixpath.join(folder, item), item.at))
+        run.message_files[(path, run.locate(item.at))] = None
 
 
 _GENERATORS = ("cpp", "py", "lisp", "eus", "nodejs")
@@ -119,16 +119,16 @@ def generate_messages(run: Interpreter, call: CommandCall, args: list[Word]) -> 
     """generate_messages(): its targets are X_generate_messages, X_generate_messages_cpp, X_gencpp and so on."""
     if run.silent:
         return
-    given = sections(args, frozenset({"DEPENDENCIES", "LANGS"}))
+    given = group_by_keyword(args, frozenset({"DEPENDENCIES", "LANGS"}))
     package = run.project or run.package
     target = f"{package}_generate_messages"
     files = tuple(path for path, _ in run.message_files)
-    wanted = tuple((str(item), run.place(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
-    run.generated.append(GeneratedInterfaces("catkin", target, files, wanted, run.place(call.at), run.conditions))
-    run.new_target(target, "generated", call.at)
+    wanted = tuple((str(item), run.locate(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
+    run.generated.append(GeneratedInterfaces("catkin", target, files, wanted, run.locate(call.at), run.conditions))
+    run.ensure_target(target, "generated", call.at)
     for language in _GENERATORS:
-        run.new_target(f"{target}_{language}", "generated", call.at)
-        run.new_target(f"{package}_gen{language}", "generated", call.at)
+        run.ensure_target(f"{target}_{language}", "generated", call.at)
+        run.ensure_target(f"{package}_gen{language}", "generated", call.at)
 
 
 @handles("generate_dynamic_reconfigure_options")
@@ -137,29 +137,29 @@ def generate_dynamic_reconfigure_options(run: Interpreter, call: CommandCall, ar
     if run.silent:
         return
     target = f"{run.project or run.package}_gencfg"
-    files = tuple(run.tree_path(item) for item in split_words(args))
-    run.generated.append(GeneratedInterfaces("reconfigure", target, files, (), run.place(call.at), run.conditions))
-    run.new_target(target, "generated", call.at)
+    files = tuple(run.resolve_tree_path(item) for item in split_words(args))
+    run.generated.append(GeneratedInterfaces("reconfigure", target, files, (), run.locate(call.at), run.conditions))
+    run.ensure_target(target, "generated", call.at)
 
 
 @handles("catkin_python_setup")
-def catkin_python_setup(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """catkin_python_setup(): what setup.py names is installed."""
-    item = run.tree_path("setup.py")
+def install_python_setup(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """install_python_setup(): what setup.py names is installed."""
+    item = run.resolve_tree_path("setup.py")
     destination = f"lib/python3/dist-packages/{run.project or run.package}"
     run.add_install("python", (item,), destination, call)
 
 
 @handles("catkin_install_python")
-def catkin_install_python(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def install_python_programs(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_install_python(PROGRAMS ... DESTINATION ...)."""
-    given = sections(args, frozenset({"PROGRAMS", "DESTINATION", "OPTIONAL"}))
-    destination = run.shown(given["DESTINATION"][0]) if given.get("DESTINATION") else ""
+    given = group_by_keyword(args, frozenset({"PROGRAMS", "DESTINATION", "OPTIONAL"}))
+    destination = run.clean(given["DESTINATION"][0]) if given.get("DESTINATION") else ""
     for item in split_words(given.get("PROGRAMS", [])):
-        run.add_install("programs", (run.tree_path(item),), destination, item, rewritten=True)
+        run.add_install("programs", (run.resolve_tree_path(item),), destination, item, rewritten=True)
 
 
-_TEST_OPTIONS = name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARGS")
+_TEST_OPTIONS = make_name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARGS")
 
 
 @handles(
@@ -173,11 +173,11 @@ _TEST_OPTIONS = name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIES ARG
     "rosbuild_add_gtest_build_flags",
     least=1,
 )
-def catkin_add_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """Tests that are executables: catkin_add_gtest(), add_rostest_gtest() and kin."""
+def add_catkin_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """Tests that are executables: add_catkin_gtest(), add_rostest_gtest() and kin."""
     name = args[0]
-    draft = run.new_target(name, "test", name.at)
-    given = sections(args[1:], _TEST_OPTIONS)
+    draft = run.ensure_target(name, "test", name.at)
+    given = group_by_keyword(args[1:], _TEST_OPTIONS)
     sources = given[""]
     if call.name.startswith("add_rostest"):
         sources = [item for item in sources if not item.endswith((".test", ".launch", ".xml"))]
@@ -189,37 +189,37 @@ def catkin_add_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> N
     "add_rostest", "catkin_add_nosetests", "rosbuild_add_rostest", "rosbuild_add_pyunit", "roslaunch_add_file_check",
     least=1,
 )
-def catkin_add_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def add_catkin_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that are launch files or Python: a test target named after the file."""
     item = args[0]
     name = f"{run.package}_{item.replace('/', '_')}"
-    draft = run.new_target(word(name, item.at, item.conditions), "test", item.at)
+    draft = run.ensure_target(wrap(name, item.at, item.conditions), "test", item.at)
     add_sources(run, draft, [item])
-    given = sections(args[1:], _TEST_OPTIONS)
+    given = group_by_keyword(args[1:], _TEST_OPTIONS)
     add_links(run, draft, split_words(given.get("DEPENDENCIES", [])), "order")
 
 
 @handles("catkin_download_test_data", "catkin_download", least=1)
-def catkin_download(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def add_download(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_download_test_data(): a custom target, and the file that it fetches."""
-    run.new_target(args[0], "custom", args[0].at)
-    given = sections(args[1:], frozenset({"DESTINATION", "FILENAME", "MD5"}))
+    run.ensure_target(args[0], "custom", args[0].at)
+    given = group_by_keyword(args[1:], frozenset({"DESTINATION", "FILENAME", "MD5"}))
     for folder in given.get("DESTINATION", []):
-        for name in given.get("FILENAME", []) or [word(posixpath.basename(args[-1]), call.at)]:
+        for name in given.get("FILENAME", []) or [wrap(posixpath.basename(args[-1]), call.at)]:
             note_made(run, run.resolve(posixpath.join(folder, name)))
 
 
 @handles("catkin_add_env_hooks", "catkin_add_env_hooks_", "rosbuild_init", "rosbuild_genmsg", "rosbuild_gensrv")
-def catkin_other(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_minor_command(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Commands that set destinations or nothing at all."""
     if call.name == "rosbuild_init" and not run.project:
         at = At(call.path, call.at.line, call.at.column)
-        run.assign(run.scope, "PROJECT_NAME", CMakeValue((word(run.package, at),)))
+        run.assign(run.scope, "PROJECT_NAME", CMakeValue((wrap(run.package, at),)))
         run.project = run.package
     elif call.name in ("rosbuild_genmsg", "rosbuild_gensrv") and not run.silent:
         kind = call.name[-3:]
-        relative = run.relative(run.resolve(kind))
+        relative = run.make_relative(run.resolve(kind))
         files = tuple(sorted(run.glob(f"{relative}/*.{kind}", False))) if relative is not None else ()
         target = f"ROSBUILD_gen{kind}_cpp"
-        run.generated.append(GeneratedInterfaces("catkin", target, files, (), run.place(call.at), run.conditions))
-        run.new_target(target, "generated", call.at)
+        run.generated.append(GeneratedInterfaces("catkin", target, files, (), run.locate(call.at), run.conditions))
+        run.ensure_target(target, "generated", call.at)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ...conditions.cmake import COMPARISONS, NUMBER, CMakeTest, Token, constant
+from ...conditions.cmake import COMPARISONS, NUMBER, CMakeTest, Token, parse_constant
 from .names import SINCE
 from .regex import match
 from .values import split_list
@@ -19,15 +19,15 @@ _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*\Z")
 
 def evaluate(tokens: Sequence[Token], world: Interpreter) -> bool | None:
     """The value of a condition, None when it depends on what is not known or is malformed."""
-    return _InWorld(tokens, world).whole() if tokens else False
+    return _InWorld(tokens, world).evaluate_tokens() if tokens else False
 
 
-def text_of(tokens: Sequence[Token]) -> str:
+def format_condition(tokens: Sequence[Token]) -> str:
     """The condition for a reader: arguments with one space between them."""
     return " ".join(token.text if token.text else '""' for token in tokens)
 
 
-def version_key(text: str) -> tuple[int, ...]:
+def make_version_key(text: str) -> tuple[int, ...]:
     """A version as CMake compares it: leading digits of each component, trailing zeros ignored."""
     numbers: list[int] = []
     for part in text.split("."):
@@ -49,13 +49,13 @@ class _InWorld(CMakeTest):
         super().__init__(tokens)
         self.world = world
 
-    def truth(self, token: Token) -> bool | None:
+    def evaluate_argument(self, token: Token) -> bool | None:
         if not token.sure:
             return None
-        value = constant(token.text)
+        value = parse_constant(token.text)
         if value is not None:
             return value
-        if token.quoted and self.world.quotes_protect():
+        if token.quoted and self.world.protects_quoted():
             return False
         held = self.world.variable(token.text)
         if held is None:
@@ -66,10 +66,10 @@ class _InWorld(CMakeTest):
             return None
         if not held.defined:
             return False
-        value = constant(held.text)
+        value = parse_constant(held.text)
         return True if value is None else value
 
-    def unary(self, kind: str, operand: Token) -> bool | None:
+    def evaluate_unary(self, kind: str, operand: Token) -> bool | None:
         if kind == "DEFINED":
             if not operand.sure or operand.text.startswith(("ENV{", "CACHE{")):
                 return None
@@ -87,29 +87,29 @@ class _InWorld(CMakeTest):
         if kind == "COMMAND":
             return self.world.is_command(text)
         if kind == "EXISTS":
-            return self.world.path_exists(text, False)
+            return self.world.has_path(text, False)
         if kind == "IS_DIRECTORY":
-            return self.world.path_exists(text, True)
+            return self.world.has_path(text, True)
         if kind == "IS_ABSOLUTE":
             return text.startswith("/")
         return None
 
-    def operand(self, token: Token, left: bool) -> tuple[str, bool]:
+    def resolve_operand(self, token: Token, left: bool) -> tuple[str, bool]:
         """Text of an operand after automatic dereference, and whether it is known."""
         if not token.sure:
             return token.text, False
-        if token.quoted and self.world.quotes_protect():
+        if token.quoted and self.world.protects_quoted():
             return token.text, True
         held = self.world.variable(token.text)
         if held is not None and (held.defined or not token.quoted):
             return (held.text, held.sure) if held.defined else (token.text, True)
         # A name on the left that nothing sets is a variable of somebody else's (CMAKE_BUILD_TYPE), not a text.
         if left and token.written and not token.quoted and _IDENTIFIER.match(token.text):
-            return token.text, constant(token.text) is not None
+            return token.text, parse_constant(token.text) is not None
         return token.text, True
 
-    def binary(self, left: Token, kind: str, right: Token) -> bool | None:
-        one, one_known = self.operand(left, True)
+    def evaluate_comparison(self, left: Token, kind: str, right: Token) -> bool | None:
+        one, one_known = self.resolve_operand(left, True)
         if kind == "IN_LIST":
             held = self.world.variable(right.text)
             if held is None or not one_known:
@@ -123,13 +123,13 @@ class _InWorld(CMakeTest):
             groups = match(right.text, one, self.world.spend)
             if groups is None or groups is False:
                 return groups
-            self.world.matched(groups)
+            self.world.set_match_groups(groups)
             return True
-        other, other_known = self.operand(right, False)
+        other, other_known = self.resolve_operand(right, False)
         if not one_known or not other_known:
             return None
         if kind.startswith("VERSION_"):
-            return COMPARISONS[kind[8:]](version_key(one), version_key(other))
+            return COMPARISONS[kind[8:]](make_version_key(one), make_version_key(other))
         if kind.startswith("STR"):
             return COMPARISONS[kind[3:]](one, other)
         if kind == "PATH_EQUAL":

@@ -9,7 +9,7 @@ from .build import At, BuildTarget, Link
 class TargetDraft(msgspec.Struct, eq=False):
     """A BuildTarget that still grows; lists keep the order of the commands. sources: path to the conditions under which
     it was added. installed_as: the artifact: executable, library, static or module. signatures: of
-    target_link_libraries(), True with keywords, False without, each with the conditions of its first call."""
+    link_target_libraries(), True with keywords, False without, each with the conditions of its first call."""
 
     name: str
     kind: str

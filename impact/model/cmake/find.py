@@ -6,13 +6,13 @@ from .blocks import CommandCall
 from .build import At, FoundPackage
 from .interpreter import Interpreter, handles
 from .language import add_module
-from .names import name_set, names
-from .values import REFERENCE, CMakeValue, Word, merge, sections, split_words, word
+from .names import make_name_set, split_names
+from .values import REFERENCE, CMakeValue, Word, group_by_keyword, merge, split_words, wrap
 
 _VERSION = re.compile(r"\d[\d.]*(?:\.\.\.<?\d[\d.]*)?\Z")
 _PKG_SPEC = re.compile(r"(.+?)\s*(>=|<=|=|>|<)\s*(\d.*)\Z")
 
-_FLAGS = name_set(
+_FLAGS = make_name_set(
     """
     EXACT QUIET REQUIRED MODULE CONFIG NO_MODULE NO_POLICY_SCOPE GLOBAL BYPASS_PROVIDER NO_DEFAULT_PATH
     NO_PACKAGE_ROOT_PATH NO_CMAKE_PATH NO_CMAKE_ENVIRONMENT_PATH NO_SYSTEM_ENVIRONMENT_PATH NO_CMAKE_PACKAGE_REGISTRY
@@ -20,7 +20,7 @@ _FLAGS = name_set(
     CMAKE_FIND_ROOT_PATH_BOTH ONLY_CMAKE_FIND_ROOT_PATH NO_CMAKE_FIND_ROOT_PATH
     """
 )
-_LISTS = name_set(
+_LISTS = make_name_set(
     """
     NAMES CONFIGS HINTS PATHS PATH_SUFFIXES REGISTRY_VIEW COMPONENTS OPTIONAL_COMPONENTS DOC ENV VALIDATOR
     """
@@ -80,10 +80,10 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
     components = [item for item in components if not is_unknown(item)]
     required = "REQUIRED" in flags
     quiet = "QUIET" in flags
-    conditions = run.under(name)
+    conditions = run.merge_with(name)
     add_module(run, f"Find{name}")
     if name == "catkin":
-        run.add_found(FoundPackage(name="catkin", how="find_package", at=run.place(name.at), required=required,
+        run.add_found(FoundPackage(name="catkin", how="find_package", at=run.locate(name.at), required=required,
                             quiet=quiet,
                             version=version, conditions=conditions))  # fmt: skip
         for component in split_words(components):
@@ -106,12 +106,12 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
             FoundPackage(
                 str(one),
                 "find_package",
-                run.place(one.at),
+                run.locate(one.at),
                 required and alone,
                 quiet or not alone,
                 version,
                 "EXACT" in flags,
-                tuple((str(component), run.place(component.at)) for component in components),
+                tuple((str(component), run.locate(component.at)) for component in components),
                 tuple(str(component) for component in optional),
                 "",
                 conditions,
@@ -122,7 +122,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
             run.use_feature(f"Find{name}", name.at)
         _run_module(run, call, str(name))
     if required:
-        found = CMakeValue((word("1", call.at),))
+        found = CMakeValue((wrap("1", call.at),))
         run.assign(run.scope, f"{name}_FOUND", found)
         if name.upper() != name:
             run.assign(run.scope, f"{name.upper()}_FOUND", found)
@@ -137,7 +137,7 @@ def _run_module(run: Interpreter, call: CommandCall, name: str) -> None:
     its own affair, and its variables are set to what is not known."""
     held = run.get("CMAKE_MODULE_PATH")
     for directory in held.words if held is not None else ():
-        path = run.relative(run.resolve(f"{directory}/Find{name}.cmake")) if directory else None
+        path = run.make_relative(run.resolve(f"{directory}/Find{name}.cmake")) if directory else None
         if path is None or run.load(path) is None or path in run.including:
             continue
         before = run.scope
@@ -156,16 +156,16 @@ def _run_module(run: Interpreter, call: CommandCall, name: str) -> None:
 
 
 @handles("gz_find_package", "ign_find_package", least=1)
-def gz_find_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """gz_find_package() of gz-cmake: a name, VERSION, REQUIRED and COMPONENTS count."""
-    given = sections(args[1:], _GZ)
+def find_gz_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """find_gz_package() of gz-cmake: a name, VERSION, REQUIRED and COMPONENTS count."""
+    given = group_by_keyword(args[1:], _GZ)
     version = given.get("VERSION", [])[:1]
     extra = [item for item in args[1:] if item in ("REQUIRED", "QUIET", "EXACT")]
     keyword = [item for item in args if item == "COMPONENTS"]
     _find(run, call, args[0], [*version, *extra, *keyword, *given.get("COMPONENTS", [])])
 
 
-_GZ = name_set(
+_GZ = make_name_set(
     """
     REQUIRED EXACT QUIET CONFIG BUILD_ONLY PKGCONFIG_IGNORE VERSION PRETTY PURPOSE EXTRA_ARGS PKGCONFIG PKGCONFIG_LIB
     PKGCONFIG_VER_COMPARISON REQUIRED_BY PRIVATE_FOR COMPONENTS OPTIONAL_COMPONENTS
@@ -184,11 +184,11 @@ def add(
     conditions: tuple = (),
 ) -> None:
     """Collects one package by name."""
-    place = run.place(at if at is not None else name.at)
-    run.add_found(FoundPackage(str(name), how, place, required, quiet, conditions=conditions or run.under(name)))
+    place = run.locate(at if at is not None else name.at)
+    run.add_found(FoundPackage(str(name), how, place, required, quiet, conditions=conditions or run.merge_with(name)))
 
 
-def _catkin(run: Interpreter, call: CommandCall) -> None:
+def _set_catkin_variables(run: Interpreter, call: CommandCall) -> None:
     """What find_package(catkin) sets; destinations as documented for catkin_package()."""
     package = run.project or run.package
     values = {
@@ -207,25 +207,25 @@ def _catkin(run: Interpreter, call: CommandCall) -> None:
         "CATKIN_GLOBAL_SHARE_DESTINATION": "share",
     }
     for name, text in values.items():
-        run.assign(run.scope, name, CMakeValue((word(text, call.at),)))
+        run.assign(run.scope, name, CMakeValue((wrap(text, call.at),)))
 
 
-_FINDING = {"catkin": _catkin}
+_FINDING = {"catkin": _set_catkin_variables}
 
 
 @handles("catkin_destinations")
-def catkin_destinations(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def set_catkin_destinations(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_destinations() sets what find_package(catkin) and project() set together."""
     run.catkin_destinations = True
-    _catkin(run, call)
+    _set_catkin_variables(run, call)
 
 
-_PKG_FLAGS = name_set(
+_PKG_FLAGS = make_name_set(
     """
     REQUIRED QUIET IMPORTED_TARGET GLOBAL NO_CMAKE_PATH NO_CMAKE_ENVIRONMENT_PATH STATIC_TARGET
     """
 )
-_PKG_VARIABLES = names(
+_PKG_VARIABLES = split_names(
     """
     LIBRARIES LINK_LIBRARIES LIBRARY_DIRS LDFLAGS LDFLAGS_OTHER INCLUDE_DIRS CFLAGS CFLAGS_OTHER VERSION PREFIX
     INCLUDEDIR LIBDIR
@@ -234,8 +234,8 @@ _PKG_VARIABLES = names(
 
 
 @handles("pkg_check_modules", "pkg_search_module", least=2)
-def pkg_check_modules(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """pkg_check_modules() and pkg_search_module(), with version bounds."""
+def check_pkgconfig_modules(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """check_pkgconfig_modules() and pkg_search_module(), with version bounds."""
     prefix = str(args[0])
     flags = {str(item) for item in args[1:] if item in _PKG_FLAGS}
     modules = split_words(item for item in args[1:] if item not in _PKG_FLAGS)
@@ -259,7 +259,7 @@ def pkg_check_modules(run: Interpreter, call: CommandCall, args: list[Word]) -> 
             FoundPackage(
                 name,
                 "pkg_check_modules",
-                run.place(item.at),
+                run.locate(item.at),
                 required,
                 "QUIET" in flags,
                 version,
@@ -267,7 +267,7 @@ def pkg_check_modules(run: Interpreter, call: CommandCall, args: list[Word]) -> 
                 (),
                 others,
                 prefix,
-                run.under(item),
+                run.merge_with(item),
             )
         )
     for suffix in _PKG_VARIABLES:
@@ -277,10 +277,10 @@ def pkg_check_modules(run: Interpreter, call: CommandCall, args: list[Word]) -> 
     elif run.get(f"{prefix}_FOUND") is not None:
         run.set_unknown(f"{prefix}_FOUND", call.at)
     if "IMPORTED_TARGET" in flags:
-        run.new_target(f"PkgConfig::{prefix}", "imported", args[0].at)
+        run.ensure_target(f"PkgConfig::{prefix}", "imported", args[0].at)
 
 
-_LOCATE_STOPS = name_set(
+_LOCATE_STOPS = make_name_set(
     """
     HINTS PATHS PATH_SUFFIXES DOC NO_CACHE REQUIRED NO_DEFAULT_PATH NO_PACKAGE_ROOT_PATH NO_CMAKE_PATH
     NO_CMAKE_ENVIRONMENT_PATH NO_SYSTEM_ENVIRONMENT_PATH NO_CMAKE_SYSTEM_PATH NO_CMAKE_INSTALL_PREFIX
@@ -312,24 +312,24 @@ def locate(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         FoundPackage(
             str(first),
             call.name,
-            run.place(first.at),
+            run.locate(first.at),
             "REQUIRED" in args,
             optional_components=tuple(str(name) for name in names[1:]),
             prefix=variable,
-            conditions=run.under(first),
+            conditions=run.merge_with(first),
         )
     )
 
 
 @handles("fetchcontent_declare", least=1)
-def fetchcontent_declare(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def declare_fetched_content(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """FetchContent_Declare(): names a project that is downloaded while configuring."""
     run.properties[f"FETCH {args[0].lower()}"] = CMakeValue((args[0],))
     run.add_tools(args)
 
 
 @handles("fetchcontent_makeavailable", "fetchcontent_populate", "fetchcontent_getproperties")
-def fetchcontent_makeavailable(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def make_content_available(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """FetchContent_MakeAvailable(): the project's targets are there, but cannot be seen."""
     for name in args if call.name == "fetchcontent_makeavailable" else args[:1]:
         lower = name.lower()
@@ -339,19 +339,19 @@ def fetchcontent_makeavailable(run: Interpreter, call: CommandCall, args: list[W
             for variable in args[2::2]:
                 run.set_unknown(variable, call.at)
         else:
-            draft = run.new_target(name, "fetched", name.at)
+            draft = run.ensure_target(name, "fetched", name.at)
             draft.alias_of = ""
 
 
 @handles("externalproject_add", least=1)
-def externalproject_add(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def add_external_project(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ExternalProject_Add(): a custom target that downloads and builds."""
-    run.new_target(args[0], "external", args[0].at)
+    run.ensure_target(args[0], "external", args[0].at)
     run.add_tools(args)
 
 
 @handles("externalproject_get_property")
-def externalproject_get_property(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def get_external_property(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """ExternalProject_Get_Property(): folders that are not known before the build."""
     for name in args[1:]:
         run.set_unknown(name, call.at)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 
 from ...facts.condition import Condition
-from .values import Word, split_list, word
+from .values import Word, split_list, wrap
 
 _MAX_DEPTH = 20
 
@@ -26,7 +26,7 @@ def rejoin(items: list[Word]) -> list[Word]:
     for item in items:
         if open_count > 0:
             last = joined[-1]
-            joined[-1] = word(f"{last};{item}", last.at, last.conditions, last.sure)
+            joined[-1] = wrap(f"{last};{item}", last.at, last.conditions, last.sure)
         else:
             joined.append(item)
             open_count = 0
@@ -34,7 +34,7 @@ def rejoin(items: list[Word]) -> list[Word]:
     return joined
 
 
-def reduced(item: Word) -> Iterator[Word]:
+def reduce_expression(item: Word) -> Iterator[Word]:
     """The items an argument may stand for: itself when it is no generator expression, else what lies inside, under the
     expression's test as a condition. What only counts after installation is left out."""
     if "$<" not in item:
@@ -45,10 +45,10 @@ def reduced(item: Word) -> Iterator[Word]:
 
 def _reduce(text: str, origin: Word, tests: tuple[Condition, ...], depth: int) -> Iterator[Word]:
     for part in _split(text):
-        if not part.startswith("$<") or depth > _MAX_DEPTH or next(_outside(part[2:], ">"), -1) != len(part) - 3:
-            yield word(part, origin.at, origin.conditions + tests, origin.sure)
+        if not part.startswith("$<") or depth > _MAX_DEPTH or next(_find_unnested(part[2:], ">"), -1) != len(part) - 3:
+            yield wrap(part, origin.at, origin.conditions + tests, origin.sure)
             continue
-        head, content = _halves(part[2:-1])
+        head, content = _split_head(part[2:-1])
         if head in _WRAPPERS:
             yield from _reduce(content, origin, tests, depth + 1)
         elif head in _DROPPED:
@@ -63,12 +63,12 @@ def _reduce(text: str, origin: Word, tests: tuple[Condition, ...], depth: int) -
         elif head.startswith("$<") and content:
             yield from _reduce(content, origin, (*tests, Condition("cmake", head)), depth + 1)
         else:
-            yield word(part, origin.at, origin.conditions + tests, origin.sure)
+            yield wrap(part, origin.at, origin.conditions + tests, origin.sure)
 
 
-def _halves(inner: str) -> tuple[str, str]:
+def _split_head(inner: str) -> tuple[str, str]:
     """An expression's head and what follows its first colon outside of nested expressions."""
-    colon = next(_outside(inner, ":"), len(inner))
+    colon = next(_find_unnested(inner, ":"), len(inner))
     return inner[:colon], inner[colon + 1 :]
 
 
@@ -83,11 +83,11 @@ def _split(text: str) -> list[str]:
 
 def _cut(text: str, separator: str) -> list[str]:
     """The parts of a text between separators outside of nested expressions."""
-    ends = [*_outside(text, separator), len(text)]
+    ends = [*_find_unnested(text, separator), len(text)]
     return [text[begin:end] for begin, end in zip([0, *(end + 1 for end in ends)], ends, strict=False)]
 
 
-def _outside(text: str, mark: str) -> Iterator[int]:
+def _find_unnested(text: str, mark: str) -> Iterator[int]:
     """Offsets of a character outside of nested expressions; of `>`, where it closes none."""
     depth = 0
     for token in re.finditer(rf"\$<|>|{mark}", text):

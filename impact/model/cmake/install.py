@@ -5,15 +5,15 @@ import re
 from ...facts.condition import Condition
 from .blocks import CommandCall
 from .interpreter import Interpreter, handles
-from .names import name_set
-from .values import Word, following, merge, split_words
+from .names import make_name_set
+from .values import Word, find_next, merge, split_words
 
-_ARTIFACTS = name_set(
+_ARTIFACTS = make_name_set(
     """
     ARCHIVE LIBRARY RUNTIME OBJECTS FRAMEWORK BUNDLE PRIVATE_HEADER PUBLIC_HEADER RESOURCE
     """
 )
-_KEYWORDS = name_set(
+_KEYWORDS = make_name_set(
     """
     DESTINATION PERMISSIONS CONFIGURATIONS COMPONENT RENAME OPTIONAL EXCLUDE_FROM_ALL EXPORT TYPE FILE_PERMISSIONS
     DIRECTORY_PERMISSIONS USE_SOURCE_PERMISSIONS MESSAGE_NEVER FILES_MATCHING PATTERN REGEX EXCLUDE NAMELINK_ONLY
@@ -52,27 +52,27 @@ def install(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         for name in _OF_CATKIN_PACKAGE.findall(" ".join(argument.text for argument in call.arguments)):
             run.use_variable(name, call.at)
     if form in ("TARGETS", "IMPORTED_RUNTIME_ARTIFACTS"):
-        _targets(run, call, args[1:])
+        _install_targets(run, call, args[1:])
     elif form in ("FILES", "PROGRAMS"):
-        _files(run, call, form.lower(), args[1:])
+        _install_files(run, call, form.lower(), args[1:])
     elif form == "DIRECTORY":
-        _directory(run, call, args[1:])
+        _install_directory(run, call, args[1:])
     elif form == "EXPORT" and len(args) > 1:
-        destination = following(args, "DESTINATION") or ""
-        space = str(following(args, "NAMESPACE") or "")
-        run.add_install("export", (str(args[1]),), run.shown(destination), args[1], namespace=space)
+        destination = find_next(args, "DESTINATION") or ""
+        space = str(find_next(args, "NAMESPACE") or "")
+        run.add_install("export", (str(args[1]),), run.clean(destination), args[1], namespace=space)
 
 
 @handles("install_targets", "install_files", "install_programs")
-def old_install(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_old_install(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """install_targets() and kin, as CMake had them before install()."""
     if len(args) > 1:
         kind = call.name.partition("_")[2]
-        items = [str(item) if kind == "targets" else run.tree_path(item) for item in args[1:]]
-        run.add_install(kind, items, run.shown(args[0].lstrip("/")), call)
+        items = [str(item) if kind == "targets" else run.resolve_tree_path(item) for item in args[1:]]
+        run.add_install(kind, items, run.clean(args[0].lstrip("/")), call)
 
 
-def _targets(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def _install_targets(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     names: list[Word] = []
     destinations: dict[str, str] = {}
     artifact = ""
@@ -96,9 +96,9 @@ def _targets(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             if item == "INCLUDES":
                 artifact = "INCLUDES"
         elif expecting == "DESTINATION" and artifact == "INCLUDES":
-            includes.append(run.shown(item))
+            includes.append(run.clean(item))
         elif expecting == "DESTINATION":
-            destinations.setdefault(artifact, run.shown(item))
+            destinations.setdefault(artifact, run.clean(item))
             expecting = ""
         elif expecting == "EXPORT":
             export = str(item)
@@ -118,13 +118,13 @@ def _targets(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             destination = fallback or destinations.get("LIBRARY") or destinations.get("ARCHIVE", "")
         else:
             destination = fallback or destinations.get("LIBRARY") or destinations.get("RUNTIME", "")
-        rules.setdefault((destination, run.under(name)), []).append(name)
+        rules.setdefault((destination, run.merge_with(name)), []).append(name)
     for (destination, conditions), members in rules.items():
         more = {"conditions": conditions, "export": export, "includes": tuple(includes)}
         run.add_install("targets", map(str, members), destination, members[0], **more)
 
 
-def _files(run: Interpreter, call: CommandCall, kind: str, args: list[Word]) -> None:
+def _install_files(run: Interpreter, call: CommandCall, kind: str, args: list[Word]) -> None:
     items: list[Word] = []
     for item in args:
         if item in _KEYWORDS:
@@ -132,27 +132,27 @@ def _files(run: Interpreter, call: CommandCall, kind: str, args: list[Word]) -> 
         items.append(item)
     if kind == "files" and "PERMISSIONS" in args and any(item.endswith("_EXECUTE") for item in args):
         kind = "programs"
-    destination = _destination(run, call, args)
+    destination = _resolve_destination(run, call, args)
     items = split_words(items)
     by_conditions: dict[tuple[Condition, ...], list[Word]] = {}
     for item in items:
         by_conditions.setdefault(item.conditions, []).append(item)
     for conditions, members in by_conditions.items():
-        more = {"conditions": merge(run.conditions, conditions), "rename": run.shown(following(args, "RENAME") or "")}
-        paths = tuple(map(run.tree_path, members))
+        more = {"conditions": merge(run.conditions, conditions), "rename": run.clean(find_next(args, "RENAME") or "")}
+        paths = tuple(map(run.resolve_tree_path, members))
         for path in paths:
             if _CONFIGURATION.search(path):
                 run.hand_on(path, call.at, whole=True)
         run.add_install(kind, paths, destination, members[0] if len(members) == 1 else call, **more)
 
 
-def _destination(run: Interpreter, call: CommandCall, args: list[Word]) -> str:
+def _resolve_destination(run: Interpreter, call: CommandCall, args: list[Word]) -> str:
     """Where files go: empty where the call surely does not say so, at which CMake stops."""
-    destination = run.shown(following(args, "DESTINATION") or "") or _TYPES.get(following(args, "TYPE") or "", "")
+    destination = run.clean(find_next(args, "DESTINATION") or "") or _TYPES.get(find_next(args, "TYPE") or "", "")
     return destination or ("${DESTINATION}" if any("$" in argument.text for argument in call.arguments) else "")
 
 
-def _directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def _install_directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     items: list[Word] = []
     patterns: list[str] = []
     mode = ""
@@ -168,7 +168,7 @@ def _directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         elif mode in ("PATTERN", "REGEX"):
             patterns.append(f"~{item}" if mode == "REGEX" else str(item))
             mode = ""
-    paths = tuple(run.tree_path(item) for item in split_words(items))
+    paths = tuple(run.resolve_tree_path(item) for item in split_words(items))
     executable = "USE_SOURCE_PERMISSIONS" in args or any(item.endswith("_EXECUTE") for item in args)
     more = {"patterns": tuple(patterns), "only": "FILES_MATCHING" in args, "executable": executable}
-    run.add_install("directory", paths, _destination(run, call, args), call, **more)
+    run.add_install("directory", paths, _resolve_destination(run, call, args), call, **more)

@@ -26,7 +26,7 @@ class InstalledHeaders(NamedTuple):
     known: bool
 
 
-def installed_headers(package: Package) -> InstalledHeaders:
+def collect_installed_headers(package: Package) -> InstalledHeaders:
     """The headers that the package's rules install, whatever condition they stand under."""
     found: dict[str, str] = {}
     known = not package.build.unresolved
@@ -40,7 +40,7 @@ def installed_headers(package: Package) -> InstalledHeaders:
         if not f"{destination}/".startswith("include/"):
             continue
         known = known and not any("$" in item for item in install.items)
-        for path, place in copied_files(install, destination, package.digest.files):
+        for path, place in list_copied_files(install, destination, package.digest.files):
             if HEADER_NAME.search(place):
                 found[path] = place
     if any(found_.how == "ament_auto" for found_ in package.build.found):
@@ -48,7 +48,7 @@ def installed_headers(package: Package) -> InstalledHeaders:
     return InstalledHeaders(found, known)
 
 
-def copied_files(install: Install, destination: str, files: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+def list_copied_files(install: Install, destination: str, files: tuple[str, ...]) -> Iterator[tuple[str, str]]:
     """(path in the tree, path in the prefix) of the files that an install rule copies; items that hold a variable are
     passed over."""
     for item in install.items:

@@ -13,7 +13,7 @@ _FAMILIES = (language, lists, paths, find, targets, install, catkin, ament)
 
 
 
-def _no_extras(package: str) -> tuple[str, ...]:
+def _list_no_extras(package: str) -> tuple[str, ...]:
     return ()
 
 
@@ -28,7 +28,7 @@ def interpret(
     test_dependencies: tuple[str, ...] = (),
     exported_dependencies: tuple[str, ...] | None = None,
     conditional_dependencies: Mapping[str, Condition] | None = None,
-    extras: Callable[[str], tuple[str, ...]] = _no_extras,
+    extras: Callable[[str], tuple[str, ...]] = _list_no_extras,
 ) -> Build:
     """Interprets the CMakeLists.txt of a package, and all that it includes, without building.
 
@@ -36,7 +36,7 @@ def interpret(
     None when there is none; exists tells about files (what is a folder is asked through glob); glob(pattern,
     recursive) lists the files that match a pattern whose last part may hold wildcards, in all folders below when
     recursive; neither is relied upon outside of the package. package: its name in package.xml. extras: the CMake files
-    that another package of the workspace gives to those that find it, see extras_of().
+    that another package of the workspace gives to those that find it, see list_extras().
 
     For ament_cmake_auto and ament_lint_auto, what package.xml declares: dependencies to build with (build and
     buildtool), test_dependencies, exported_dependencies (build_export, buildtool_export and exec; None counts all of
@@ -53,7 +53,7 @@ def interpret(
     return Interpreter(package_path, read, exists, glob, package, declared, extras).run()
 
 
-def extras_of(package_path: str, glob: Callable[[str, bool], list[str]]) -> tuple[str, ...]:
+def list_extras(package_path: str, glob: Callable[[str, bool], list[str]]) -> tuple[str, ...]:
     """The files from which dependants of a package get its functions and macros.
 
     These are all CMake files in its `cmake` folder and beside its CMakeLists.txt, templates included. The caller reads

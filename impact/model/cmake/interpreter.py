@@ -13,11 +13,11 @@ from typing import Any
 
 from msgspec import structs
 
-from ...conditions.cmake import asks_only_for_packages, packages_asked
+from ...conditions.cmake import asks_only_for_packages, list_tested_packages
 from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
 from . import conditions as tests
-from .blocks import Block, CommandCall, blocks
+from .blocks import Block, CommandCall, build_blocks
 from .build import (
     At,
     Build,
@@ -43,15 +43,15 @@ from .values import (
     CMakeValue,
     Template,
     Word,
+    add_conditions,
+    find_position,
     join,
+    make_unsure,
     merge,
-    position,
     read_references,
     split_list,
     split_words,
-    unsure,
-    with_conditions,
-    word,
+    wrap,
 )
 
 # The tree, the build folder and the install prefix as they look from inside; no real path starts like this.
@@ -186,7 +186,7 @@ class Interpreter:
     def run(self) -> Build:
         """Interprets the package from its CMakeLists.txt on."""
         path = posixpath.join(self.package_path, "CMakeLists.txt")
-        source = self.absolute(self.package_path)
+        source = self.make_absolute(self.package_path)
         self.predefine(source)
         body = self.load(path)
         if body is not None:
@@ -195,7 +195,7 @@ class Interpreter:
                 self.run_body(body)
             except _TooMuch as stop:
                 self.unresolved[(At(path, 1), str(stop))] = None
-        return self.result()
+        return self.build_result()
 
     def predefine(self, source: str) -> None:
         """Variables that CMake sets itself, on Linux with GCC."""
@@ -234,14 +234,14 @@ class Interpreter:
             "CMAKE_INSTALL_LIBEXECDIR": "libexec",
         }
         for name, text in known.items():
-            self.scope[name] = CMakeValue((word(text, at),))
-        empty = CMakeValue((word("", at),))
+            self.scope[name] = CMakeValue((wrap(text, at),))
+        empty = CMakeValue((wrap("", at),))
         for name in FALSE_PLATFORMS:
             self.scope[name] = empty
         for name in ("CMAKE_CXX_FLAGS", "CMAKE_C_FLAGS", "CMAKE_MODULE_PATH", "CMAKE_PREFIX_PATH"):
-            self.scope[name] = unsure(empty)
+            self.scope[name] = make_unsure(empty)
 
-    def result(self) -> Build:
+    def build_result(self) -> Build:
         """What was collected."""
         self.compile_passed()
         standard = None
@@ -261,12 +261,12 @@ class Interpreter:
             targets=self.targets.finish(),
             catkin_package=self.catkin_package,
             ament_package=self.ament_package,
-            project_by_variable=self._project_by_variable(),
+            project_by_variable=self._uses_project_name(),
             before_catkin_package=self.before_catkin_package,
             **{name: tuple(getattr(self, name)) for name in _COLLECTED},
         )
 
-    def _project_by_variable(self) -> bool:
+    def _uses_project_name(self) -> bool:
         facts = self.read(posixpath.join(self.package_path, "CMakeLists.txt"))
         return facts is not None and any(
             "${PROJECT_NAME}" in argument.text
@@ -283,7 +283,7 @@ class Interpreter:
         if facts is None:
             self.parsed[path] = None
             return None
-        body, problems = blocks(facts, path)
+        body, problems = build_blocks(facts, path)
         self.parsed[path] = body
         if not self.silent:
             self.files[path] = None
@@ -340,7 +340,7 @@ class Interpreter:
         if _FINDER.search(call.name) and call.name not in MODULE_OF:
             for item in words:
                 if not item.isupper():
-                    place, conditions = self.place(item.at), self.under(item)
+                    place, conditions = self.locate(item.at), self.merge_with(item)
                     self.add_found(FoundPackage(str(item), "passed", place, conditions=conditions))
 
     def pass_sources(self, call: CommandCall, words: list[Word]) -> None:
@@ -349,9 +349,9 @@ class Interpreter:
             return
         for item in words:
             if item.endswith(SOURCES) and "$" not in item:
-                path = self.relative(self.resolve(item))
+                path = self.make_relative(self.resolve(item))
                 if path is not None and self.exists(path):
-                    self.passed.setdefault(call.name, (self.place(call.at), {}))[1][path] = None
+                    self.passed.setdefault(call.name, (self.locate(call.at), {}))[1][path] = None
 
     def compile_passed(self) -> None:
         """Gives these sources, where no target compiles them, to a target of which nothing else is known."""
@@ -373,7 +373,7 @@ class Interpreter:
         """Notes a command, module or policy that only newer versions of CMake have."""
         since = SINCE.get(name)
         if since and not self.silent and name not in self.definitions:
-            self.uses[UnknownCommand("feature", name, self.place(at), since, self.conditions)] = None
+            self.uses[UnknownCommand("feature", name, self.locate(at), since, self.conditions)] = None
 
     def use_command(self, call: CommandCall, words: Sequence[Word] = ()) -> None:
         """Notes a command that neither CMake nor the tree defines. words: its arguments, where what it does is not
@@ -388,7 +388,7 @@ class Interpreter:
         made = (*words[:1], *(to for before, to in itertools.pairwise(words) if before == "DESTINATION"))
         makes = tuple(str(item) for item in made if "$" not in item)
         self.uses[
-            UnknownCommand("command", call.name, self.place(call.at), module, self.conditions, makes=makes)
+            UnknownCommand("command", call.name, self.locate(call.at), module, self.conditions, makes=makes)
         ] = None
 
     def run_block(self, block: Block) -> int:
@@ -428,7 +428,7 @@ class Interpreter:
                 return self.run_body(body)
             # Every branch stands under the tests of all before it; real chains are short.
             self.spend(len(before) ** 2 >> 6)
-            own = before if value is True else (*before, self.test(text))
+            own = before if value is True else (*before, self.make_test(text))
             signal, changes = self.run_branch(body, merge(outer, own))
             if signal in (RETURN, FATAL):
                 signals.add(signal)
@@ -443,26 +443,26 @@ class Interpreter:
             if value is True:
                 exhaustive = True
                 break
-            before = (*before, self.test(text, negated=True))
+            before = (*before, self.make_test(text, negated=True))
         if not exhaustive:
             outcomes.insert(0, {})
         if not outcomes:
             return RETURN if RETURN in signals else FATAL
         self.merge_outcomes(outcomes, before if len(before) == 1 and not exhaustive else ())
         for own in returned if len(self.conditions) < MAX_CONDITIONS else ():
-            rest = structs.replace(own[0], negated=not own[0].negated, gate=self.at_gate(own[0]))
+            rest = structs.replace(own[0], negated=not own[0].negated, gate=self.is_at_gate(own[0]))
             self.conditions = merge(self.conditions, (rest,))
         return NORMAL
 
-    def test(self, text: str, *, negated: bool = False) -> Condition:
+    def make_test(self, text: str, *, negated: bool = False) -> Condition:
         """A test of this package that is not decided."""
-        asked = packages_asked(text) if "_FOUND" in text else ()
+        asked = list_tested_packages(text) if "_FOUND" in text else ()
         self.asked.update(dict.fromkeys(asked))
         known = self.declared.names if asked else ()
         declared = tuple(name for name in asked if name in known)
         return Condition("cmake", text, negated, declared)
 
-    def at_gate(self, test: Condition) -> bool:
+    def is_at_gate(self, test: Condition) -> bool:
         """Whether configuring the package, left on a test of what was found, has built nothing so far."""
         top = not self.recording and len(self.including) == 1 and len(self.scopes) == 1 and not self.overlay
         built = self.targets.finish() or self.installs or self.generated or self.message_files
@@ -508,13 +508,13 @@ class Interpreter:
             left = [changes[(key, name)][1] if (key, name) in changes else where.get(name) for changes in outcomes]
             if None in left and name.endswith(READ_SUFFIXES):
                 # Where no branch has set it, a found package may have.
-                unknown = CMakeValue((word(f"${{{name}}}", self.here(), (), False),), False)
+                unknown = CMakeValue((wrap(f"${{{name}}}", self.get_current_place(), (), False),), False)
                 left = [value if value is not None else unknown for value in left]
             whole, part = (left[0], left[-1]) if untaken and len(left) == 2 else (None, None)
             if whole is not None and part is not None and set(part.words) < set(whole.words):
                 kept = set(part.words)
                 words = (
-                    item if item in kept else word(item, item.at, merge(item.conditions, untaken), item.sure)
+                    item if item in kept else wrap(item, item.at, merge(item.conditions, untaken), item.sure)
                     for item in whole.words
                 )
                 left[0] = CMakeValue(tuple(words), whole.sure, whole.defined)
@@ -526,11 +526,11 @@ class Interpreter:
     def decide(self, head: CommandCall) -> tuple[bool | None, str]:
         """The value of a test and its text."""
         self.command = head.name
-        tokens = self.condition_tokens(head)
+        tokens = self.expand_condition(head)
         value = tests.evaluate(tokens, self)
         if value is not None:
             return value, ""
-        text = self.shown(tests.text_of(tokens))
+        text = self.clean(tests.format_condition(tokens))
         self.use_environment(text, head.at)
         for held in self.conditions:
             if held.text == text and held.language == "cmake":
@@ -553,15 +553,15 @@ class Interpreter:
         else:
             self.assumed[text] = value
 
-    def condition_tokens(self, head: CommandCall) -> list[tests.Token]:
+    def expand_condition(self, head: CommandCall) -> list[tests.Token]:
         """Arguments of if() expanded; each remembers whether it was quoted."""
         tokens: list[tests.Token] = []
         for template in head.templates:
             if template.kind == LITERAL:
-                tokens.extend(self.literal_token(item, template.quoted) for item in template.words)
+                tokens.extend(self.make_literal_token(item, template.quoted) for item in template.words)
                 continue
             if template.kind == REFERENCE:
-                value = self.reference(template, head)
+                value = self.resolve_reference(template, head)
                 if not value.sure and value.defined:  # differing branches: one token, which nobody relies upon
                     tokens.append(tests.Token(value.text or f"${{{template.name}}}", False, False, False))
                 else:
@@ -571,7 +571,7 @@ class Interpreter:
                 tokens.append(tests.Token(item, template.quoted, item.sure, False))
         return tokens
 
-    def literal_token(self, item: Word, quoted: bool) -> tests.Token:
+    def make_literal_token(self, item: Word, quoted: bool) -> tests.Token:
         """An argument of if() without a reference. A variable that holds an environment variable stands for it, which
         is known on a target."""
         held = None if quoted else self.lookup("", item)
@@ -590,11 +590,11 @@ class Interpreter:
         rest = args[1:]
         mode = rest[0] if rest else ""
         if mode == "RANGE":
-            rounds = ((word(str(number), block.head.at),) for number in self.numbers(rest[1:], block.head))
+            rounds = ((wrap(str(number), block.head.at),) for number in self.compute_range(rest[1:], block.head))
         elif "IN" in args[1:] and ("LISTS" in rest or "ITEMS" in rest or "ZIP_LISTS" in rest):
-            split = position(args, "IN")
+            split = find_position(args, "IN")
             variables = args[:split]
-            rounds = self.listed(args[split + 1 :], len(variables))
+            rounds = self.list_foreach_items(args[split + 1 :], len(variables))
         else:
             rounds = [(item,) for item in rest]
         names = [str(name) for name in variables]
@@ -621,7 +621,7 @@ class Interpreter:
             self.assign(scope, name, value if value is not None else UNSET)
         return signal if signal >= RETURN else NORMAL
 
-    def listed(self, args: list[Word], width: int) -> list[tuple[Word, ...]]:
+    def list_foreach_items(self, args: list[Word], width: int) -> list[tuple[Word, ...]]:
         """Rounds of foreach(IN LISTS / ITEMS / ZIP_LISTS)."""
         items: list[Word] = []
         zipped: list[tuple[Word, ...]] = []
@@ -633,7 +633,7 @@ class Interpreter:
                 items.append(item)
             elif mode in ("LISTS", "ZIP_LISTS"):
                 value = self.get(item)
-                words = value.words if value is not None else (word(f"${{{item}}}", item.at, (), False),)
+                words = value.words if value is not None else (wrap(f"${{{item}}}", item.at, (), False),)
                 words = tuple(each for each in words if each)
                 if mode == "LISTS":
                     items.extend(words)
@@ -641,11 +641,11 @@ class Interpreter:
                     zipped.append(words)
         if mode == "ZIP_LISTS" and zipped:
             length = min(max(len(words) for words in zipped), MAX_ITERATIONS + 1)
-            blank = word("", args[0].at)
+            blank = wrap("", args[0].at)
             return [tuple(words[index] if index < len(words) else blank for words in zipped) for index in range(length)]
         return [(item,) for item in items]
 
-    def numbers(self, args: list[Word], head: CommandCall) -> range:
+    def compute_range(self, args: list[Word], head: CommandCall) -> range:
         """Rounds of foreach(RANGE)."""
         try:
             bounds = [int(item) for item in args[:3]]
@@ -668,7 +668,7 @@ class Interpreter:
             if value is False:
                 return NORMAL
             if value is None:
-                signal, changes = self.run_branch(block.body, merge(self.conditions, (self.test(text),)))
+                signal, changes = self.run_branch(block.body, merge(self.conditions, (self.make_test(text),)))
                 self.merge_outcomes([{}, changes])
                 return NORMAL
             self.maybe_break = False
@@ -694,14 +694,14 @@ class Interpreter:
                 arguments[name] = CMakeValue((args[index],), args[index].sure)
             else:
                 arguments[name] = UNSET
-        arguments["ARGC"] = CMakeValue((word(str(len(args)), at),))
-        arguments["ARGV"] = _listing(args)
-        arguments["ARGN"] = _listing(args[len(names) :])
+        arguments["ARGC"] = CMakeValue((wrap(str(len(args)), at),))
+        arguments["ARGV"] = _make_arguments_value(args)
+        arguments["ARGN"] = _make_arguments_value(args[len(names) :])
         for index, item in enumerate(args[:64]):
             arguments[f"ARGV{index}"] = CMakeValue((item,), item.sure)
 
         overlay, conditions, site, via = self.overlay, self.conditions, self.call_site, self.via
-        if site is None and not self.inside(block.head.path):
+        if site is None and not self.is_in_package(block.head.path):
             self.call_site = at
             self.via = call.name
         try:
@@ -716,9 +716,9 @@ class Interpreter:
                         break
                     del scope[name]
                 scope.update(arguments)
-                directory = self.absolute(posixpath.dirname(block.head.path))
-                scope["CMAKE_CURRENT_FUNCTION"] = CMakeValue((word(block.head.templates[0].raw, at),))
-                scope["CMAKE_CURRENT_FUNCTION_LIST_DIR"] = CMakeValue((word(directory, at),))
+                directory = self.make_absolute(posixpath.dirname(block.head.path))
+                scope["CMAKE_CURRENT_FUNCTION"] = CMakeValue((wrap(block.head.templates[0].raw, at),))
+                scope["CMAKE_CURRENT_FUNCTION_LIST_DIR"] = CMakeValue((wrap(directory, at),))
                 self.push(scope)
                 try:
                     signal = self.run_body(block.body)
@@ -743,24 +743,24 @@ class Interpreter:
             self.give_up(at, f"{path} includes itself")
             return NORMAL
         listing = {
-            "CMAKE_CURRENT_LIST_DIR": self.absolute(posixpath.dirname(path)),
-            "CMAKE_CURRENT_LIST_FILE": self.absolute(path),
+            "CMAKE_CURRENT_LIST_DIR": self.make_absolute(posixpath.dirname(path)),
+            "CMAKE_CURRENT_LIST_FILE": self.make_absolute(path),
         }
         conditions, overlay = self.conditions, self.overlay
         self.overlay = {}
         site, via = self.call_site, self.via
-        if site is None and not self.inside(path):
+        if site is None and not self.is_in_package(path):
             self.call_site, self.via = at, f"include({posixpath.basename(path)})"
         self.including.append(path)
         kept = {name: self.scope.get(name) for name in listing}
         try:
             if subdirectory is not None:
                 self.push(dict(self.scope))
-                listing["CMAKE_CURRENT_SOURCE_DIR"] = self.absolute(subdirectory)
+                listing["CMAKE_CURRENT_SOURCE_DIR"] = self.make_absolute(subdirectory)
                 inside = posixpath.relpath(subdirectory, self.package_path or ".")
                 listing["CMAKE_CURRENT_BINARY_DIR"] = posixpath.join(BINARY, self.package, inside)
             for name, text in listing.items():
-                self.scope[name] = CMakeValue((word(text, at),))
+                self.scope[name] = CMakeValue((wrap(text, at),))
             signal = self.run_body(body)
         finally:
             self.including.pop()
@@ -785,8 +785,8 @@ class Interpreter:
         if paths:
             # Installed, a package's CMake files lie together in the folder that <package>_DIR names.
             folder = next((posixpath.dirname(path) for path in paths if "/cmake/" in path), posixpath.dirname(paths[0]))
-            self.exported[self.absolute(folder)] = package
-            self.assign(self.scope, f"{package}_DIR", CMakeValue((word(self.absolute(folder), at),)))
+            self.exported[self.make_absolute(folder)] = package
+            self.assign(self.scope, f"{package}_DIR", CMakeValue((wrap(self.make_absolute(folder), at),)))
         for path in paths:
             self.silent += 1
             try:
@@ -804,7 +804,7 @@ class Interpreter:
         """Runs a script that the package gives to those who find it, for what it looks for. Its files lie in one folder
         once they are installed, so that what it includes is known by its name. whole: it is the configuration itself,
         rather than a part of one that ament or catkin writes."""
-        path = self.own_file(path) or path
+        path = self.find_own_file(path) or path
         if path in self.including or self.load(path) is None:
             return
         outer, targets, macros, made = self.handing_on, self.targets, self.macros, self.made
@@ -813,8 +813,8 @@ class Interpreter:
         self.handing_on = True
         self.silent += 1
         self.push(dict(self.scope))
-        folder = self.absolute(posixpath.dirname(path))
-        self.scope[f"{self.package}_DIR"] = CMakeValue((word(folder, at),))
+        folder = self.make_absolute(posixpath.dirname(path))
+        self.scope[f"{self.package}_DIR"] = CMakeValue((wrap(folder, at),))
         self.exported[folder] = self.package
         try:
             self.run_file(path, at)
@@ -824,17 +824,17 @@ class Interpreter:
             self.handing_on, self.targets, self.macros, self.made = outer, targets, macros, made
             self.modules = modules
 
-    def own_file(self, name: str) -> str | None:
+    def find_own_file(self, name: str) -> str | None:
         """The CMake file of the package, or the template of one, that has a name once it is installed."""
         base = posixpath.basename(name).removesuffix(".in")
         files = self.glob(f"{self.package_path}/*.cmake*".lstrip("/"), True)
         return next((file for file in files if posixpath.basename(file).removesuffix(".in") == base), None)
 
-    def exported_file(self, name: str) -> str | None:
+    def find_exported_file(self, name: str) -> str | None:
         """The file in the tree from which `<package>_DIR/name` is installed, for a package of the workspace."""
         base = posixpath.basename(name)
         if self.handing_on and self.exported.get(posixpath.dirname(name)) == self.package:
-            return self.own_file(name)
+            return self.find_own_file(name)
         for path in self.extras(self.exported.get(posixpath.dirname(name), "")):
             if posixpath.basename(path) in (base, f"{base}.in", f"{base}.em"):
                 return path
@@ -883,7 +883,7 @@ class Interpreter:
 
     def set(self, name: str, words: Iterable[Word], sure: bool = True) -> None:
         """Sets a normal variable to a list; under a condition its words remember it."""
-        kept = with_conditions(words, self.conditions)
+        kept = add_conditions(words, self.conditions)
         if len(kept) > MAX_WORDS:
             self.give_up(self.call_site, f"`{name}` has more than {MAX_WORDS} items")
             kept = kept[:MAX_WORDS]
@@ -894,11 +894,11 @@ class Interpreter:
         if text is None:
             self.set_unknown(name, at)
             return
-        self.assign(self.scope, name, CMakeValue((word(text[:MAX_TEXT], at, self.conditions, sure),), sure))
+        self.assign(self.scope, name, CMakeValue((wrap(text[:MAX_TEXT], at, self.conditions, sure),), sure))
 
     def set_unknown(self, name: str, at: At) -> None:
         """Marks a variable as set to something that cannot be told; it reads as `${name}`."""
-        self.assign(self.scope, name, CMakeValue((word(f"${{{name}}}", at, (), False),), False))
+        self.assign(self.scope, name, CMakeValue((wrap(f"${{{name}}}", at, (), False),), False))
 
     def lookup(self, scope: str, name: str) -> CMakeValue | None:
         """What a reference reads."""
@@ -921,7 +921,7 @@ class Interpreter:
             if kind == LITERAL:
                 words.extend(template.words)
             elif kind == REFERENCE:
-                value = self.reference(template, None)
+                value = self.resolve_reference(template, None)
                 alone = not value.sure and not words and len(value.chosen) == 1
                 words.extend([item for item in (value.chosen if alone else value.words) if item])
             else:
@@ -933,16 +933,16 @@ class Interpreter:
         self.spend(len(words) >> 5)
         return words
 
-    def reference(self, template: Template, head: CommandCall | None) -> CMakeValue:
+    def resolve_reference(self, template: Template, head: CommandCall | None) -> CMakeValue:
         """The value behind a plain `${name}`."""
         name = template.name
         value = self.lookup("", name)
         if value is None:
             self.use_variable(name, template.at)
-            return CMakeValue((word(f"${{{name}}}", template.at, (), False),), False)
+            return CMakeValue((wrap(f"${{{name}}}", template.at, (), False),), False)
         if not value.sure:
-            value = _placed(value, f"${{{name}}}", template.at)
-        return _flat(value)
+            value = _place_unknown(value, f"${{{name}}}", template.at)
+        return _flatten(value)
 
     def expand_one(self, template: Template, head: CommandCall | None) -> tuple[Word, ...]:
         """Words of a quoted reference or a mixed argument."""
@@ -951,21 +951,21 @@ class Interpreter:
             value = self.lookup("", template.name)
             if value is None:
                 self.use_variable(template.name, at)
-                return (word(f"${{{template.name}}}", at, (), False),)
+                return (wrap(f"${{{template.name}}}", at, (), False),)
             self.spend(len(value.text) >> 10)
-            single = word(value.text, at, (), value.sure)
+            single = wrap(value.text, at, (), value.sure)
             single.parts = value.words if value.sure else value.chosen
             return (single,)
         if template.kind == REFERENCE:
-            return tuple(item for item in self.reference(template, head).words if item)
+            return tuple(item for item in self.resolve_reference(template, head).words if item)
         text, sure, conditions = read_references(template.parts, self._lookup_used(at))
         self.spend(len(text) >> 10)
         if len(text) > MAX_TEXT:
             self.give_up(at, f"a value is longer than {MAX_TEXT} characters")
             text = text[:MAX_TEXT]
         if template.quoted:
-            return (word(text, at, conditions, sure),)
-        return tuple(word(part, at, conditions, sure) for part in split_list(text))
+            return (wrap(text, at, conditions, sure),)
+        return tuple(wrap(part, at, conditions, sure) for part in split_list(text))
 
     def _lookup_used(self, at: At) -> Callable[[str, str], CMakeValue | None]:
         def lookup(scope: str, name: str) -> CMakeValue | None:
@@ -985,7 +985,7 @@ class Interpreter:
             name.startswith("CATKIN_") and self.command == "install"
         ):
             return
-        self.uses[UnknownCommand("variable", name, self.place(at), self.command, self.conditions, alike)] = None
+        self.uses[UnknownCommand("variable", name, self.locate(at), self.command, self.conditions, alike)] = None
 
     def use_environment(self, test: str, at: At) -> None:
         """Notes the environment variables of ROS whose value a test reads, where no test asks whether they are set."""
@@ -993,7 +993,7 @@ class Interpreter:
         for name in dict.fromkeys(_ROS_ENVIRONMENT.findall(test)):
             asks = re.compile(rf'DEFINED ENV\{{{name}\}}|(?:NOT )?\$ENV\{{{name}\}}(?: STREQUAL "")?\Z')
             if not self.silent and not any(map(asks.search, tests_around)):
-                self.uses[UnknownCommand("environment", name, self.place(at), "", self.conditions)] = None
+                self.uses[UnknownCommand("environment", name, self.locate(at), "", self.conditions)] = None
 
     def find_alike(self, name: str) -> str:
         """The variable that is set and has one word more or less in its name than one that a command which needs its
@@ -1026,28 +1026,28 @@ class Interpreter:
             return None
         return True if name in self.definitions or (name in COMMANDS and name not in MODULE_OF) else None
 
-    def path_exists(self, path: str, directory: bool) -> bool | None:
+    def has_path(self, path: str, directory: bool) -> bool | None:
         """Whether a path of the package exists; None outside of it."""
-        relative = self.relative(path) if path.startswith("/") else None
-        if relative is None or not (self.inside(relative) or relative == self.package_path):
+        relative = self.make_relative(path) if path.startswith("/") else None
+        if relative is None or not (self.is_in_package(relative) or relative == self.package_path):
             return None
         return self.exists(relative) or bool(self.glob(f"{relative}/*" if relative else "*", True))
 
-    def matched(self, groups: tuple[str, ...]) -> None:
+    def set_match_groups(self, groups: tuple[str, ...]) -> None:
         """Sets CMAKE_MATCH_<n>."""
-        at = self.here()
+        at = self.get_current_place()
         for index, text in enumerate(groups[:10]):
             self.set_text(f"CMAKE_MATCH_{index}", text, at)
 
-    def quotes_protect(self) -> bool:
+    def protects_quoted(self) -> bool:
         """CMP0054: quoted arguments of if() are no variable names from policy version 3.1 on."""
         return self.minimum_policy >= (3, 1)
 
-    def absolute(self, relative: str) -> str:
+    def make_absolute(self, relative: str) -> str:
         """A path of the tree as CMake code sees it."""
         return posixpath.normpath(f"{SOURCE}/{relative}") if relative else SOURCE
 
-    def relative(self, path: str) -> str | None:
+    def make_relative(self, path: str) -> str | None:
         """A path that CMake code holds, relative to the workspace root; None when it lies elsewhere."""
         if not path.startswith(SOURCE):
             return None
@@ -1056,7 +1056,7 @@ class Interpreter:
             return ""
         return normal[len(SOURCE) + 1 :] if normal.startswith(SOURCE + "/") else None
 
-    def current_directory(self) -> str:
+    def get_current_directory(self) -> str:
         """CMAKE_CURRENT_SOURCE_DIR as CMake code sees it."""
         value = self.scope.get("CMAKE_CURRENT_SOURCE_DIR")
         return value.text if value is not None else SOURCE
@@ -1065,18 +1065,18 @@ class Interpreter:
         """A path argument, absolute: relative ones start at `base`, else at the current source folder."""
         if text.startswith(("/", "$", "~")):
             return text
-        return posixpath.normpath(posixpath.join(base or self.current_directory(), text))
+        return posixpath.normpath(posixpath.join(base or self.get_current_directory(), text))
 
-    def tree_path(self, text: str) -> str:
+    def resolve_tree_path(self, text: str) -> str:
         """A path argument relative to the workspace root when it can be told, else as a reader would write it."""
         if not text or text.startswith("$<"):
-            return self.shown(text)
-        relative = self.relative(self.resolve(text))
+            return self.clean(text)
+        relative = self.make_relative(self.resolve(text))
         if relative is None:
-            return self.shown(text)
+            return self.clean(text)
         return relative + "/" if text.endswith("/") and relative else relative
 
-    def shown(self, text: str) -> str:
+    def clean(self, text: str) -> str:
         """A text without the names this interpreter gives to the tree, the build and the install folder."""
         if "/@" not in text:
             return str(text)
@@ -1084,33 +1084,33 @@ class Interpreter:
         text = text.replace(f"{BINARY}/{self.package}", "${CMAKE_BINARY_DIR}").replace(BINARY, "${CMAKE_BINARY_DIR}")
         return text.replace(f"{PREFIX}/", "").replace(PREFIX, "")
 
-    def inside(self, path: str) -> bool:
+    def is_in_package(self, path: str) -> bool:
         """True for a file of the package itself."""
         return not self.package_path or path.startswith(self.package_path + "/")
 
-    def place(self, at: At) -> At:
+    def locate(self, at: At) -> At:
         """The place a finding should point at: inside the package, so a call into another one's macro stands for it."""
-        return self.call_site if self.call_site is not None and not self.inside(at.path) else at
+        return self.call_site if self.call_site is not None and not self.is_in_package(at.path) else at
 
-    def under(self, item: Word) -> tuple[Condition, ...]:
+    def merge_with(self, item: Word) -> tuple[Condition, ...]:
         """The conditions that hold for a word here."""
         return merge(self.conditions, item.conditions)
 
-    def here(self) -> At:
+    def get_current_place(self) -> At:
         """A place for what has none of its own."""
         return self.call_site or At(self.including[-1] if self.including else "", 1)
 
     def give_up(self, at: At | None, reason: str) -> None:
         """Notes what could not be told."""
         if not self.silent:
-            self.unresolved[(self.place(at or self.here()), reason)] = None
+            self.unresolved[(self.locate(at or self.get_current_place()), reason)] = None
 
     def add_read(self, path: str | None, command: str, name: Word) -> None:
         """Collects a file of CMake code that lies outside of the package, or that does not exist. path: as relative()
         gives it. name: how it is written."""
-        place = self.shown(name) if path is None else path
+        place = self.clean(name) if path is None else path
         if not self.silent and self.call_site is None and name.sure and "$" not in place:
-            self.read_elsewhere[ReadFile(place, command, self.place(name.at), self.under(name))] = None
+            self.read_elsewhere[ReadFile(place, command, self.locate(name.at), self.merge_with(name))] = None
 
     def add_tools(self, args: list[Word]) -> None:
         """Collects the programs that the arguments of ExternalProject_Add() or FetchContent_Declare() start: what
@@ -1119,7 +1119,7 @@ class Interpreter:
             program = _DOWNLOADERS.get(keyword) or (str(value) if keyword.endswith("_COMMAND") else "")
             if program and value and "$" not in program and "/" not in program:
                 self.add_found(
-                    FoundPackage(program, "program", self.place(value.at), True, conditions=self.under(value))
+                    FoundPackage(program, "program", self.locate(value.at), True, conditions=self.merge_with(value))
                 )
 
     def add_found(self, found: FoundPackage) -> None:
@@ -1133,8 +1133,8 @@ class Interpreter:
         self, kind: str, items: Iterable[str], destination: str, of: Word | CommandCall, **more: Any
     ) -> None:
         """Collects an install rule. of: what names it, whose place and conditions it has. more: fields of Install."""
-        conditions = self.under(of) if isinstance(of, Word) else self.conditions
-        fields = {"at": self.place(of.at), "conditions": conditions, **more}
+        conditions = self.merge_with(of) if isinstance(of, Word) else self.conditions
+        fields = {"at": self.locate(of.at), "conditions": conditions, **more}
         install = Install(kind, tuple(items), destination, **fields)
         if not self.silent and install.items:
             self.installs[install] = None
@@ -1144,44 +1144,46 @@ class Interpreter:
     ) -> None:
         """Collects a promise to dependants."""
         if not self.silent and item:
-            self.exports[CMakeExport(self.shown(item), how, self.place(at), conditions, context, executable)] = None
+            self.exports[CMakeExport(self.clean(item), how, self.locate(at), conditions, context, executable)] = None
 
     def add_standard(self, number: int, at: At, is_default: bool, by_flag: bool) -> None:
         """Collects a C++ standard set for everything."""
         if not self.silent:
-            self.standards.append((number, self.place(at), is_default, by_flag, self.conditions))
+            self.standards.append((number, self.locate(at), is_default, by_flag, self.conditions))
 
     def add_target(self, name: Word, kind: str) -> TargetDraft:
         """Makes the target that add_library(), add_executable() or add_custom_target() adds."""
-        before, conditions = self.targets.get(name), self.under(name)
+        before, conditions = self.targets.get(name), self.merge_with(name)
         if before is not None and before.added and kind not in ("imported", "alias") and name.sure and not self.silent:
             opposite = {(held.text, not held.negated) for held in before.conditions}
             if not any((held.text, held.negated) in opposite for held in conditions):
                 self.refuse("twice", name, before.conditions)
-        draft = self.new_target(name, kind, name.at)
+        draft = self.ensure_target(name, kind, name.at)
         draft.added = name.sure and kind not in ("imported", "alias")
         return draft
 
     def refuse(self, kind: str, name: Word, conditions: tuple[Condition, ...] = ()) -> None:
         """Notes a name at which CMake stops. conditions: that it stops under besides those of the place."""
         if name.sure and "$<" not in name and not self.silent:
-            self.refused[RefusedName(kind, str(name), self.place(name.at), merge(conditions, self.under(name)))] = None
+            self.refused[
+                RefusedName(kind, str(name), self.locate(name.at), merge(conditions, self.merge_with(name)))
+            ] = None
 
     def refuse_project(self) -> None:
         """Notes the name of the project where it is not that of the package, which ament_package_xml() of
         ament_cmake_core and catkin_package_xml() of catkin compare; they set the version too."""
         held = self.get("PROJECT_NAME")
         if held is not None and held.sure and held.text != self.package:
-            folder = posixpath.dirname(self.place(held.words[0].at).path)
+            folder = posixpath.dirname(self.locate(held.words[0].at).path)
             # A package below this one has a manifest of its own.
             if folder == self.package_path or not self.exists(posixpath.join(folder, "package.xml")):
                 self.refuse("project", held.words[0])
-        self.set_unknown(f"{self.project}_VERSION", self.here())
+        self.set_unknown(f"{self.project}_VERSION", self.get_current_place())
 
-    def new_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
+    def ensure_target(self, name: Word | str, kind: str, at: At) -> TargetDraft:
         """Makes or finds a target; a second one of the same name adds to the first."""
-        conditions = self.under(name) if isinstance(name, Word) else self.conditions
-        return self.targets.make(str(name), kind, self.place(at), conditions)
+        conditions = self.merge_with(name) if isinstance(name, Word) else self.conditions
+        return self.targets.make(str(name), kind, self.locate(at), conditions)
 
 
 def _is_longer(long: list[str], short: list[str]) -> bool:
@@ -1189,7 +1191,7 @@ def _is_longer(long: list[str], short: list[str]) -> bool:
     return any(long[:i] + long[i + 1 :] == short and long[i].isalpha() for i in range(len(long)))
 
 
-def _listing(args: list[Word]) -> CMakeValue:
+def _make_arguments_value(args: list[Word]) -> CMakeValue:
     """Arguments as the value of ARGV or ARGN."""
     words: list[Word] = []
     for item in args:
@@ -1200,11 +1202,11 @@ def _listing(args: list[Word]) -> CMakeValue:
     return CMakeValue(tuple(words), all(item.sure for item in words))
 
 
-def _placed(value: CMakeValue, unknown: str, at: At) -> CMakeValue:
+def _place_unknown(value: CMakeValue, unknown: str, at: At) -> CMakeValue:
     """The value with what is not known of it standing where it is read."""
     if unknown not in value.words:
         return value
-    here = word(unknown, at, (), False)
+    here = wrap(unknown, at, (), False)
     made = CMakeValue(tuple(here if item == unknown else item for item in value.words), False, value.defined)
     if value.chosen is not value.words:
         made.chosen = tuple(here if item == unknown else item for item in value.chosen)
@@ -1212,7 +1214,7 @@ def _placed(value: CMakeValue, unknown: str, at: At) -> CMakeValue:
     return made
 
 
-def _flat(value: CMakeValue) -> CMakeValue:
+def _flatten(value: CMakeValue) -> CMakeValue:
     """A value whose words hold no more lists: an argument in quotes may."""
     for item in value.words:
         if ";" in item:

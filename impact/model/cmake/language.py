@@ -5,13 +5,24 @@ import posixpath
 
 from .blocks import CommandCall
 from .build import FoundPackage
-from .conditions import version_key
+from .conditions import make_version_key
 from .interpreter import BREAK, CONTINUE, FATAL, RETURN, Interpreter, handles
-from .lists import integer, list_items
-from .names import MODULES, MODULES_WITH, name_set
+from .lists import list_items, parse_int
+from .names import MODULES, MODULES_WITH, make_name_set
 from .standard import note_variable
 from .targets import note_written
-from .values import UNSET, CMakeValue, Word, following, position, split_list, split_words, unsure, with_conditions, word
+from .values import (
+    UNSET,
+    CMakeValue,
+    Word,
+    add_conditions,
+    find_next,
+    find_position,
+    make_unsure,
+    split_list,
+    split_words,
+    wrap,
+)
 
 
 @handles("set", least=1)
@@ -23,19 +34,19 @@ def set_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         run.assign(run.environment, name[4:].rstrip("}"), CMakeValue(tuple(values[:1])))
         return
     if "CACHE" in values:
-        index = position(values, "CACHE")
+        index = find_position(values, "CACHE")
         kind = values[index + 1] if index + 1 < len(values) else ""
         fixed = kind == "INTERNAL" or "FORCE" in values[index + 1 :]
-        kept = CMakeValue(with_conditions(split_words(values[:index]), run.conditions))
+        kept = CMakeValue(add_conditions(split_words(values[:index]), run.conditions))
         note_variable(run, name, kept.text, args[0])
         if fixed:
             run.scope.pop(name, None)
-        run.assign(run.cache, name, kept if fixed else unsure(kept))
+        run.assign(run.cache, name, kept if fixed else make_unsure(kept))
         return
     if values and values[-1] == "PARENT_SCOPE":
         values = values[:-1]
         where = run.scopes[-2] if len(run.scopes) > 1 else {}
-        items = with_conditions(list_items(values), run.conditions)
+        items = add_conditions(list_items(values), run.conditions)
         run.assign(where, name, CMakeValue(items, all(item.sure for item in items)) if items else UNSET)
         return
     if not values:
@@ -61,11 +72,11 @@ def unset(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
 
 
 @handles("option", "cmake_dependent_option", least=1)
-def option(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_option(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """option(): the default is remembered, but a user may choose otherwise."""
-    default = args[2] if len(args) > 2 else word("OFF", call.at)
+    default = args[2] if len(args) > 2 else wrap("OFF", call.at)
     if run.scope.get(args[0]) is None:
-        run.assign(run.cache, str(args[0]), unsure(CMakeValue((word(str(default), call.at),))))
+        run.assign(run.cache, str(args[0]), make_unsure(CMakeValue((wrap(str(default), call.at),))))
 
 
 @handles("include", least=1)
@@ -73,13 +84,13 @@ def include(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """include() of a file of the tree, of a module on CMAKE_MODULE_PATH, or of one of CMake's own."""
     name = args[0]
     optional = "OPTIONAL" in args[1:]
-    answer = following(args, "RESULT_VARIABLE")
+    answer = find_next(args, "RESULT_VARIABLE")
     if answer is not None:
         run.set_unknown(answer, call.at)
     if "/" not in name and not name.startswith("${"):
         held = run.get("CMAKE_MODULE_PATH")
         for directory in held.words if held is not None else ():
-            path = run.relative(run.resolve(posixpath.join(directory, f"{name}.cmake"))) if directory else None
+            path = run.make_relative(run.resolve(posixpath.join(directory, f"{name}.cmake"))) if directory else None
             if path is not None and run.run_file(path, call.at) is not None:
                 return
         add_module(run, str(name))
@@ -87,27 +98,27 @@ def include(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             run.use_feature(str(name), name.at)
         if name in MODULES:
             if name.startswith("Find") and not name.startswith("FindPackage"):
-                place = run.place(name.at)
+                place = run.locate(name.at)
                 run.add_found(
-                    FoundPackage(name.removeprefix("Find"), "find_package", place, conditions=run.under(name))
+                    FoundPackage(name.removeprefix("Find"), "find_package", place, conditions=run.merge_with(name))
                 )
             return
     if name.endswith("_USE_FILE}") or name.startswith("$ENV{ROS_ROOT}/core/rosbuild/"):
         return  # settings of a found package, or rosbuild itself, whose macros are known
-    path = run.relative(run.resolve(name))
+    path = run.make_relative(run.resolve(name))
     if path is None:
         if not optional:
             run.add_read(path, call.name, name)
-            run.give_up(name.at, f"include({run.shown(name)}) is outside the tree")
+            run.give_up(name.at, f"include({run.clean(name)}) is outside the tree")
         return
     if run.run_file(path, name.at) is not None:
-        if not optional and not run.inside(path):
+        if not optional and not run.is_in_package(path):
             run.add_read(path, call.name, name)
         return
-    installed = run.exported_file(name)
+    installed = run.find_exported_file(name)
     if (installed is None or run.run_file(installed, name.at) is None) and not optional:
         run.add_read(path, call.name, name)
-        run.give_up(name.at, f"include({run.shown(name)}) is not in the tree")
+        run.give_up(name.at, f"include({run.clean(name)}) is not in the tree")
 
 
 def add_module(run: Interpreter, name: str) -> None:
@@ -129,16 +140,16 @@ def include_guard(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
 def add_subdirectory(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """add_subdirectory()."""
     for directory in args if call.name == "subdirs" else args[:1]:
-        relative = run.relative(run.resolve(directory))
+        relative = run.make_relative(run.resolve(directory))
         if relative is None:
             run.add_read(relative, call.name, directory)
-            run.give_up(directory.at, f"add_subdirectory({run.shown(directory)}) is outside the tree")
+            run.give_up(directory.at, f"add_subdirectory({run.clean(directory)}) is outside the tree")
             continue
         signal = run.run_file(posixpath.join(relative, "CMakeLists.txt"), directory.at, relative)
-        if signal is None or not run.inside(f"{relative}/"):
+        if signal is None or not run.is_in_package(f"{relative}/"):
             run.add_read(relative, call.name, directory)
         if signal is None:
-            run.give_up(directory.at, f"add_subdirectory({run.shown(directory)}) has no CMakeLists.txt in the tree")
+            run.give_up(directory.at, f"add_subdirectory({run.clean(directory)}) has no CMakeLists.txt in the tree")
         elif signal == FATAL:
             return FATAL
     return 0
@@ -167,31 +178,31 @@ def continue_(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
 
 
 @handles("message")
-def message(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
+def run_message(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """message(): FATAL_ERROR ends the run."""
     if not args or args[0] != "FATAL_ERROR":
         return 0
-    if not run.silent and run.inside(call.path) and run.conditions:
-        run.stops.append((run.place(call.at), "".join(args[1:])[:80], run.conditions))
+    if not run.silent and run.is_in_package(call.path) and run.conditions:
+        run.stops.append((run.locate(call.at), "".join(args[1:])[:80], run.conditions))
     return FATAL
 
 
 @handles("cmake_minimum_required", least=2)
-def cmake_minimum_required(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """cmake_minimum_required(): also sets policies."""
+def require_cmake_version(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """require_cmake_version(): also sets policies."""
     if args[0].upper() != "VERSION":
         return
     lower, _, upper = args[1].partition("...")
-    if not run.silent and (run.minimum is None or (run.inside(call.path) and call.path == run.minimum[1].path)):
-        run.minimum = (str(args[1]), run.place(args[1].at))
-    run.minimum_policy = version_key(upper or lower)
+    if not run.silent and (run.minimum is None or (run.is_in_package(call.path) and call.path == run.minimum[1].path)):
+        run.minimum = (str(args[1]), run.locate(args[1].at))
+    run.minimum_policy = make_version_key(upper or lower)
 
 
 @handles("cmake_policy")
-def cmake_policy(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def set_cmake_policy(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cmake_policy(VERSION) and CMP0054."""
     if len(args) >= 2 and args[0] == "VERSION":
-        run.minimum_policy = max(run.minimum_policy, version_key(args[1].split("...")[-1]))
+        run.minimum_policy = max(run.minimum_policy, make_version_key(args[1].split("...")[-1]))
     elif args[:1] == ["SET"] and len(args) > 1:
         run.use_feature(str(args[1]), args[1].at)
     if args[:2] == ["SET", "CMP0054"] and args[2:3] == ["NEW"]:
@@ -199,7 +210,7 @@ def cmake_policy(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
 
 
 @handles("project", least=1)
-def project(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_project(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """project()."""
     name = args[0]
     directory = run.scope["CMAKE_CURRENT_SOURCE_DIR"]
@@ -208,29 +219,29 @@ def project(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         run.project = str(name)
         run.assign(run.scope, "CMAKE_PROJECT_NAME", CMakeValue((name,)))
     values = {
-        "PROJECT_NAME": CMakeValue((word(str(name), name.at),)),
+        "PROJECT_NAME": CMakeValue((wrap(str(name), name.at),)),
         "PROJECT_SOURCE_DIR": directory,
         "PROJECT_BINARY_DIR": binary,
         f"{name}_SOURCE_DIR": directory,
         f"{name}_BINARY_DIR": binary,
     }
-    version = following(args, "VERSION")
+    version = find_next(args, "VERSION")
     if version is not None:
         values["PROJECT_VERSION"] = values[f"{name}_VERSION"] = CMakeValue((version,), version.sure)
         for part, number in zip(("MAJOR", "MINOR", "PATCH", "TWEAK"), version.split("."), strict=False):
-            values[f"PROJECT_VERSION_{part}"] = CMakeValue((word(number, version.at),))
+            values[f"PROJECT_VERSION_{part}"] = CMakeValue((wrap(number, version.at),))
             values[f"{name}_VERSION_{part}"] = values[f"PROJECT_VERSION_{part}"]
     for key, value in values.items():
         run.assign(run.scope, key, value)
 
 
 @handles("cmake_parse_arguments")
-def cmake_parse_arguments(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """cmake_parse_arguments() in both signatures."""
+def parse_cmake_arguments(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """parse_cmake_arguments() in both signatures."""
     if args and args[0] == "PARSE_ARGV":
         if len(args) < 6:
             return
-        first = integer(args[1]) or 0
+        first = parse_int(args[1]) or 0
         held = run.get("ARGV")
         given = list(held.words[first:]) if held is not None else []
         prefix, heads = str(args[2]), args[3:6]
@@ -248,7 +259,7 @@ def cmake_parse_arguments(run: Interpreter, call: CommandCall, args: list[Word])
     for item in given:
         if item in keywords:
             if current in singles and not values[current]:
-                missing.append(word(current, item.at))
+                missing.append(wrap(current, item.at))
             current = str(item)
             values.setdefault(current, [])
             if current in options:
@@ -265,7 +276,7 @@ def cmake_parse_arguments(run: Interpreter, call: CommandCall, args: list[Word])
     for name in keywords:
         found = values.get(name)
         if name in options:
-            state = CMakeValue((word("TRUE" if found else "FALSE", call.at),))
+            state = CMakeValue((wrap("TRUE" if found else "FALSE", call.at),))
         else:
             state = CMakeValue(tuple(found), all(item.sure for item in found)) if found else UNSET
         run.assign(scope, f"{prefix}_{name}", state)
@@ -286,7 +297,7 @@ def execute_process(run: Interpreter, call: CommandCall, args: list[Word]) -> No
             note_written(run, name)
 
 
-_ANSWERS = name_set(
+_ANSWERS = make_name_set(
     """
     RESULT_VARIABLE OUTPUT_VARIABLE ERROR_VARIABLE RESULTS_VARIABLE RETURN_VALUE RUN_OUTPUT_VARIABLE
     """
@@ -327,7 +338,7 @@ def check(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     else:
         names = args[-1:]
     for name in names:
-        run.assign(run.scope, str(name), CMakeValue((word(f"${{{name}}}", call.at, (), False),), False))
+        run.assign(run.scope, str(name), CMakeValue((wrap(f"${{{name}}}", call.at, (), False),), False))
 
 
 @handles(
@@ -336,18 +347,18 @@ def check(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
 )
 def get_property(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Properties: those set in the tree are known, all others not."""
-    key = _property_key(call.name, args)
+    key = _make_property_key(call.name, args)
     held = run.properties.get(key)
     if held is not None:
-        run.assign(run.scope, str(args[0]), unsure(held))
+        run.assign(run.scope, str(args[0]), make_unsure(held))
     else:
         run.set_unknown(args[0], call.at)
 
 
-def _property_key(command: str, args: list[Word]) -> str:
+def _make_property_key(command: str, args: list[Word]) -> str:
     """Where a property is kept: its scope, its owner and its name."""
     if command == "get_property" and "PROPERTY" in args[:-1]:
-        index = position(args, "PROPERTY")
+        index = find_position(args, "PROPERTY")
         return " ".join([*args[1:index], args[index + 1]])
     if command == "get_target_property" and len(args) >= 3:
         return f"TARGET {args[1]} {args[2]}"
@@ -355,7 +366,7 @@ def _property_key(command: str, args: list[Word]) -> str:
 
 
 @handles("cmake_language")
-def cmake_language(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
+def run_cmake_language(run: Interpreter, call: CommandCall, args: list[Word]) -> int:
     """cmake_language(CALL name ...)."""
     if len(args) >= 2 and args[0] == "CALL":
         from ...facts.cmake import CMakeArgument, Command

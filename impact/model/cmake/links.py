@@ -8,8 +8,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ....edges.reach import walk
-from ...targets.version import at_least
-from .build import At, BuildTarget, Link, for_tests
+from ...targets.version import is_at_least
+from .build import At, BuildTarget, Link, is_for_tests
 
 if TYPE_CHECKING:
     from ..view import TargetView
@@ -19,7 +19,7 @@ _OF_PACKAGE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|INCLUDE_DIRS|INCLUDE_D
 
 
 @lru_cache(maxsize=10000)
-def package_of(item: str) -> str:
+def resolve_package(item: str) -> str:
     """The package that a link item stands for: `pkg::target`, `${pkg_LIBRARIES}`, or the item itself."""
     match = _OF_PACKAGE.match(item)
     return match.group(1) if match else item.partition("::")[0]
@@ -40,32 +40,32 @@ def may_hide(item: str, name: str) -> bool:
     return ("::" in plain[-1] and not after) or name.lower().endswith(after)
 
 
-def linked_items(package: Package, target: str) -> set[str] | None:
+def list_linked_items(package: Package, target: str) -> set[str] | None:
     """All that a target is linked to, itself and through targets of its package; None where that cannot be told."""
     targets = {one.name: one for one in package.build.targets}
     items = {link.item for link in package.build.links}
-    for own in reached_targets(targets, (target, *items), ("link", "ament", "objects")):
+    for own in list_reached_targets(targets, (target, *items), ("link", "ament", "objects")):
         if own.kind in ("unknown", "external", "fetched", "imported"):
             return None
         items.update(link.item for link in own.links if link.how in ("link", "ament", "objects"))
     return items
 
 
-def reached_targets(
+def list_reached_targets(
     targets: Mapping[str, BuildTarget], names: Iterable[str], hows: Container[str] | None = None
 ) -> Iterator[BuildTarget]:
     """Targets of a package, by name, and those of it that they are given in turn. hows: what counts, all when None."""
 
-    def linked(name: str) -> Iterator[str]:
+    def list_linked(name: str) -> Iterator[str]:
         own = targets.get(name)
         if own is not None:
             yield own.alias_of
             yield from (link.item for link in own.links if hows is None or link.how in hows)
 
-    return (targets[name] for name in walk(names, linked) if name in targets)
+    return (targets[name] for name in walk(names, list_linked) if name in targets)
 
 
-def exported_targets(package: Package) -> Iterator[BuildTarget]:
+def list_exported_targets(package: Package) -> Iterator[BuildTarget]:
     """The libraries of the package that dependants link as imported targets, through ament_export_targets() or a
     configuration of its own."""
     sets = {e.item for e in package.build.exports if e.how == "ament_export_targets"}
@@ -77,20 +77,20 @@ def exported_targets(package: Package) -> Iterator[BuildTarget]:
             yield target
 
 
-def public_links(target: BuildTarget) -> Iterator[Link]:
+def list_public_links(target: BuildTarget) -> Iterator[Link]:
     """What a target passes on to those who link it. A static library passes all on."""
     for link in target.links:
         if link.how in ("link", "ament", "interfaces") and (link.visibility != "PRIVATE" or target.static):
             yield link
 
 
-def passed_on_package(link: Link) -> str:
+def resolve_passed_package(link: Link) -> str:
     """The package whose targets a link passes on; empty for libraries that are handed on by their paths."""
     if link.how == "ament":
         return "" if "$" in link.item else link.item
     if link.how != "link" or ("$" in link.item and not link.item.endswith("_TARGETS}")):
         return ""
-    return package_of(link.item) if "::" in link.item or "$" in link.item else ""
+    return resolve_package(link.item) if "::" in link.item or "$" in link.item else ""
 
 
 def list_found_names(view: TargetView, package: Package) -> set[str] | None:
@@ -98,9 +98,9 @@ def list_found_names(view: TargetView, package: Package) -> set[str] | None:
     names: set[str] = set()
     for found in package.build.found:
         if found.how == "ament_auto":
-            names.update(n for n, kinds in view.declared(package).items() if kinds & {"build", "buildtool"})
+            names.update(n for n, kinds in view.collect_declared(package).items() if kinds & {"build", "buildtool"})
         names.add(found.name)
-        names.update(p.name for p in view.cmake(found.name))
+        names.update(p.name for p in view.find_cmake(found.name))
     for export in package.build.exports:
         if export.how == "ament_export_dependencies":
             names.add(export.item)
@@ -111,9 +111,9 @@ def list_found_names(view: TargetView, package: Package) -> set[str] | None:
 
 
 def stops_at_names(view: TargetView) -> bool:
-    """Whether ament_target_dependencies() stops at a name that was not found. Before 0.8.0 it meant to, and its test
+    """Whether add_target_dependencies() stops at a name that was not found. Before 0.8.0 it meant to, and its test
     was never true. Source: commit 99d316a of ament_cmake."""
-    return at_least(view.target.version("ament_cmake_target_dependencies") or "0.8.0", "0.8.0")
+    return is_at_least(view.target.find_version("ament_cmake_target_dependencies") or "0.8.0", "0.8.0")
 
 
 def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, str]]:
@@ -122,7 +122,7 @@ def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, s
     for target in package.build.targets:
         for link in target.links:
             conditions = (*target.conditions, *link.conditions)
-            if not view.certain(conditions) or "$" in link.item or link.item in own or for_tests(conditions):
+            if not view.is_sure(conditions) or "$" in link.item or link.item in own or is_for_tests(conditions):
                 continue
             if link.how == "ament":
                 yield link.at, link.item

@@ -1,12 +1,12 @@
-"""Commands over texts: list(), string(), math(), separate_arguments()."""
+"""Commands over texts: list(), string(), run_math(), separate_arguments()."""
 
 import re
 from collections.abc import Sequence
 
-from ...conditions.preprocessor import number_of
+from ...conditions.preprocessor import evaluate_number
 from .blocks import CommandCall
 from .interpreter import Interpreter, handles
-from .regex import REGEX_STEPS, usable
+from .regex import REGEX_STEPS, compile_if_usable
 from .standard import note_variable
 from .values import (
     MAX_TEXT,
@@ -14,11 +14,11 @@ from .values import (
     UNSET,
     CMakeValue,
     Word,
-    position,
+    add_conditions,
+    find_position,
     split_list,
     split_words,
-    with_conditions,
-    word,
+    wrap,
 )
 
 # A text that is cut or given up afterwards may be so long.
@@ -32,13 +32,13 @@ def list_items(values: list[Word]) -> list[Word]:
     items: list[Word] = []
     for value in values:
         if ";" in value:
-            items.extend(value.parts or [word(part, value.at, value.conditions, value.sure) for part in _raw(value)])
+            items.extend(value.parts or [wrap(part, value.at, value.conditions, value.sure) for part in _split(value)])
         else:
             items.append(value)
     return items
 
 
-def _raw(text: str) -> list[str]:
+def _split(text: str) -> list[str]:
     """List items with escaped semicolons left as they are."""
     return split_list(text) if "\\;" not in text else re.split(r"(?<!\\);", text)
 
@@ -53,9 +53,9 @@ def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     if action in ("APPEND", "PREPEND", "INSERT"):
         index = 0
         if action == "INSERT" and rest:
-            index = integer(rest[0]) or 0
+            index = parse_int(rest[0]) or 0
             rest = rest[1:]
-        added = with_conditions(split_words(rest), run.conditions)
+        added = add_conditions(split_words(rest), run.conditions)
         if held is None:
             before: tuple[Word, ...] = ()
             sure = True
@@ -80,7 +80,7 @@ def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     if action == "LENGTH" and rest:
         run.set_text(rest[0], str(len(words)) if known else None, call.at)
     elif action == "GET" and len(rest) >= 2:
-        chosen = [_at(words, index) for index in rest[:-1]]
+        chosen = [_get_at(words, index) for index in rest[:-1]]
         if known and all(item is not None for item in chosen):
             run.set(rest[-1], [item for item in chosen if item is not None])
         else:
@@ -97,9 +97,9 @@ def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         place = str(words.index(rest[0]) if rest[0] in words else -1)
         run.set_text(rest[1], place if known else None, call.at)
     elif action == "JOIN" and len(rest) == 2:
-        run.set_text(rest[1], _joined(str(rest[0]), words), call.at, known)
+        run.set_text(rest[1], _join_words(str(rest[0]), words), call.at, known)
     elif action == "SUBLIST" and len(rest) == 3:
-        start, length = integer(rest[0]), integer(rest[1])
+        start, length = parse_int(rest[0]), parse_int(rest[1])
         if start is None or length is None:
             run.set_unknown(rest[2], call.at)
         else:
@@ -108,7 +108,7 @@ def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         gone = set(split_words(rest))
         _store(run, name, [item for item in words if item not in gone], known)
     elif action == "REMOVE_AT":
-        gone_at = {index if index >= 0 else len(words) + index for index in map(integer, rest) if index is not None}
+        gone_at = {index if index >= 0 else len(words) + index for index in map(parse_int, rest) if index is not None}
         _store(run, name, [item for index, item in enumerate(words) if index not in gone_at], known)
     elif action == "REMOVE_DUPLICATES":
         _store(run, name, list(dict.fromkeys(words)), known)
@@ -120,7 +120,7 @@ def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         kept: list[Word] = []
         run.spend(REGEX_STEPS * len(words) >> 2)
         for item in words:
-            pattern = usable(rest[2], item, run.spend)
+            pattern = compile_if_usable(rest[2], item, run.spend)
             hit = pattern.search(item) is not None if pattern is not None else rest[0] == "INCLUDE"
             if hit == (rest[0] == "INCLUDE"):
                 kept.append(item)
@@ -134,12 +134,12 @@ def _store(run: Interpreter, name: str, words: list[Word], known: bool) -> None:
     run.assign(run.scope, name, CMakeValue(tuple(words), known))
 
 
-def _at(words: tuple[Word, ...], index: Word) -> Word | None:
-    number = integer(index)
+def _get_at(words: tuple[Word, ...], index: Word) -> Word | None:
+    number = parse_int(index)
     return words[number] if number is not None and -len(words) <= number < len(words) else None
 
 
-def _joined(separator: str, words: Sequence[Word]) -> str:
+def _join_words(separator: str, words: Sequence[Word]) -> str:
     """Words joined, up to about the length that a text may have."""
     if len(separator) * len(words) + sum(map(len, words)) <= _LONGEST:
         return separator.join(words)
@@ -153,7 +153,7 @@ def _joined(separator: str, words: Sequence[Word]) -> str:
     return separator.join(parts)
 
 
-def integer(text: str) -> int | None:
+def parse_int(text: str) -> int | None:
     """The number a text is, None when it is none."""
     try:
         return int(text)
@@ -166,7 +166,7 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
     action = rest[0]
     output = name
     if "OUTPUT_VARIABLE" in rest:
-        index = position(rest, "OUTPUT_VARIABLE")
+        index = find_position(rest, "OUTPUT_VARIABLE")
         output = str(rest[index + 1]) if index + 1 < len(rest) else name
         rest = rest[:index]
     operands = {"APPEND": 1, "PREPEND": 1, "REPLACE": 2}.get(action, 0)
@@ -176,7 +176,7 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
     if selector[:1] == ["REGEX"] and len(selector) > 1:
         pattern_text = selector[1]
     elif selector[:1] == ["AT"]:
-        chosen = {index % len(words) if words else 0 for index in map(integer, selector[1:]) if index is not None}
+        chosen = {index % len(words) if words else 0 for index in map(parse_int, selector[1:]) if index is not None}
     elif selector:
         run.set_unknown(output, rest[0].at)
         return
@@ -188,7 +188,7 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
             made.append(item)
             continue
         if pattern_text:
-            pattern = usable(pattern_text, item, run.spend)
+            pattern = compile_if_usable(pattern_text, item, run.spend)
             if pattern is None or not pattern.search(item):
                 made.append(item)
                 continue
@@ -204,13 +204,13 @@ def _transform(run: Interpreter, name: str, words: tuple[Word, ...], rest: list[
         elif action == "STRIP":
             text = item.strip()
         elif action == "REPLACE" and len(rest) > 2:
-            text = _regex_replace(run, rest[1], rest[2], item) or item
-        made.append(word(text, item.at, item.conditions, item.sure))
+            text = _replace_matches(run, rest[1], rest[2], item) or item
+        made.append(wrap(text, item.at, item.conditions, item.sure))
     run.assign(run.scope, output, CMakeValue(tuple(made), known))
 
 
 @handles("string", least=2)
-def string(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_string(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """string()."""
     action, rest = str(args[0]).upper(), args[1:]
     sure = all(item.sure for item in rest)
@@ -222,9 +222,9 @@ def string(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         else:
             run.set(
                 name,
-                [word(part, at, (), sure) for part in _raw(text[:MAX_TEXT])]
+                [wrap(part, at, (), sure) for part in _split(text[:MAX_TEXT])]
                 if ";" in text
-                else [word(text[:MAX_TEXT], at, (), sure)],
+                else [wrap(text[:MAX_TEXT], at, (), sure)],
             )
 
     if action in ("TOLOWER", "TOUPPER") and len(rest) == 2:
@@ -239,7 +239,7 @@ def string(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     elif action == "CONCAT":
         put(rest[0], "".join(rest[1:]))
     elif action == "JOIN" and len(rest) >= 2:
-        put(rest[1], _joined(str(rest[0]), rest[2:]))
+        put(rest[1], _join_words(str(rest[0]), rest[2:]))
     elif action == "STRIP" and len(rest) == 2:
         put(rest[1], rest[0].strip())
     elif action == "LENGTH" and len(rest) == 2:
@@ -249,13 +249,13 @@ def string(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         fits = rest[0] and len(text) + text.count(rest[0]) * len(rest[1]) <= _LONGEST
         put(rest[2], text.replace(rest[0], rest[1]) if fits else None)
     elif action == "SUBSTRING" and len(rest) == 4:
-        begin, length = integer(rest[1]), integer(rest[2])
+        begin, length = parse_int(rest[1]), parse_int(rest[2])
         known = begin is not None and length is not None
         put(rest[3], (rest[0][begin:] if length < 0 else rest[0][begin : begin + length]) if known else None)  # type: ignore[operator]
     elif action == "FIND" and len(rest) >= 3:
         put(rest[2], str(rest[0].rfind(rest[1]) if "REVERSE" in rest[3:] else rest[0].find(rest[1])))
     elif action == "REPEAT" and len(rest) == 3:
-        count = integer(rest[1])
+        count = parse_int(rest[1])
         put(rest[2], rest[0] * count if count is not None and 0 <= count * len(rest[0]) <= MAX_TEXT else None)
     elif action == "COMPARE" and len(rest) == 4:
         order = {
@@ -273,24 +273,24 @@ def string(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     elif action == "GENEX_STRIP" and len(rest) == 2:
         put(rest[1], re.sub(r"\$<[^<>]*>", "", rest[0]))
     elif action == "REGEX" and len(rest) >= 4:
-        _regex(run, rest, sure, put)
+        _run_regex(run, rest, sure, put)
     elif action in ("MD5", "SHA1", "SHA256", "RANDOM", "TIMESTAMP", "UUID", "CONFIGURE", "JSON", "HEX", "ASCII"):
         target = {"RANDOM": len(rest) - 1, "CONFIGURE": 1, "ASCII": len(rest) - 1, "HEX": 1, "MD5": 0}.get(action, 0)
         if 0 <= target < len(rest):
             run.set_unknown(rest[target], at)
 
 
-def _regex(run: Interpreter, rest: list[Word], sure: bool, put) -> None:
+def _run_regex(run: Interpreter, rest: list[Word], sure: bool, put) -> None:
     """string(REGEX MATCH | MATCHALL | REPLACE)."""
     run.spend(REGEX_STEPS)
     mode = rest[0]
     if mode == "REPLACE" and len(rest) >= 5:
-        put(rest[3], _regex_replace(run, rest[1], rest[2], "".join(rest[4:])))
+        put(rest[3], _replace_matches(run, rest[1], rest[2], "".join(rest[4:])))
         return
     if mode not in ("MATCH", "MATCHALL"):
         return
     text = "".join(rest[3:])
-    pattern = usable(rest[1], text, run.spend)
+    pattern = compile_if_usable(rest[1], text, run.spend)
     if pattern is None:
         put(rest[2], None)
     elif not sure:
@@ -298,15 +298,15 @@ def _regex(run: Interpreter, rest: list[Word], sure: bool, put) -> None:
     elif mode == "MATCH":
         found = pattern.search(text)
         if found:
-            run.matched((found.group(), *(group or "" for group in found.groups())))
+            run.set_match_groups((found.group(), *(group or "" for group in found.groups())))
         put(rest[2], found.group() if found else "")
     else:
         put(rest[2], ";".join(found.group() for found in pattern.finditer(text)))
 
 
-def _regex_replace(run: Interpreter, pattern_text: str, replacement: str, text: str) -> str | None:
+def _replace_matches(run: Interpreter, pattern_text: str, replacement: str, text: str) -> str | None:
     """The text with every match replaced, None when it cannot be told."""
-    pattern = usable(pattern_text, text, run.spend)
+    pattern = compile_if_usable(pattern_text, text, run.spend)
     if pattern is None:
         return None
 
@@ -330,13 +330,13 @@ def _regex_replace(run: Interpreter, pattern_text: str, replacement: str, text: 
     return "".join([*parts, text[last:]])
 
 
-# What math() reads; its operators are those of C, whose octal numbers it does not have.
+# What run_math() reads; its operators are those of C, whose octal numbers it does not have.
 _MATH = re.compile(r"(?:\s|0[xX][0-9a-fA-F]{1,15}|\d{1,18}\b|<<|>>|[-+*/%|&^~()])+")
 _LEADING_ZEROS = re.compile(r"\b0+(?=\d)")
 
 
 @handles("math", least=3)
-def math(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_math(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """math(EXPR)."""
     value = calculate(args[2]) if args[2].sure else None
     shown = hex if "HEXADECIMAL" in args[3:] else str
@@ -347,7 +347,7 @@ def calculate(text: str) -> int | None:
     """Value of a math(EXPR) text in 64 bit, None when it is malformed."""
     if len(text) > 1000 or not _MATH.fullmatch(text):
         return None
-    value = number_of(_LEADING_ZEROS.sub("", text))
+    value = evaluate_number(_LEADING_ZEROS.sub("", text))
     return None if value is None else (value + 2**63) % 2**64 - 2**63
 
 
@@ -357,7 +357,7 @@ def separate_arguments(run: Interpreter, call: CommandCall, args: list[Word]) ->
     if len(args) == 1:
         held = run.get(args[0])
         if held is not None:
-            words = [word(part, item.at, item.conditions, item.sure) for item in held.words for part in item.split(" ")]
+            words = [wrap(part, item.at, item.conditions, item.sure) for item in held.words for part in item.split(" ")]
             run.set(args[0], [item for item in words if item], held.sure)
     elif len(args) >= 3:
-        run.set(args[0], [word(part, args[-1].at, (), args[-1].sure) for part in args[-1].split()])
+        run.set(args[0], [wrap(part, args[-1].at, (), args[-1].sure) for part in args[-1].split()])

@@ -16,12 +16,12 @@ else:
 TABLE = Path(__file__).with_name("names.toml")
 
 
-def names(text: str) -> tuple[str, ...]:
+def split_names(text: str) -> tuple[str, ...]:
     """Names written as one text, in their order."""
     return tuple(text.split())
 
 
-def name_set(text: str) -> frozenset[str]:
+def make_name_set(text: str) -> frozenset[str]:
     """Names written as one text, for asking whether one is among them."""
     return frozenset(text.split())
 
@@ -44,7 +44,7 @@ def read_table() -> Table:
 
 
 _TABLE = read_table()
-BUILTIN_COMMANDS = name_set(_TABLE.commands)
+BUILTIN_COMMANDS = make_name_set(_TABLE.commands)
 
 # Command -> the module that brings it. Where two do, the one that is included by name.
 MODULE_OF: dict[str, str] = {
@@ -52,16 +52,16 @@ MODULE_OF: dict[str, str] = {
 }
 
 COMMANDS = BUILTIN_COMMANDS | frozenset(MODULE_OF)
-MODULES = name_set(_TABLE.modules)
+MODULES = make_name_set(_TABLE.modules)
 
 # What a module includes itself.
-MODULES_WITH = {module: names(others) for module, others in _TABLE.brings.items()}
+MODULES_WITH = {module: split_names(others) for module, others in _TABLE.brings.items()}
 
 # Command, module or policy -> the version of CMake that brought it.
 SINCE = _TABLE.since
 
 # Defined and empty here: the target platforms are Linux with GCC.
-FALSE_PLATFORMS = names(
+FALSE_PLATFORMS = split_names(
     """
     WIN32 APPLE MSVC ANDROID MINGW CYGWIN MSYS IOS BORLAND WATCOM XCODE QNX CMAKE_HOST_WIN32 CMAKE_HOST_APPLE
     CMAKE_CL_64 MSVC_IDE MSVC10 MSVC11 MSVC12 MSVC14 MSVC90 MSVC80
@@ -69,7 +69,7 @@ FALSE_PLATFORMS = names(
 )
 
 # Ends of variable names that a found package sets.
-READ_SUFFIXES = names(
+READ_SUFFIXES = split_names(
     """
     _INCLUDE_DIRS _INCLUDE_DIR _INCLUDES _INCLUDE_PATH _LIBRARIES _LIBRARY _LIBS _LIBRARY_DIRS _LIBRARY_DIR _DEFINITIONS
     _EXPORTED_TARGETS _TARGETS _LDFLAGS _CFLAGS _CXX_FLAGS _EXECUTABLE _USE_FILE _VERSION

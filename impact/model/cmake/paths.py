@@ -6,7 +6,7 @@ import posixpath
 from .blocks import CommandCall
 from .interpreter import Interpreter, handles
 from .targets import note_made
-from .values import MAX_WORDS, UNSET, CMakeValue, Word, following, position, word
+from .values import MAX_WORDS, UNSET, CMakeValue, Word, find_next, find_position, wrap
 
 
 @handles("get_filename_component", least=3)
@@ -28,7 +28,7 @@ def get_filename_component(run: Interpreter, call: CommandCall, args: list[Word]
     elif mode == "NAME_WLE":
         result = posixpath.splitext(base)[0]
     elif mode in ("ABSOLUTE", "REALPATH"):
-        start = following(args, "BASE_DIR")
+        start = find_next(args, "BASE_DIR")
         result = run.resolve(text, str(start) if start is not None else None)
     else:
         result = None
@@ -36,15 +36,15 @@ def get_filename_component(run: Interpreter, call: CommandCall, args: list[Word]
 
 
 @handles("cmake_path", least=2)
-def cmake_path(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """cmake_path(), the forms that scripts use."""
+def run_cmake_path(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """run_cmake_path(), the forms that scripts use."""
     action, name, rest = str(args[0]), str(args[1]), args[2:]
     if action == "SET":
         rest = [item for item in rest if item != "NORMALIZE"]
         if rest:
             text = posixpath.normpath(rest[0]) if "NORMALIZE" in args else str(rest[0])
             run.assign(
-                run.scope, name, CMakeValue((word(text, rest[0].at, run.conditions, rest[0].sure),), rest[0].sure)
+                run.scope, name, CMakeValue((wrap(text, rest[0].at, run.conditions, rest[0].sure),), rest[0].sure)
             )
         return
     held = run.get(name)
@@ -52,7 +52,7 @@ def cmake_path(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         held = UNSET
     output = name
     if "OUTPUT_VARIABLE" in rest:
-        index = position(rest, "OUTPUT_VARIABLE")
+        index = find_position(rest, "OUTPUT_VARIABLE")
         output = str(rest[index + 1]) if index + 1 < len(rest) else name
         rest = rest[:index] + rest[index + 2 :]
     text = held.text if held is not None else ""
@@ -77,7 +77,7 @@ def cmake_path(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     elif action == "NORMAL_PATH":
         result = posixpath.normpath(text) if text else ""
     elif action == "ABSOLUTE_PATH":
-        start = following(rest, "BASE_DIRECTORY")
+        start = find_next(rest, "BASE_DIRECTORY")
         result = run.resolve(text, str(start) if start is not None else None)
     elif action == "REMOVE_FILENAME":
         result = text[: len(text) - len(base)]
@@ -96,11 +96,11 @@ def cmake_path(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
 
 
 @handles("file", least=2)
-def file(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def run_file_command(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """file(): GLOB is answered from the tree, paths are computed, everything else is not known."""
     action, rest = str(args[0]).upper(), args[1:]
     if action in ("GLOB", "GLOB_RECURSE"):
-        _glob(run, call, action == "GLOB_RECURSE", rest)
+        _run_glob(run, call, action == "GLOB_RECURSE", rest)
     elif action == "RELATIVE_PATH" and len(rest) == 3:
         known = rest[1].startswith("/") and rest[2].startswith("/")
         result = posixpath.relpath(rest[2], rest[1]) if known else str(rest[2])
@@ -127,7 +127,7 @@ def _write(run: Interpreter, action: str, rest: list[Word]) -> None:
         note_made(run, run.resolve(item), folder=action in ("MAKE_DIRECTORY", "COPY"))
 
 
-def _glob(run: Interpreter, call: CommandCall, recursive: bool, rest: list[Word]) -> None:
+def _run_glob(run: Interpreter, call: CommandCall, recursive: bool, rest: list[Word]) -> None:
     """file(GLOB) and file(GLOB_RECURSE)."""
     name, rest = rest[0], rest[1:]
     start = ""
@@ -146,25 +146,25 @@ def _glob(run: Interpreter, call: CommandCall, recursive: bool, rest: list[Word]
     hits: list[Word] = []
     run.spend(20 * len(patterns))
     for pattern in patterns:
-        relative = run.relative(run.resolve(pattern))
+        relative = run.make_relative(run.resolve(pattern))
         if relative is None:
-            run.give_up(pattern.at, f"file(GLOB) outside the tree: {run.shown(pattern)}")
+            run.give_up(pattern.at, f"file(GLOB) outside the tree: {run.clean(pattern)}")
             continue
         for path in sorted(run.glob(relative, recursive))[: MAX_WORDS - len(hits)]:
-            full = run.absolute(path)
-            hits.append(word(posixpath.relpath(full, start) if start else full, pattern.at))
+            full = run.make_absolute(path)
+            hits.append(wrap(posixpath.relpath(full, start) if start else full, pattern.at))
     run.set(name, dict.fromkeys(hits))
 
 
 @handles("aux_source_directory", least=2)
-def aux_source_directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """aux_source_directory()."""
-    relative = run.relative(run.resolve(args[0]))
+def list_source_directory(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """list_source_directory()."""
+    relative = run.make_relative(run.resolve(args[0]))
     hits = [] if relative is None else run.glob(posixpath.join(relative, "*"), False)
     sources = [path for path in sorted(hits) if path.endswith((".c", ".C", ".cc", ".cpp", ".cxx", ".c++", ".m", ".mm"))]
     held = run.get(args[1])
     before = held.words if held is not None else ()
-    run.set(args[1], (*before, *(word(run.absolute(path), args[0].at) for path in sources)))
+    run.set(args[1], (*before, *(wrap(run.make_absolute(path), args[0].at) for path in sources)))
 
 
 @handles("configure_file", least=2)

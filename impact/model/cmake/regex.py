@@ -36,7 +36,7 @@ class Expression(NamedTuple):
 
 
 @lru_cache(maxsize=512)
-def compiled(pattern: str) -> Expression:
+def compile_expression(pattern: str) -> Expression:
     """An expression for Python."""
     out: list[str] = []
     index = 0
@@ -106,10 +106,10 @@ def compiled(pattern: str) -> Expression:
         return Expression(None)
 
 
-def usable(pattern: str, text: str, spend: Callable[[int], None]) -> re.Pattern[str] | None:
+def compile_if_usable(pattern: str, text: str, spend: Callable[[int], None]) -> re.Pattern[str] | None:
     """The pattern when it is well formed and sure to finish soon on this text. spend: gets what matching it costs, in
     short commands, beyond REGEX_STEPS."""
-    made, repeats, nested, choices = compiled(pattern)
+    made, repeats, nested, choices = compile_expression(pattern)
     if made is None:
         return None
     length = len(text)
@@ -131,7 +131,7 @@ def usable(pattern: str, text: str, spend: Callable[[int], None]) -> re.Pattern[
 
 def match(pattern: str, text: str, spend: Callable[[int], None]) -> tuple[str, ...] | Literal[False] | None:
     """The match (all of it, then the groups), False when there is none, None when it cannot be told."""
-    made = usable(pattern, text, spend)
+    made = compile_if_usable(pattern, text, spend)
     if made is None:
         return None
     found = made.search(text)

@@ -17,7 +17,7 @@ _FEATURE = re.compile(r"cxx_std_(\d\d)\b")
 _NAMES = {"0x": 11, "1y": 14, "1z": 17, "2a": 20, "2b": 23, "2c": 26, "03": 98}
 
 
-def flag_standard(text: str) -> int:
+def parse_flag_standard(text: str) -> int:
     """The standard of a `-std=` flag in a text (`-std=gnu++1z` is 17), 0 when there is none; the last one counts."""
     if "-std=" not in text:
         return 0
@@ -28,7 +28,7 @@ def flag_standard(text: str) -> int:
     return _NAMES.get(name) or (int(name) if name.isdigit() else 0)
 
 
-def feature_standard(text: str) -> int:
+def parse_feature_standard(text: str) -> int:
     """The standard of a `cxx_std_17` compile feature, 0 for any other feature."""
     found = _FEATURE.search(text)
     return int(found.group(1)) if found else 0
@@ -46,7 +46,7 @@ def note_variable(run: Interpreter, name: str, text: str, item: Word) -> None:
             run.add_standard(int(text), item.at, is_default(run), False)
     elif name.startswith("CMAKE_CXX_FLAGS"):
         note_flag_macros(run, text)
-        number = flag_standard(text)
+        number = parse_flag_standard(text)
         if number:
             run.add_standard(number, item.at, is_default(run), True)
 
@@ -54,6 +54,6 @@ def note_variable(run: Interpreter, name: str, text: str, item: Word) -> None:
 def note_options(run: Interpreter, items: Iterable[Word]) -> None:
     """Collects a standard that is set with add_compile_options() or add_definitions()."""
     for item in items:
-        number = flag_standard(item)
+        number = parse_flag_standard(item)
         if number:
             run.add_standard(number, item.at, is_default(run), True)

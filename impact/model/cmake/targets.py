@@ -2,16 +2,16 @@
 
 import re
 
-from ...conditions.cmake import constant
+from ...conditions.cmake import parse_constant
 from .blocks import CommandCall
 from .build import GeneratedInterfaces, Link
 from .drafts import TargetDraft
-from .genex import reduced, rejoin
+from .genex import reduce_expression, rejoin
 from .interpreter import BINARY, Interpreter, handles
 from .macros import note_flag, note_macro
-from .names import name_set
-from .standard import feature_standard, flag_standard, note_options
-from .values import CMakeValue, Word, following, position, split_words, word
+from .names import make_name_set
+from .standard import note_options, parse_feature_standard, parse_flag_standard
+from .values import CMakeValue, Word, find_next, find_position, split_words, wrap
 
 _LIBRARY_KINDS = {
     "STATIC": "library",
@@ -29,7 +29,7 @@ def makes_archives(run: Interpreter) -> bool:
     by what it finds, of which catkin and ament_cmake_ros are known to. Source: cmake-commands(7), add_library()."""
     found = {package.name for package in run.found}
     value = run.get("BUILD_SHARED_LIBS")
-    if value is not None and constant(value.text) is not False:
+    if value is not None and parse_constant(value.text) is not False:
         return False
     return not found.isdisjoint(_AMENT) and found.isdisjoint(_SHARING)
 
@@ -81,25 +81,25 @@ def _is_alias(run: Interpreter, args: list[Word]) -> bool:
     """Makes the target of `add_...(name ALIAS other)`; False for any other signature."""
     if len(args) < 3 or args[1] != "ALIAS":
         return False
-    run.new_target(args[0], "alias", args[0].at).alias_of = str(args[2])
+    run.ensure_target(args[0], "alias", args[0].at).alias_of = str(args[2])
     return True
 
 
 def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None:
     """Gives sources to a target, as paths relative to the workspace root where they can be told."""
     for item in rejoin(items):
-        for part in reduced(item):
+        for part in reduce_expression(item):
             if part.startswith("$<TARGET_OBJECTS"):
-                objects = word(part.partition(":")[2].rstrip(">"), part.at, part.conditions, part.sure)
+                objects = wrap(part.partition(":")[2].rstrip(">"), part.at, part.conditions, part.sure)
                 add_links(run, draft, [objects], "objects")
             elif part:
-                draft.add_source(run.tree_path(part), run.under(part))
+                draft.add_source(run.resolve_tree_path(part), run.merge_with(part))
 
 
 @handles("target_sources", least=1)
-def target_sources(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """target_sources(), FILE_SET forms included."""
-    draft = known(run, args[0])
+def add_target_sources(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """add_target_sources(), FILE_SET forms included."""
+    draft = resolve_target(run, args[0])
     kept: list[Word] = []
     section = ""
     for item in args[1:]:
@@ -114,7 +114,7 @@ def target_sources(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
     add_sources(run, draft, kept)
 
 
-def known(run: Interpreter, name: Word) -> TargetDraft:
+def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
     """The target of this name; one that nothing makes is noted as unknown."""
     draft = run.targets.get(name)
     while draft is not None and draft.kind == "alias" and run.targets.get(draft.alias_of) is not None:
@@ -128,7 +128,7 @@ def known(run: Interpreter, name: Word) -> TargetDraft:
     # add_dependencies() is given what catkin makes (`tests`), and CMake lets it wait for what comes later.
     if run.command != "add_dependencies" and not typesupport and name not in run.maybe_set and "::" not in name:
         run.refuse("no target", name)
-    return run.new_target(name, "generated" if typesupport else "unknown", name.at)
+    return run.ensure_target(name, "generated" if typesupport else "unknown", name.at)
 
 
 # The folders of the prefix that those who link a target search; spaces stand where a list was split.
@@ -153,23 +153,23 @@ def add_links(run: Interpreter, draft: TargetDraft, items: list[Word], how: str,
         if item in _VISIBILITY:
             visibility = _VISIBILITY[item]
             continue
-        for part in reduced(item):
+        for part in reduce_expression(item):
             if part:
-                text = run.tree_path(part) if how == "include" else run.shown(part)
-                draft.links[Link(text, how, run.place(part.at), visibility, run.under(part))] = None
+                text = run.resolve_tree_path(part) if how == "include" else run.clean(part)
+                draft.links[Link(text, how, run.locate(part.at), visibility, run.merge_with(part))] = None
 
 
 @handles("target_link_libraries", "swig_link_libraries", least=1)
-def target_link_libraries(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """target_link_libraries(), old and new keywords."""
+def link_target_libraries(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """link_target_libraries(), old and new keywords."""
     items = split_words(item for item in args[1:] if item not in _LINK_FLAGS)
-    draft = known(run, args[0])
+    draft = resolve_target(run, args[0])
     note_signature(run, draft, args)
     add_links(run, draft, items, "link")
 
 
 def note_signature(run: Interpreter, draft: TargetDraft, args: list[Word]) -> None:
-    """Remembers which signature of target_link_libraries() a call has, and refuses what has both (CMP0023). A variable
+    """Remembers which signature of link_target_libraries() a call has, and refuses what has both (CMP0023). A variable
     that is not known may hold a keyword."""
     if len(args) < 2 or run.silent or run.minimum_policy < (2, 8, 12) or not args[0].sure:
         return
@@ -178,19 +178,19 @@ def note_signature(run: Interpreter, draft: TargetDraft, args: list[Word]) -> No
         return
     other = draft.signatures.get(not keyword)
     opposite = {(held.text, not held.negated) for held in other or ()}
-    if other is not None and not any((held.text, held.negated) in opposite for held in run.under(args[0])):
+    if other is not None and not any((held.text, held.negated) in opposite for held in run.merge_with(args[0])):
         run.refuse("mixed", args[0], other)
-    draft.signatures.setdefault(keyword, run.under(args[0]))
+    draft.signatures.setdefault(keyword, run.merge_with(args[0]))
 
 
 @handles("target_include_directories", least=1)
-def target_include_directories(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """target_include_directories()."""
+def add_target_includes(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """add_target_includes()."""
     items = split_words(item for item in args[1:] if item not in _INCLUDE_FLAGS)
-    draft = known(run, args[0])
+    draft = resolve_target(run, args[0])
     add_links(run, draft, items, "include")
     for found in _INSTALLED.findall(" ".join(items)):
-        draft.installed_includes.update(dict.fromkeys(run.shown(folder) for folder in found.split()))
+        draft.installed_includes.update(dict.fromkeys(run.clean(folder) for folder in found.split()))
 
 
 @handles("include_directories")
@@ -199,8 +199,8 @@ def include_directories(run: Interpreter, call: CommandCall, args: list[Word]) -
     for item in rejoin(split_words(args)):
         if item in _INCLUDE_FLAGS or run.silent:
             continue
-        for part in reduced(item):
-            run.include_dirs[(run.tree_path(part), run.place(part.at))] = None
+        for part in reduce_expression(item):
+            run.include_dirs[(run.resolve_tree_path(part), run.locate(part.at))] = None
 
 
 @handles("link_libraries")
@@ -209,34 +209,34 @@ def link_libraries(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
     for item in rejoin(split_words(args)):
         if item in _LINK_FLAGS or run.silent:
             continue
-        for part in reduced(item):
-            run.links[Link(run.shown(part), "link", run.place(part.at), "", run.under(part))] = None
+        for part in reduce_expression(item):
+            run.links[Link(run.clean(part), "link", run.locate(part.at), "", run.merge_with(part))] = None
 
 
 @handles("rosbuild_link_boost", "target_link_boost", least=1)
 def link_boost(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """rosbuild_link_boost(): Boost libraries by component."""
-    items = [word(f"Boost::{item}", item.at, item.conditions, item.sure) for item in split_words(args[1:])]
-    add_links(run, known(run, args[0]), items, "link")
+    items = [wrap(f"Boost::{item}", item.at, item.conditions, item.sure) for item in split_words(args[1:])]
+    add_links(run, resolve_target(run, args[0]), items, "link")
 
 
 @handles("add_dependencies", least=1)
 def add_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_dependencies()."""
-    add_links(run, known(run, args[0]), split_words(args[1:]), "order")
+    add_links(run, resolve_target(run, args[0]), split_words(args[1:]), "order")
 
 
 def note_made(run: Interpreter, path: str, *, folder: bool = False) -> None:
     """Remembers a file, or a folder, that configuring or building writes into the tree or the build folder."""
-    place = run.relative(path) or (run.shown(path) if path.startswith(BINARY) else "")
+    place = run.make_relative(path) or (run.clean(path) if path.startswith(BINARY) else "")
     if place:
         run.made[f"{place}/" if folder else place] = None
 
 
 def note_written(run: Interpreter, item: Word) -> None:
     """Remembers an argument of a program that names a path of the tree which does not exist: the program makes it."""
-    path = run.relative(item) if item.startswith("/") else None
-    if path and not run.path_exists(item, False):
+    path = run.make_relative(item) if item.startswith("/") else None
+    if path and not run.has_path(item, False):
         run.made[path] = run.made[f"{path}/"] = None
 
 
@@ -256,7 +256,7 @@ def add_custom_command(run: Interpreter, call: CommandCall, args: list[Word]) ->
             note_written(run, item)
 
 
-_OF_CUSTOM_COMMANDS = name_set(
+_OF_CUSTOM_COMMANDS = make_name_set(
     """
     OUTPUT BYPRODUCTS COMMAND MAIN_DEPENDENCY DEPENDS IMPLICIT_DEPENDS WORKING_DIRECTORY COMMENT DEPFILE JOB_POOL
     VERBATIM APPEND USES_TERMINAL COMMAND_EXPAND_LISTS TARGET PRE_BUILD PRE_LINK POST_BUILD ARGS
@@ -285,9 +285,9 @@ def add_custom_target(run: Interpreter, call: CommandCall, args: list[Word]) -> 
 
 
 @handles("target_compile_definitions", least=1)
-def target_compile_definitions(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """target_compile_definitions()."""
-    draft = known(run, args[0])
+def add_target_definitions(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """add_target_definitions()."""
+    draft = resolve_target(run, args[0])
     for item in split_words(args[1:]):
         if item not in _VISIBILITY:
             draft.definitions[item[2:] if item.startswith("-D") else str(item)] = None
@@ -295,15 +295,15 @@ def target_compile_definitions(run: Interpreter, call: CommandCall, args: list[W
 
 
 @handles("target_compile_options", "target_compile_features", least=1)
-def target_compile_options(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """target_compile_options() and target_compile_features(), of which the C++ standard is kept."""
-    draft = known(run, args[0])
+def add_target_options(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """add_target_options() and target_compile_features(), of which the C++ standard is kept."""
+    draft = resolve_target(run, args[0])
     seen = "PUBLIC"
     for item in args[1:]:
         seen = str(item) if item in _VISIBILITY else seen
-        draft.standard = max(draft.standard, flag_standard(item), feature_standard(item))
+        draft.standard = max(draft.standard, parse_flag_standard(item), parse_feature_standard(item))
         if seen != "PRIVATE":
-            draft.public_standard = max(draft.public_standard, feature_standard(item))
+            draft.public_standard = max(draft.public_standard, parse_feature_standard(item))
 
 
 @handles("add_compile_options", "add_definitions")
@@ -325,13 +325,13 @@ def add_compile_definitions(run: Interpreter, call: CommandCall, args: list[Word
 def set_target_properties(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set_target_properties()."""
     if "PROPERTIES" in args:
-        split = position(args, "PROPERTIES")
+        split = find_position(args, "PROPERTIES")
         pairs = args[split + 1 :]
         versions = {f"${{{run.project}_VERSION}}", "${PROJECT_VERSION}"}
         if not any(template.quoted for template in call.templates):
             for item in pairs[1::2]:
                 if item in versions and run.get(item[2:-1]) is None:
-                    run.refuse("no value", word(item, item.at, item.conditions))
+                    run.refuse("no value", wrap(item, item.at, item.conditions))
         for name in split_words(args[:split]):
             for key, value in zip(pairs[::2], pairs[1::2], strict=False):
                 set_target_property(run, name, key, value)
@@ -341,7 +341,7 @@ def set_target_properties(run: Interpreter, call: CommandCall, args: list[Word])
 def set_directory_properties(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set_directory_properties(PROPERTIES key value ...)."""
     if "PROPERTIES" in args:
-        pairs = args[position(args, "PROPERTIES") + 1 :]
+        pairs = args[find_position(args, "PROPERTIES") + 1 :]
         for key, value in zip(pairs[::2], pairs[1::2], strict=False):
             set_directory_property(run, key, [value])
 
@@ -358,7 +358,7 @@ def set_directory_property(run: Interpreter, key: str, values: list[Word]) -> No
             note_macro(run, item, "")
     elif key == "INCLUDE_DIRECTORIES" and not run.silent:
         for item in items:
-            run.include_dirs[(run.tree_path(item), run.place(item.at))] = None
+            run.include_dirs[(run.resolve_tree_path(item), run.locate(item.at))] = None
 
 
 @handles("set_property")
@@ -366,7 +366,7 @@ def set_property(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set_property() on targets and folders; others are remembered for get_property()."""
     if "PROPERTY" not in args[:-1]:
         return
-    split = position(args, "PROPERTY")
+    split = find_position(args, "PROPERTY")
     key, values = args[split + 1], args[split + 2 :]
     owners = [item for item in args[1:split] if item not in ("APPEND", "APPEND_STRING")]
     if args[0] == "TARGET":
@@ -393,7 +393,7 @@ def set_target_property(run: Interpreter, name: Word, key: str, value: Word) -> 
         if value.isdigit():
             draft.standard = max(draft.standard, int(value))
     elif key in ("COMPILE_FLAGS", "COMPILE_OPTIONS"):
-        draft.standard = max(draft.standard, flag_standard(value))
+        draft.standard = max(draft.standard, parse_flag_standard(value))
     elif key in ("OUTPUT_NAME", "LIBRARY_OUTPUT_NAME", "RUNTIME_OUTPUT_NAME"):
         draft.output_name = str(value)
     elif key == "EXPORT_NAME":
@@ -414,7 +414,7 @@ def add_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
 @handles("generate_export_header", least=1)
 def generate_export_header(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """generate_export_header(): a header in the build folder."""
-    base = following(args, "EXPORT_FILE_NAME") or f"{args[0].lower()}_export.h"
+    base = find_next(args, "EXPORT_FILE_NAME") or f"{args[0].lower()}_export.h"
     value = run.scope.get("CMAKE_CURRENT_BINARY_DIR")
     note_made(run, run.resolve(base, value.text if value is not None else None))
 
@@ -425,7 +425,7 @@ _QT_OPTIONS = frozenset({"OPTIONS", "TARGET", "DEPENDS"})
 @handles("qt4_wrap_cpp", "qt5_wrap_cpp", "qt6_wrap_cpp", "qt_wrap_cpp", "qt4_wrap_ui", "qt5_wrap_ui", "qt6_wrap_ui",
          "qt_wrap_ui", "qt4_add_resources", "qt5_add_resources", "qt6_add_resources", "qt_add_resources",
          least=2)  # fmt: skip
-def qt_wrap(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def wrap_qt_files(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Qt's generators: the variable lists files of the build folder, named as Qt names them."""
     shape = {"cpp": "moc_{}.cpp", "ui": "ui_{}.h"}.get(call.name.rpartition("_")[2], "qrc_{}.cpp")
     binary = run.scope["CMAKE_CURRENT_BINARY_DIR"].text
@@ -435,29 +435,29 @@ def qt_wrap(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         if item in _QT_OPTIONS:
             break
         base = item.rpartition("/")[2].rpartition(".")[0] or item.rpartition("/")[2]
-        made.append(word(f"{binary}/{shape.format(base)}", item.at, item.conditions, item.sure))
+        made.append(wrap(f"{binary}/{shape.format(base)}", item.at, item.conditions, item.sure))
     run.set(args[0], made)
 
 
 @handles("protobuf_generate_cpp", "protobuf_generate_python")
-def protobuf_generate_cpp(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def generate_protobuf_cpp(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """protobuf_generate_cpp(SRCS HDRS files...)."""
     outputs = 2 if call.name.endswith("cpp") else 1
     endings = (".pb.cc", ".pb.h") if outputs == 2 else ("_pb2.py",)
     files = [item for item in args[outputs:] if item.endswith(".proto")]
     binary = run.scope["CMAKE_CURRENT_BINARY_DIR"].text
     for name, ending in zip(args[:outputs], endings, strict=False):
-        made = [word(f"{binary}/{item.rpartition('/')[2][:-6]}{ending}", item.at) for item in files]
+        made = [wrap(f"{binary}/{item.rpartition('/')[2][:-6]}{ending}", item.at) for item in files]
         run.set(name, made)
     if files and not run.silent:
-        paths = tuple(run.tree_path(item) for item in files)
-        run.generated.append(GeneratedInterfaces("protobuf", "", paths, (), run.place(call.at), run.conditions))
+        paths = tuple(run.resolve_tree_path(item) for item in files)
+        run.generated.append(GeneratedInterfaces("protobuf", "", paths, (), run.locate(call.at), run.conditions))
 
 
 @handles("protobuf_generate")
-def protobuf_generate(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+def generate_protobuf(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """protobuf_generate(TARGET t PROTOS files...)."""
-    target = str(following(args, "TARGET") or "")
-    files = tuple(run.tree_path(item) for item in args if item.endswith(".proto"))
+    target = str(find_next(args, "TARGET") or "")
+    files = tuple(run.resolve_tree_path(item) for item in args if item.endswith(".proto"))
     if not run.silent:
-        run.generated.append(GeneratedInterfaces("protobuf", target, files, (), run.place(call.at), run.conditions))
+        run.generated.append(GeneratedInterfaces("protobuf", target, files, (), run.locate(call.at), run.conditions))

@@ -31,7 +31,7 @@ class Word(str):
 _new = str.__new__
 
 
-def word(text: str, at: At, conditions: tuple[Condition, ...] = (), sure: bool = True) -> Word:
+def wrap(text: str, at: At, conditions: tuple[Condition, ...] = (), sure: bool = True) -> Word:
     """Makes a Word."""
     made = _new(Word, text)
     made.at = at
@@ -59,7 +59,7 @@ class CMakeValue:
 UNSET = CMakeValue((), True, False)
 
 
-def unsure(value: CMakeValue) -> CMakeValue:
+def make_unsure(value: CMakeValue) -> CMakeValue:
     """The same value, not to be relied upon in conditions."""
     if not value.sure:
         return value
@@ -73,7 +73,7 @@ def join(values: Iterable[CMakeValue | None]) -> CMakeValue | None:
     """One value for what several branches left behind, in order of writing; None stands for never set."""
     distinct: list[CMakeValue | None] = []
     for value in values:
-        if not any(value is other or _same(value, other) for other in distinct):
+        if not any(value is other or _is_same(value, other) for other in distinct):
             distinct.append(value)
     if len(distinct) == 1:
         return distinct[0]
@@ -86,14 +86,14 @@ def join(values: Iterable[CMakeValue | None]) -> CMakeValue | None:
             before = words.setdefault(item, item)
             if before.conditions != item.conditions:
                 common = tuple(c for c in before.conditions if c in item.conditions)
-                words[item] = word(item, before.at, common, before.sure and item.sure)
+                words[item] = wrap(item, before.at, common, before.sure and item.sure)
     made = CMakeValue(tuple(words.values())[:MAX_WORDS], False)
     made.chosen = known[-1].chosen
     made.text = known[-1].text
     return made
 
 
-def _same(one: CMakeValue | None, other: CMakeValue | None) -> bool:
+def _is_same(one: CMakeValue | None, other: CMakeValue | None) -> bool:
     if one is None or other is None:
         return one is other
     return (
@@ -132,10 +132,10 @@ def split_word(item: Word) -> tuple[Word, ...]:
     """The list items inside one word that holds several, each with its own place where that is known."""
     if item.parts:
         return item.parts
-    return tuple(word(part, item.at, item.conditions, item.sure) for part in split_list(item))
+    return tuple(wrap(part, item.at, item.conditions, item.sure) for part in split_list(item))
 
 
-def position(items: Sequence[Word], keyword: str) -> int:
+def find_position(items: Sequence[Word], keyword: str) -> int:
     """Where a keyword stands among arguments, -1 when it does not."""
     for index, item in enumerate(items):
         if item == keyword:
@@ -143,9 +143,9 @@ def position(items: Sequence[Word], keyword: str) -> int:
     return -1
 
 
-def following(items: Sequence[Word], keyword: str) -> Word | None:
+def find_next(items: Sequence[Word], keyword: str) -> Word | None:
     """The argument after a keyword, None when there is none."""
-    index = position(items, keyword)
+    index = find_position(items, keyword)
     return items[index + 1] if 0 <= index < len(items) - 1 else None
 
 
@@ -160,7 +160,7 @@ def split_words(items: Iterable[Word]) -> list[Word]:
     return found
 
 
-def sections(args: list[Word], keywords: frozenset[str]) -> dict[str, list[Word]]:
+def group_by_keyword(args: list[Word], keywords: frozenset[str]) -> dict[str, list[Word]]:
     """Arguments by the keyword they follow; those before any keyword are under the empty one."""
     found: dict[str, list[Word]] = {"": []}
     current = found[""]
@@ -190,15 +190,15 @@ class Template:
         self.parts: tuple = ()
         self.words: tuple[Word, ...]
         if argument.quoting == "[":
-            self.words = (word(raw, at),)
+            self.words = (wrap(raw, at),)
             return
         if "$" not in raw and "\\" not in raw:
             if self.quoted:
-                self.words = (word(raw, at),)
+                self.words = (wrap(raw, at),)
             elif ";" in raw:
-                self.words = tuple(word(part, at) for part in split_list(raw))
+                self.words = tuple(wrap(part, at) for part in split_list(raw))
             else:
-                self.words = (word(raw, at),) if raw else ()
+                self.words = (wrap(raw, at),) if raw else ()
             return
         simple = _SIMPLE.fullmatch(raw)
         self.words = ()
@@ -210,9 +210,9 @@ class Template:
         if all(isinstance(part, str) for part in parts):
             text = "".join(parts)
             if self.quoted:
-                self.words = (word(text, at),)
+                self.words = (wrap(text, at),)
             else:
-                self.words = tuple(word(part, at) for part in split_list(text))
+                self.words = tuple(wrap(part, at) for part in split_list(text))
             return
         self.kind = MIXED
         self.parts = tuple(parts)
@@ -285,12 +285,12 @@ def read_references(
     return "".join(texts), sure, conditions
 
 
-def with_conditions(items: Iterable[Word], conditions: tuple[Condition, ...]) -> tuple[Word, ...]:
+def add_conditions(items: Iterable[Word], conditions: tuple[Condition, ...]) -> tuple[Word, ...]:
     """The words, each under these conditions as well."""
     if not conditions:
         return tuple(items)
     return tuple(
-        item if item.conditions == conditions else word(item, item.at, merge(conditions, item.conditions), item.sure)
+        item if item.conditions == conditions else wrap(item, item.at, merge(conditions, item.conditions), item.sure)
         for item in items
     )
 

@@ -11,9 +11,9 @@ import re
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...targets.providers.includes import HeadersOfMachine, announced, offered
-from ...targets.providers.message_headers import package_of, type_in
-from ...targets.providers.standard import bit_of, named_by, offering, oldest
+from ...targets.providers.includes import HeadersOfMachine, list_announcing_headers, load_offered
+from ...targets.providers.message_headers import find_package, parse_type
+from ...targets.providers.standard import find_named, find_oldest_gcc, get_bit, index_headers
 
 if TYPE_CHECKING:
     from ..package import NeededHeader
@@ -59,13 +59,13 @@ class LostHeaders:
     def __init__(self, view: TargetView, package: Package):
         self._view = view
         self._package = package
-        self._reaches = {path: [view.outward(p) for p in found] for path, found in package.digest.reaches}
-        self._year = view.language(package)
+        self._reaches = {path: [view.find_outward(p) for p in found] for path, found in package.digest.reaches}
+        self._year = view.compute_language(package)
 
     @cached_property
     def _year_asked(self) -> int:
         """The C++ standard that packages from elsewhere ask for, looked up for the few that need it."""
-        return self._view.language_asked(self._package)
+        return self._view.compute_asked_language(self._package)
 
     def find(self, need: NeededHeader) -> LostHeader | None:
         """The header that a use of a name lacks on the target or, where it lacks none, on the newest distro."""
@@ -80,7 +80,7 @@ class LostHeaders:
     def _list_times(self, need: NeededHeader) -> list[_Times]:
         view = self._view
         times = [_Times(view.machine, view.earlier_machines, True)]
-        if view.later_machine is not None and view.later_active(need.conditions):
+        if view.later_machine is not None and view.is_active_later(need.conditions):
             times.append(_Times(view.later_machine, (view.machine,), False))
         return times
 
@@ -91,24 +91,24 @@ def _find_lost(
     """What one of the sources that compile a file misses on a machine: what an earlier one brought along, or nothing
     ever did. year: of the C++ standard."""
     machine, earlier = times.machine, times.earlier
-    standard = bool(bit_of(need.name))
+    standard = bool(get_bit(need.name))
     if standard and not need.whole and need.name.startswith("std::"):
         return None  # a reference to a string or stream, which are announced everywhere
-    headers = offering()[need.name] if standard else _list_offering(view, need.name)
+    headers = index_headers()[need.name] if standard else _list_offering(view, need.name)
     if not headers or not (
-        machine.names(need.name) if standard else any(machine.includes(header) is not None for header in headers)
+        machine.knows_name(need.name) if standard else any(machine.includes(header) is not None for header in headers)
     ):
         return None
     wanted, best = frozenset(headers), None
-    bits, made = machine.bits(wanted), type_in(need.name)
+    bits, made = machine.find_bits(wanted), parse_type(need.name)
     # To a type that is announced, pointers may be made.
-    pointed = 0 if need.whole or standard else machine.bits(announced(need.name))
+    pointed = 0 if need.whole or standard else machine.find_bits(list_announcing_headers(need.name))
     for reach, own in reaches:
         if not wanted.isdisjoint(own):
             continue
         if machine.brings(need.name, reach, year) if standard else machine.brings_any(bits, reach):
             continue
-        if need.name in _EXTENDED and any(package_of(header, machine.ros) is None for header in own):
+        if need.name in _EXTENDED and any(find_package(header, machine.ros) is None for header in own):
             continue  # another package of the workspace may have added one
         outside = _list_outside(view, need.name, reach, machine)
         # Of what the workspace generates itself, all that it brings along reaches the file too.
@@ -116,18 +116,18 @@ def _find_lost(
             continue
         if standard:
             dropped = _find_dropped_name(view, need.name, reach, year, machine, earlier)
-            known_gcc = need.name.startswith("std::") and not outside and machine.gcc >= oldest()
-            found = dropped or (("gcc", machine.version("gcc") or "") if known_gcc else None)
+            known_gcc = need.name.startswith("std::") and not outside and machine.gcc >= find_oldest_gcc()
+            found = dropped or (("gcc", machine.find_version("gcc") or "") if known_gcc else None)
         else:
             dropped = _find_dropped(view, wanted, reach, machine, earlier)
             # Whose headers a platform library's bring, no table tells.
-            all_known = made is not None or all(p.kind == "ros" for path in outside for p in view.header(path))
+            all_known = made is not None or all(p.kind == "ros" for path in outside for p in view.find_header(path))
             found = dropped or (_find_owner(need.name, headers, reach, machine) if all_known else None)
         if found is None or (best is not None and (best.sure or outside)):
             continue
         # Of what reaches the file and is not known, nothing depends on a ROS package whose name it is.
-        known = not outside or not (standard or machine.of_library(headers[0]))
-        sure = known and not pointed & machine.mask(reach)
+        known = not outside or not (standard or machine.is_from_library(headers[0]))
+        sure = known and not pointed & machine.compute_mask(reach)
         best = LostHeader(headers[0], *found, sure, dropped is not None, standard, times.now)
     return best
 
@@ -135,9 +135,9 @@ def _find_lost(
 def _list_offering(view: TargetView, name: str) -> tuple[str, ...]:
     """The headers that offer a name, best first; none for types of interfaces that are the workspace's own, or not
     known on the target."""
-    made = type_in(name)
+    made = parse_type(name)
     if made is None:
-        return offered().get(name) or ()
+        return load_offered().get(name) or ()
     known = made.ros == view.target.ros and made.package not in view.workspace.packages
     return made.headers if known and view.machine.tells(made.headers[0]) else ()
 
@@ -147,13 +147,13 @@ def _find_owner(
 ) -> tuple[str, str] | None:
     """Whose a name is that nothing ever brought, and its version: a Boost library's, where a file includes some of its
     headers, or an interface's."""
-    if (made := type_in(name)) is not None:
-        version = machine.version(made.package)
+    if (made := parse_type(name)) is not None:
+        version = machine.find_version(made.package)
         return (made.package, version) if version else None
     if not name.startswith(("boost::", "BOOST_")):
         return None
-    owners = {owner for header in offering if (owner := machine.owner(header)) is not None}
-    return next((owner for header in sorted(reach) if (owner := machine.owner(header)) in owners), None)
+    owners = {owner for header in offering if (owner := machine.find_owner(header)) is not None}
+    return next((owner for header in sorted(reach) if (owner := machine.find_owner(header)) in owners), None)
 
 
 def _find_dropped(
@@ -165,12 +165,12 @@ def _find_dropped(
 ) -> tuple[str, str] | None:
     """Who brought one of the wanted headers along on the last earlier machine that had it, and its version by now."""
     for before in earlier:
-        bits = before.bits(wanted)
+        bits = before.find_bits(wanted)
         for header in sorted(reach):
-            if bits & before.mask(frozenset((header,))):
+            if bits & before.compute_mask(frozenset((header,))):
                 if view.is_standard(header):
-                    return "gcc", machine.version("gcc") or ""
-                return machine.owner(header)
+                    return "gcc", machine.find_version("gcc") or ""
+                return machine.find_owner(header)
     return None
 
 
@@ -184,15 +184,15 @@ def _find_dropped_name(
 ) -> tuple[str, str] | None:
     """The same for a name of the standard libraries."""
     for before in earlier:
-        if not before.names(name):
+        if not before.knows_name(name):
             continue
         for header in sorted(reach):
             if not before.brings(name, frozenset((header,)), year):
                 continue
-            still = machine.brought(header).standard
-            if view.is_standard(header) or any((named_by(h, before.gcc, year) or 0) & bit_of(name) for h in still):
-                return "gcc", machine.version("gcc") or ""
-            return machine.owner(header)
+            still = machine.find_brought(header).standard
+            if view.is_standard(header) or any((find_named(h, before.gcc, year) or 0) & get_bit(name) for h in still):
+                return "gcc", machine.find_version("gcc") or ""
+            return machine.find_owner(header)
     return None
 
 
@@ -204,19 +204,19 @@ def _list_outside(view: TargetView, name: str, reach: frozenset[str], machine: H
     """
     outside = {
         path
-        for path in machine.outside(reach)
+        for path in machine.list_unknown_headers(reach)
         if not view.is_standard(path)
         and not _OF_PROCESSOR.search(path)
-        and (path in reach or (view.header(path) and not _GENERATED.search(path)))
+        and (path in reach or (view.find_header(path) and not _GENERATED.search(path)))
     }
-    if bit_of(name):
+    if get_bit(name):
         return None if outside & reach else sorted(outside)
-    if (made := type_in(name)) is not None:
+    if (made := parse_type(name)) is not None:
         owners = {made.package}
     else:
-        owners = {owner[0] for header in offered()[name] if (owner := machine.owner(header)) is not None}
+        owners = {owner[0] for header in load_offered()[name] if (owner := machine.find_owner(header)) is not None}
     for path in outside:
-        around = view.around(path)
+        around = view.list_around(path)
         if not around or (path in reach and machine.knows(path)) or not owners.isdisjoint(around):
             return None
     return sorted(outside)

@@ -20,20 +20,20 @@ def list_own_calls(
 
     sources: the targets of each source; none where nothing compiles it. included: the files of the package that a file
     includes itself. spoken: all words of a file. declared: what each of some sources defines and calls."""
-    own_header = {path: next((h for h in included(path) if _stem_of(h) == _stem_of(path)), "") for path in sources}
+    own_header = {path: next((h for h in included(path) if _get_stem(h) == _get_stem(path)), "") for path in sources}
     beside: dict[str, list[str]] = {}
     for path, header in own_header.items():
         if header:
             beside.setdefault(header, []).append(path)
     reach = Reach(lambda path: (included(path), ()))
-    with_source, stems = reach.bits(beside), {header: _plain(_stem_of(header)) for header in beside}
+    with_source, stems = reach.combine_bits(beside), {header: _normalise(_get_stem(header)) for header in beside}
     pairs = []
     for path, targets in sources.items():
         own = own_header[path]
-        if not targets or not (reached := reach.masks((path,))[0] & with_source & ~reach.bit(own)):
+        if not targets or not (reached := reach.collect_masks((path,))[0] & with_source & ~reach.assign_bit(own)):
             continue
-        direct, words = {*included(path), *(included(own) if own else ())}, {_plain(word) for word in spoken(path)}
-        for header in reach.names(reached):
+        direct, words = {*included(path), *(included(own) if own else ())}, {_normalise(word) for word in spoken(path)}
+        for header in reach.list_names(reached):
             # What comes from far counts where the file names the class that the header is called after.
             if header in direct or stems[header] in words:
                 pairs += [(path, other) for other in beside[header] if not set(targets) <= set(sources[other])]
@@ -55,9 +55,9 @@ def list_own_calls(
                 break
 
 
-def _stem_of(path: str) -> str:
+def _get_stem(path: str) -> str:
     return posixpath.basename(path).partition(".")[0]
 
 
-def _plain(name: str) -> str:
+def _normalise(name: str) -> str:
     return name.replace("_", "").lower()

@@ -11,12 +11,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple, TypeVar
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ...facts.cpp.code import CppCode
-from ...facts.cpp.names import closing_angle, split_at_commas, without_templates
+from ...facts.cpp.names import find_closing_angle, split_at_commas, strip_templates
 from ...facts.cpp.schema import CodePlace, CppClass, Declaration, Expr
 from ..api import Vocabulary
-from ..members import InterfaceScope, NamedInterface, section_of
+from ..members import InterfaceScope, NamedInterface, find_section
 from ..members import MemberType as InterfaceType
 
 T = TypeVar("T")
@@ -55,7 +55,7 @@ class CppType(NamedTuple):
         """Whether it is one object, neither pointer nor several."""
         return not self.pointer and not self.several and self.values is None
 
-    def of_interface(self) -> InterfaceType:
+    def make_interface_type(self) -> InterfaceType:
         """The same as a scope of interfaces takes it."""
         assert self.interface is not None
         return InterfaceType(self.interface, self.section)
@@ -83,11 +83,11 @@ def parse_type(text: str) -> Written:
     opened = text.find("<")
     if opened < 0:
         return Written("".join(text.split()), None, "", pointer, array)
-    closed = closing_angle(text, opened)
+    closed = find_closing_angle(text, opened)
     if closed < 0:
         return Written("", None, "", pointer, array)
     inner = tuple(split_at_commas(text[opened + 1 : closed]))
-    tail = without_templates(text[closed + 1 :]).removeprefix("::")
+    tail = strip_templates(text[closed + 1 :]).removeprefix("::")
     return Written("".join(text[:opened].split()), inner, tail, pointer, array)
 
 
@@ -110,7 +110,7 @@ class KnownFile:
     @cached_property
     def classes(self) -> dict[str, list[CppClass]]:
         """Its classes."""
-        return _by_last(self.code.file.classes)
+        return _group_by_last(self.code.file.classes)
 
     @cached_property
     def names(self) -> dict[str, list[Declaration]]:
@@ -130,19 +130,19 @@ class KnownFile:
         """Names that it declares in any way, outside of functions."""
         return frozenset((*self.classes, *self.names, *self.members, *self.code.file.macros))
 
-    def aliases(self, name: str) -> Iterator[Declaration]:
+    def list_aliases(self, name: str) -> Iterator[Declaration]:
         """What a name stands for, outside of classes."""
         if self.mentions(name) and name in self.code.like_aliases:
             yield from (one for one in self.names.get(name, ()) if one.kind == "alias")
 
-    def classes_named(self, last: str) -> list[CppClass]:
+    def list_classes(self, last: str) -> list[CppClass]:
         """Its classes of a name."""
         if self.mentions(last) and last in self.code.like_classes:
             return self.classes.get(last, [])
         return []
 
 
-def _by_last(classes: Iterable[CppClass]) -> dict[str, list[CppClass]]:
+def _group_by_last(classes: Iterable[CppClass]) -> dict[str, list[CppClass]]:
     found: dict[str, list[CppClass]] = {}
     for one in classes:
         if not one.specialised:
@@ -168,7 +168,7 @@ class Resolver:
         """The file itself."""
         return self.files[0]
 
-    def meanings(self, name: str, place: CodePlace) -> Iterator[str]:
+    def list_meanings(self, name: str, place: CodePlace) -> Iterator[str]:
         """The full names that a name as written can stand for, nearest first."""
         around = place.scope
         while around:
@@ -180,13 +180,13 @@ class Resolver:
         for full in place.used:
             if full.rpartition("::")[2] == head:
                 yield full + rest
-        for meant in self._meant(head):
+        for meant in self._list_head_meanings(head):
             yield meant + rest
-        for space in self.opened(place):
+        for space in self.list_opened(place):
             yield f"{space}::{name}"
 
-    @cached_method
-    def _meant(self, head: str) -> tuple[str, ...]:
+    @cache_method
+    def _list_head_meanings(self, head: str) -> tuple[str, ...]:
         """What the head of a name stands for by `using a::head` or `namespace head = a`."""
         found: list[str] = []
         for file in self.files:
@@ -199,7 +199,7 @@ class Resolver:
                 ]
         return tuple(dict.fromkeys(found))
 
-    def opened(self, place: CodePlace) -> tuple[str, ...]:
+    def list_opened(self, place: CodePlace) -> tuple[str, ...]:
         """Namespaces whose names can be written without them."""
         if self._opened is None:
             self._opened = tuple(dict.fromkeys(space for file in self.files for space in file.code.opened))
@@ -209,11 +209,11 @@ class Resolver:
         """Whether the file or a header of the package declares a name itself, outside of functions."""
         return any(file.mentions(word) and word in file.defines for file in self.files)
 
-    @cached_method
-    def homes(self, class_: str) -> list[CppClass]:
+    @cache_method
+    def list_own_classes(self, class_: str) -> list[CppClass]:
         """The classes of the package that a name can be: those of that full name, else those that end so."""
         last = class_.rpartition("::")[2]
-        found = [one for file in self.files for one in file.classes_named(last)]
+        found = [one for file in self.files for one in file.list_classes(last)]
         exact = [one for one in found if one.name == class_]
         ending = f"::{class_}"
         known = exact or [one for one in found if f"::{one.name}".endswith(ending)]
@@ -222,7 +222,7 @@ class Resolver:
             known = [one for one in found if "::" not in one.name]
         return known
 
-    def type_of(self, written: str, place: CodePlace, depth: int = 0) -> CppType | None:
+    def find_type(self, written: str, place: CodePlace, depth: int = 0) -> CppType | None:
         """What a type as written is; None where it is nothing that is known."""
         key = written, place.scope, place.owner
         if key in self._types:
@@ -230,25 +230,25 @@ class Resolver:
         if depth > _DEEPEST:
             return None
         self._types[key] = None
-        found = self._types[key] = self._type_of(written, place, depth)
+        found = self._types[key] = self._resolve_type(written, place, depth)
         return found
 
-    def _type_of(self, written: str, place: CodePlace, depth: int) -> CppType | None:
+    def _resolve_type(self, written: str, place: CodePlace, depth: int) -> CppType | None:
         parts = parse_type(written)
         if not parts.outer:
             return None
         last = parts.outer.rpartition("::")[2]
         found = None
         if parts.arguments is not None and not parts.tail and (last in _POINTERS or last in _SEQUENCES):
-            inner = self.type_of(parts.arguments[0], place, depth + 1) if parts.arguments else None
+            inner = self.find_type(parts.arguments[0], place, depth + 1) if parts.arguments else None
             if inner is not None and not inner.several:
                 found = inner._replace(pointer=True) if last in _POINTERS else inner._replace(several=True)
         elif parts.arguments is not None and not parts.tail and last in _MAPS and len(parts.arguments) > 1:
-            inner = self.type_of(parts.arguments[1], place, depth + 1)
+            inner = self.find_type(parts.arguments[1], place, depth + 1)
             found = CppType("", values=inner) if inner is not None else None
         else:
             name = f"{parts.outer}::{parts.tail}" if parts.tail else parts.outer
-            found = self.named(name, place, depth)
+            found = self.resolve_name(name, place, depth)
             if found is not None and parts.arguments:
                 found = found._replace(arguments=parts.arguments)
         if found is None:
@@ -257,7 +257,7 @@ class Resolver:
             found = found._replace(several=True)
         return found._replace(pointer=True) if parts.pointer else found
 
-    def named(self, name: str, place: CodePlace, depth: int = 0) -> CppType | None:
+    def resolve_name(self, name: str, place: CodePlace, depth: int = 0) -> CppType | None:
         """The class that a name without template arguments is."""
         if name.startswith("::"):
             name, place = name.removeprefix("::"), _NOWHERE
@@ -265,84 +265,86 @@ class Resolver:
         if key in self._named:
             return self._named[key]
         self._named[key] = None
-        found = self._named[key] = self._find_named(name, place, depth)
+        found = self._named[key] = self._resolve_name(name, place, depth)
         return found
 
-    def _find_named(self, name: str, place: CodePlace, depth: int) -> CppType | None:
+    def _resolve_name(self, name: str, place: CodePlace, depth: int) -> CppType | None:
         if depth > _DEEPEST or name == "std" or name.startswith("std::"):
             return None
         head, _, rest = name.partition("::")
         # What the class around declares comes first.
         if place.owner:
-            for one in self.line_of_own(place.owner):
+            for one in self.list_own_lineage(place.owner):
                 for member in one.members.get(head, ()):
                     if member.kind == "alias":
-                        return self._nested(self.type_of(member.type, _inside(one), depth + 1), rest, place, depth)
+                        return self._find_nested(
+                            self.find_type(member.type, _make_class_place(one), depth + 1), rest, place, depth
+                        )
                     if member.kind == "type":
                         name = f"{one.name}::{name}"
                         break
                 for base in one.bases:
                     outer = parse_type(base).outer.removeprefix("::")
                     if outer.rpartition("::")[2] == head and outer != name:
-                        return self._nested(self.type_of(base, around_class(one), depth + 1), rest, place, depth)
-        own = self._own_class(name, place)
+                        return self._find_nested(self.find_type(base, locate_class(one), depth + 1), rest, place, depth)
+        own = self._find_own_class(name, place)
         if own is not None:
             return own
-        meanings = list(dict.fromkeys(self.meanings(name, place)))
+        meanings = list(dict.fromkeys(self.list_meanings(name, place)))
         for file in self.files:
-            for alias in file.aliases(head):
-                inner = self.type_of(alias.type, CodePlace(alias.scope, "", False), depth + 1)
+            for alias in file.list_aliases(head):
+                inner = self.find_type(alias.type, CodePlace(alias.scope, "", False), depth + 1)
                 if inner is not None or not rest:
-                    return self._nested(inner, rest, place, depth)
+                    return self._find_nested(inner, rest, place, depth)
         if self.vocabulary is not None:
             for full in meanings:
                 if full in self.vocabulary.classes:
                     return CppType(full)
         if self.scope is not None:
             for full in meanings:
-                told = self._interface(full)
+                told = self._find_interface(full)
                 if told is not None:
                     return told
         outer, _, last = name.rpartition("::")
         if outer and _POINTED.fullmatch(last):
-            inner = self.named(outer, place, depth + 1)
+            inner = self.resolve_name(outer, place, depth + 1)
             return inner._replace(pointer=True) if inner is not None else None
         if outer and self.vocabulary is not None:
-            around = next((full for full in self.meanings(outer, place) if full in self.vocabulary.classes), None)
-            inner = self._released(around, last, "alias") if around is not None else None
+            around = next((full for full in self.list_meanings(outer, place) if full in self.vocabulary.classes), None)
+            inner = self._find_released(around, last, "alias") if around is not None else None
             if inner is not None:
                 return inner
         shorter = _SUFFIX.sub("", name)
         if shorter and shorter != name and not shorter.endswith("::"):
-            inner = self.named(shorter, place, depth + 1)
+            inner = self.resolve_name(shorter, place, depth + 1)
             return inner._replace(pointer=True) if inner is not None and not inner.own else None
         # An alias of some class, where nothing else is so called.
         found = {
-            self._nested(self.type_of(member.type, _inside(one), depth + 1), rest, place, depth)
+            self._find_nested(self.find_type(member.type, _make_class_place(one), depth + 1), rest, place, depth)
             for file in self.files
             if file.mentions(head) and head in file.code.like_aliases
             for one in file.code.file.classes
             for member in one.members.get(head, ())
             if member.kind == "alias"
         }
-        return _only(found)
+        return _select_only(found)
 
-    def _nested(self, type_: CppType | None, rest: str, place: CodePlace, depth: int) -> CppType | None:
+    def _find_nested(self, type_: CppType | None, rest: str, place: CodePlace, depth: int) -> CppType | None:
         """What `alias::rest` is."""
         if type_ is None or not rest:
             return type_
         if type_.interface is not None:
-            return self._section(type_, rest.split("::"))
-        return self.named(f"{type_.name}::{rest}", _NOWHERE, depth + 1) if type_.name else None
+            return self._select_section(type_, rest.split("::"))
+        return self.resolve_name(f"{type_.name}::{rest}", _NOWHERE, depth + 1) if type_.name else None
 
-    def _own_class(self, name: str, place: CodePlace) -> CppType | None:
+    def _find_own_class(self, name: str, place: CodePlace) -> CppType | None:
         if name.startswith("::"):
             name, place = name.removeprefix("::"), _NOWHERE
         last = name.rpartition("::")[2]
-        names = {one.name for file in self.files for one in file.classes_named(last)}
+        names = {one.name for file in self.files for one in file.list_classes(last)}
         if not names:
             return None
-        for full in self.meanings(name, place):
+        for full in self.list_meanings(name, place):
             if full in names:
                 return CppType(full, own=True)
         if "::" not in name:
@@ -351,21 +353,21 @@ class Resolver:
         found = [full for full in names if full.endswith(ending)]
         return CppType(found[0], own=True) if len(found) == 1 else None
 
-    def _interface(self, name: str) -> CppType | None:
+    def _find_interface(self, name: str) -> CppType | None:
         """The interface that a qualified name is; only one may be meant."""
         assert self.scope is not None
         parts = name.split("::")
         for at in range(len(parts) - 1, max(-1, len(parts) - 4), -1):
-            told = self._plain_interface(parts[: at + 1])
+            told = self._find_plain_interface(parts[: at + 1])
             if told is None:
                 continue
             pointer = any(_POINTED.fullmatch(part) for part in parts[at + 1 :]) or told[2]
-            section = section_of(told[:2], [part for part in parts[at + 1 :] if not _POINTED.fullmatch(part)])
+            section = find_section(told[:2], [part for part in parts[at + 1 :] if not _POINTED.fullmatch(part)])
             if section is not None:
                 return CppType("", pointer=pointer, interface=told[0], section=section)
         return None
 
-    def _plain_interface(self, parts: list[str]) -> tuple[NamedInterface, str, bool] | None:
+    def _find_plain_interface(self, parts: list[str]) -> tuple[NamedInterface, str, bool] | None:
         assert self.scope is not None
         *outer, name = parts
         for spelt in (name, name.removesuffix("Ptr"), name.removesuffix("ConstPtr")):
@@ -381,14 +383,14 @@ class Resolver:
                 return *meant[0], spelt != name
         return None
 
-    def _section(self, type_: CppType, words: list[str]) -> CppType | None:
+    def _select_section(self, type_: CppType, words: list[str]) -> CppType | None:
         assert type_.interface is not None
         pointer = type_.pointer or any(_POINTED.fullmatch(word) for word in words)
         told = type_.interface, type_.section
-        section = section_of(told, [word for word in words if not _POINTED.fullmatch(word)])
+        section = find_section(told, [word for word in words if not _POINTED.fullmatch(word)])
         return type_._replace(section=section, pointer=pointer) if section is not None else None
 
-    def line_of_own(self, class_: str) -> tuple[CppClass, ...]:
+    def list_own_lineage(self, class_: str) -> tuple[CppClass, ...]:
         """A class of the package and those of the package that it is derived from, with the arguments of templates
         written where their parameters stood."""
         known = self._lines.get(class_)
@@ -398,115 +400,115 @@ class Resolver:
         return known
 
     def _find_line(self, class_: str, arguments: tuple[str, ...], depth: int) -> Iterator[CppClass]:
-        homes = self.homes(class_)
+        homes = self.list_own_classes(class_)
         if len(homes) != 1 or depth > _DEEPEST:
             return
-        one = _filled(homes[0], arguments) if homes[0].template and arguments else homes[0]
+        one = _substitute_class(homes[0], arguments) if homes[0].template and arguments else homes[0]
         yield one
         for base in one.bases:
             parts = parse_type(base)
-            own = self._own_class(parts.outer, around_class(one))
+            own = self._find_own_class(parts.outer, locate_class(one))
             if own is not None and own.name != one.name:
                 yield from self._find_line(own.name, parts.arguments or (), depth + 1)
 
-    def bases(self, class_: CppClass) -> list[tuple[str, CppType | None]]:
+    def list_bases(self, class_: CppClass) -> list[tuple[str, CppType | None]]:
         """The bases of a class of the package, with what they are."""
-        return [(base, self.type_of(base, around_class(class_))) for base in class_.bases]
+        return [(base, self.find_type(base, locate_class(class_))) for base in class_.bases]
 
-    def own_member(self, class_: str, word: str, depth: int = 0) -> tuple[str, tuple[str, ...]] | None:
+    def find_own_member(self, class_: str, word: str, depth: int = 0) -> tuple[str, tuple[str, ...]] | None:
         """The changing name of another package that a member of an own class is, by its bases, and the packages in
         between, with an empty one where a base is not known."""
         assert self.vocabulary is not None
-        homes = self.homes(class_)
+        homes = self.list_own_classes(class_)
         if len(homes) != 1 or depth > _DEEPEST or word in homes[0].members:
             return None
         found, strange = None, homes[0].open
-        for base, type_ in self.bases(homes[0]):
+        for base, type_ in self.list_bases(homes[0]):
             if type_ is None:
                 strange = strange or not base.startswith("std::")
             elif type_.own:
-                found = found or self.own_member(type_.name, word, depth + 1)
+                found = found or self.find_own_member(type_.name, word, depth + 1)
             elif type_.name:
-                found = found or self.vocabulary.member(type_.name, word)
+                found = found or self.vocabulary.find_member(type_.name, word)
         if found is not None and strange:
             return found[0], (*found[1], "")
         return found
 
-    def known_bases(self, base: str, place: CodePlace, depth: int = 0) -> list[str]:
+    def list_known_bases(self, base: str, place: CodePlace, depth: int = 0) -> list[str]:
         """The classes of other packages that a base stands for, or is derived from."""
-        type_ = self.type_of(base, place)
+        type_ = self.find_type(base, place)
         if type_ is None or depth > _DEEPEST or not type_.name:
             return []
         if not type_.own:
             return [type_.name]
         return [
             known
-            for one in self.homes(type_.name)
+            for one in self.list_own_classes(type_.name)
             for inner in one.bases
-            for known in self.known_bases(inner, around_class(one), depth + 1)
+            for known in self.list_known_bases(inner, locate_class(one), depth + 1)
         ]
 
-    def value_of(self, expr: Expr, place: CodePlace, depth: int = 0) -> CppType | None:
+    def resolve_value(self, expr: Expr, place: CodePlace, depth: int = 0) -> CppType | None:
         """What an expression is."""
         if depth > 4 * _DEEPEST:
             return None
         kind = expr.kind
         if kind == "name":
-            return self._of_name(expr, place, depth)
+            return self._resolve_name_value(expr, place, depth)
         if kind == "member":
-            return self._of_member(expr, place, depth)
+            return self._resolve_member_value(expr, place, depth)
         if kind == "call":
-            return self._of_call(expr, place, depth)
+            return self._resolve_call_value(expr, place, depth)
         if kind == "index":
-            type_ = self.value_of(expr.parts[0], place, depth + 1)
+            type_ = self.resolve_value(expr.parts[0], place, depth + 1)
             if type_ is not None and type_.values is not None:
                 return type_.values
             return type_._replace(several=False) if type_ is not None and type_.several else None
         if kind == "unary" and expr.text == "*":
-            type_ = self.value_of(expr.parts[0], place, depth + 1)
+            type_ = self.resolve_value(expr.parts[0], place, depth + 1)
             return type_._replace(pointer=False) if type_ is not None and type_.pointer and not type_.several else None
         if kind == "unary" and expr.text == "&":
-            type_ = self.value_of(expr.parts[0], place, depth + 1)
+            type_ = self.resolve_value(expr.parts[0], place, depth + 1)
             return type_._replace(pointer=True) if type_ is not None and type_.plain else None
         if kind == "this":
             return CppType(place.owner, own=True, pointer=True) if place.owner else None
         if kind in ("new", "cast", "braces") and expr.text:
-            type_ = self.type_of(expr.text, place)
+            type_ = self.find_type(expr.text, place)
             return type_._replace(pointer=True) if type_ is not None and kind == "new" else type_
         if kind == "conditional" and len(expr.parts) == 2:
-            one, other = (self.value_of(part, place, depth + 1) for part in expr.parts)
+            one, other = (self.resolve_value(part, place, depth + 1) for part in expr.parts)
             return one if one == other else None
         return None
 
-    def _of_name(self, expr: Expr, place: CodePlace, depth: int) -> CppType | None:
+    def _resolve_name_value(self, expr: Expr, place: CodePlace, depth: int) -> CppType | None:
         local = expr.local
         if local is None:
-            return None if "::" in expr.text else self._variable(expr.text, place)
+            return None if "::" in expr.text else self._resolve_variable(expr.text, place)
         if local.how in ("variable", "parameter"):
             if "auto" not in local.type:
-                return self.type_of(local.type, place) if local.type else None
+                return self.find_type(local.type, place) if local.type else None
             if local.value is None:
                 return None
-            type_ = self.value_of(local.value, place, depth + 1)
+            type_ = self.resolve_value(local.value, place, depth + 1)
             return type_._replace(pointer=True) if type_ is not None and "*" in local.type else type_
         if local.how == "each":
             if "auto" not in local.type:
-                return self.type_of(local.type, place)
-            type_ = self.value_of(local.value, place, depth + 1) if local.value is not None else None
+                return self.find_type(local.type, place)
+            type_ = self.resolve_value(local.value, place, depth + 1) if local.value is not None else None
             return type_._replace(several=False) if type_ is not None and type_.several else None
         return None
 
-    def _variable(self, name: str, place: CodePlace) -> CppType | None:
+    def _resolve_variable(self, name: str, place: CodePlace) -> CppType | None:
         """What a name is that no function declares: a member of the class around, or a variable outside of all."""
         if place.owner:
-            for one in self.line_of_own(place.owner):
+            for one in self.list_own_lineage(place.owner):
                 if name in one.members:
-                    return self._declared_type(one.members[name], _inside(one), "variable")
-            inherited = self._inherited(place.owner, name, "variable")
+                    return self._merge_declared_types(one.members[name], _make_class_place(one), "variable")
+            inherited = self._resolve_inherited(place.owner, name, "variable")
             if inherited is not None:
                 return inherited
         found = [
-            self.type_of(one.type, CodePlace(one.scope, "", False))
+            self.find_type(one.type, CodePlace(one.scope, "", False))
             for file in self.files
             if file.mentions(name)
             for one in file.names.get(name, ())
@@ -514,25 +516,25 @@ class Resolver:
         ]
         return found[0] if found and all(one == found[0] for one in found) else None
 
-    def written_type(self, name: Expr, place: CodePlace) -> str:
+    def find_written_type(self, name: Expr, place: CodePlace) -> str:
         """The type that a variable, parameter or own member is declared with, as it is written there; empty where that
         is not to be told."""
         if name.local is not None:
             return name.local.type if name.local.how in ("variable", "parameter") else ""
-        for one in self.line_of_own(place.owner) if place.owner and "::" not in name.text else ():
+        for one in self.list_own_lineage(place.owner) if place.owner and "::" not in name.text else ():
             written = {each.type for each in one.members.get(name.text, ()) if each.kind == "variable"}
             if written:
-                return _only(written) or ""
+                return _select_only(written) or ""
         return ""
 
-    def _declared_type(self, those: Iterable[Declaration], place: CodePlace, kind: str) -> CppType | None:
+    def _merge_declared_types(self, those: Iterable[Declaration], place: CodePlace, kind: str) -> CppType | None:
         """What several declarations of one name give, where they agree."""
-        found = {self.type_of(one.type, place) if one.type and "auto" not in one.type else None
+        found = {self.find_type(one.type, place) if one.type and "auto" not in one.type else None
                  for one in those if one.kind == kind}  # fmt: skip
-        return _only(found)
+        return _select_only(found)
 
-    def _of_member(self, expr: Expr, place: CodePlace, depth: int, called: bool = False) -> CppType | None:
-        type_ = self.value_of(expr.parts[0], place, depth + 1)
+    def _resolve_member_value(self, expr: Expr, place: CodePlace, depth: int, called: bool = False) -> CppType | None:
+        type_ = self.resolve_value(expr.parts[0], place, depth + 1)
         if type_ is None:
             return None
         if type_.values is not None:
@@ -543,48 +545,48 @@ class Resolver:
             return type_
         if type_.several or type_.pointer != expr.arrow:
             return None
-        return self.step(type_, expr.text, place, called)
+        return self.resolve_member(type_, expr.text, place, called)
 
-    def step(self, type_: CppType, name: str, place: CodePlace, called: bool) -> CppType | None:
+    def resolve_member(self, type_: CppType, name: str, place: CodePlace, called: bool) -> CppType | None:
         """What a member of an object is."""
         if type_.interface is not None:
             if called or self.scope is None:
                 return None
-            found = self.scope.step(type_.of_interface(), name)
+            found = self.scope.resolve_field(type_.make_interface_type(), name)
             return None if found is None else CppType("", several=found.several, interface=found.interface,
                                                    section=found.section)  # fmt: skip
         kind = "function" if called else "variable"
         if not type_.own:
-            return self._released(type_.name, name, kind)
-        for one in self.line_of_own(type_.name):
+            return self._find_released(type_.name, name, kind)
+        for one in self.list_own_lineage(type_.name):
             if name in one.members:
-                found = self._declared_type(one.members[name], _inside(one), kind)
-                written = _only({each.type for each in one.members[name] if each.kind == kind})
+                found = self._merge_declared_types(one.members[name], _make_class_place(one), kind)
+                written = _select_only({each.type for each in one.members[name] if each.kind == kind})
                 if found is None and one.template and type_.arguments and written is not None:
-                    return self.type_of(_filled_text(written, one.template, type_.arguments), place)
+                    return self.find_type(_substitute_text(written, one.template, type_.arguments), place)
                 return found
-        return self._inherited(type_.name, name, kind)
+        return self._resolve_inherited(type_.name, name, kind)
 
-    def _inherited(self, class_: str, name: str, kind: str) -> CppType | None:
+    def _resolve_inherited(self, class_: str, name: str, kind: str) -> CppType | None:
         """What a member is that a class of the package has of its one base of other packages."""
-        bases = [type_ for one in self.line_of_own(class_) for _, type_ in self.bases(one)]
+        bases = [type_ for one in self.list_own_lineage(class_) for _, type_ in self.list_bases(one)]
         others = [type_ for type_ in bases if type_ is None or not type_.own]
-        return self._released(others[0].name, name, kind) if len(others) == 1 and others[0] is not None else None
+        return self._find_released(others[0].name, name, kind) if len(others) == 1 and others[0] is not None else None
 
-    def _released(self, class_: str, name: str, kind: str) -> CppType | None:
+    def _find_released(self, class_: str, name: str, kind: str) -> CppType | None:
         """What a member of a class of other packages is, or gives back, in the versions that are asked about."""
         if self.vocabulary is None or not class_:
             return None
-        around, types = self.vocabulary.types_of(class_, name, kind)
+        around, types = self.vocabulary.find_member_types(class_, name, kind)
         if self._elsewhere is None:
             self._elsewhere = Resolver((), self.vocabulary, None)
-        found = {self._elsewhere.type_of(each, CodePlace(around, "", False)) for each in types}
-        return _only(found)
+        found = {self._elsewhere.find_type(each, CodePlace(around, "", False)) for each in types}
+        return _select_only(found)
 
-    def _of_call(self, expr: Expr, place: CodePlace, depth: int) -> CppType | None:
+    def _resolve_call_value(self, expr: Expr, place: CodePlace, depth: int) -> CppType | None:
         callee = expr.parts[0]
         if callee.kind == "member":
-            return self._of_member(callee, place, depth, called=True)
+            return self._resolve_member_value(callee, place, depth, called=True)
         if callee.kind != "name":
             return None
         if callee.local is not None and callee.local.how != "function":
@@ -593,59 +595,59 @@ class Resolver:
         outer, _, last = name.rpartition("::")
         if callee.template:
             if last in _MAKERS:
-                type_ = self.type_of(callee.template[0], place)
+                type_ = self.find_type(callee.template[0], place)
                 return type_._replace(pointer=True) if type_ is not None else None
             if name in _CASTS:
-                return self.type_of(callee.template[0], place)
+                return self.find_type(callee.template[0], place)
             if last in _POINTER_CASTS:
-                type_ = self.type_of(callee.template[0], place)
+                type_ = self.find_type(callee.template[0], place)
                 return type_._replace(pointer=True) if type_ is not None else None
         if last in _THROUGH and outer in ("std", "boost") and len(expr.parts) == 2:
-            return self.value_of(expr.parts[1], place, depth + 1)
+            return self.resolve_value(expr.parts[1], place, depth + 1)
         if outer and last in _MAKERS and outer not in ("std", "boost"):
-            type_ = self.named(outer, place)
+            type_ = self.resolve_name(outer, place)
             return type_._replace(pointer=True) if type_ is not None else None
         if last in ("shared_from_this", "weak_from_this") and not outer:
             return CppType(place.owner, own=True, pointer=True) if place.owner else None
         written = f"{name}<{', '.join(callee.template)}>" if callee.template else name
-        type_ = self.type_of(written, place)
+        type_ = self.find_type(written, place)
         if type_ is not None and not type_.pointer:
             return type_
-        return self._result(name, place)
+        return self._resolve_result(name, place)
 
-    def _result(self, name: str, place: CodePlace) -> CppType | None:
+    def _resolve_result(self, name: str, place: CodePlace) -> CppType | None:
         """What a function gives back."""
         if "::" not in name and place.owner:
-            for one in self.line_of_own(place.owner):
+            for one in self.list_own_lineage(place.owner):
                 if name in one.members:
-                    return self._declared_type(one.members[name], _inside(one), "function")
-            inherited = self._inherited(place.owner, name, "function")
+                    return self._merge_declared_types(one.members[name], _make_class_place(one), "function")
+            inherited = self._resolve_inherited(place.owner, name, "function")
             if inherited is not None:
                 return inherited
         outer, _, last = name.rpartition("::")
         if outer:
-            class_ = self.named(outer, place)
+            class_ = self.resolve_name(outer, place)
             if class_ is not None and class_.name:
-                return self.step(class_._replace(pointer=False), last, place, True)
+                return self.resolve_member(class_._replace(pointer=False), last, place, True)
         found = {
-            self.type_of(one.type, CodePlace(one.scope, "", False)) if "auto" not in one.type else None
+            self.find_type(one.type, CodePlace(one.scope, "", False)) if "auto" not in one.type else None
             for file in self.files
             if file.mentions(last)
             for one in file.names.get(last, ())
             if one.kind == "function" and (not outer or f"::{one.scope}".endswith(f"::{outer}"))
         }
-        return _only(found)
+        return _select_only(found)
 
 
 _NOWHERE = CodePlace("", "", False)
 
 
-def _only(found: set[T]) -> T | None:
+def _select_only(found: set[T]) -> T | None:
     """The one thing that was found; None where there is none, or several."""
     return next(iter(found)) if len(found) == 1 else None
 
 
-def _filled_text(text: str, parameters: Iterable[str], arguments: Iterable[str]) -> str:
+def _substitute_text(text: str, parameters: Iterable[str], arguments: Iterable[str]) -> str:
     """A type with the arguments of a template in the places of its parameters."""
     for name, given in zip(parameters, arguments, strict=False):
         if name and name in text:
@@ -653,20 +655,20 @@ def _filled_text(text: str, parameters: Iterable[str], arguments: Iterable[str])
     return text
 
 
-def _filled(class_: CppClass, arguments: tuple[str, ...]) -> CppClass:
+def _substitute_class(class_: CppClass, arguments: tuple[str, ...]) -> CppClass:
     """A class with the arguments of its template in the places of the parameters."""
     members = {
-        name: [one._replace(type=_filled_text(one.type, class_.template, arguments)) for one in those]
+        name: [one._replace(type=_substitute_text(one.type, class_.template, arguments)) for one in those]
         for name, those in class_.members.items()
     }
-    bases = tuple(_filled_text(base, class_.template, arguments) for base in class_.bases)
+    bases = tuple(_substitute_text(base, class_.template, arguments) for base in class_.bases)
     return class_._replace(members=members, bases=bases)
 
 
-def _inside(class_: CppClass) -> CodePlace:
+def _make_class_place(class_: CppClass) -> CodePlace:
     return CodePlace(class_.name, class_.name, False)
 
 
-def around_class(class_: CppClass) -> CodePlace:
+def locate_class(class_: CppClass) -> CodePlace:
     """Where the bases of a class are written."""
     return CodePlace(class_.name.rpartition("::")[0], "", False)

@@ -4,15 +4,15 @@ import re
 from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ...facts.cpp.lexical import KEYWORDS
 from ...facts.cpp.schema import CodePlace, Expr, WrittenParameter
 from ...facts.cpp.schema import CppUse as Written
-from ...facts.usage import template_arguments
+from ...facts.usage import find_template_arguments
 from ...targets.surface.overrides import describe_override
 from ..api import ASSIGNING, CALLED, CLASSES, ChangingName, FoundName
 from ..members import FoundField as FoundMember
-from .resolver import CppType, KnownFile, Resolver, around_class
+from .resolver import CppType, KnownFile, Resolver, locate_class
 
 # Both are matched backwards from what stands behind them.
 _LAST_WORD = re.compile(r"\w*[A-Za-z_]")
@@ -55,15 +55,15 @@ class ApiUses:
         self.vocabulary = resolver.vocabulary
         self.unresolved: set[int] = set()
 
-    def found(self, words: Iterable[str]) -> Iterator[FoundName]:
+    def find_uses(self, words: Iterable[str]) -> Iterator[FoundName]:
         """Every use of a name that is looked for and whose last part is among the words."""
         words = list(words)
         home = self.vocabulary.home
-        for use in self.resolver.known.code.uses(words, self._may_matter):
-            for found in (self._use(use), self._construction(use)):
+        for use in self.resolver.known.code.list_uses(words, self._may_matter):
+            for found in (self._resolve_use(use), self._find_construction(use)):
                 if found is not None and found.package not in home and self._differs(found):
                     yield found
-        yield from (found for found in self._overrides(frozenset(words)) if found.package not in home)
+        yield from (found for found in self._find_overrides(frozenset(words)) if found.package not in home)
 
     def _may_matter(self, word: str, at: int) -> bool:
         """Whether a word may be such a use, as far as the text around it shows."""
@@ -72,20 +72,20 @@ class ApiUses:
         while before and text[before - 1] in " \t\n":
             before -= 1
         if word in ASSIGNING:
-            root = _ahead(_LAST_WORD, text, before)
+            root = _find_ahead(_LAST_WORD, text, before)
             if not root:
                 return text[before - 1 : before] == "]"
-            speakers = vocabulary.speakers_of(word)
+            speakers = vocabulary.list_member_speakers(word)
             return root.endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
         sign = text[before - 2 : before]
         if sign == "->" or sign.endswith("."):
-            return vocabulary.of_classes(word) and self._may_be_any(vocabulary.by_last(word), text, at + len(word))
+            return vocabulary.is_member(word) and self._may_be_any(vocabulary.list_by_last(word), text, at + len(word))
         if sign != "::":
-            return not _is_declared(text, before, at) and self._may_be_any(self._named_bare(word), text, at + len(word))
-        scopes = _ahead(_SCOPES, text, before)
+            return not _is_declared(text, before, at) and self._may_be_any(self._list_bare(word), text, at + len(word))
+        scopes = _find_ahead(_SCOPES, text, before)
         if not scopes:  # behind template arguments, or of the global namespace
             of_std = _OF_STD.search(text, max(0, before - _FAR), before) is not None
-            return not of_std and self._may_be_any(vocabulary.by_last(word), text, at + len(word))
+            return not of_std and self._may_be_any(vocabulary.list_by_last(word), text, at + len(word))
         scope = "".join(scopes.split()).removesuffix("::")
         head = scope.partition("::")[0]
         if head == "std":
@@ -95,26 +95,26 @@ class ApiUses:
         end = at + len(word)
         if known is not None and (known.there or (known.what in CALLED and _may_differ(known, text, end))):
             return True
-        if f"{full}::{word}" in vocabulary.constructors(word):
+        if f"{full}::{word}" in vocabulary.list_constructors(word):
             return _may_differ(vocabulary.names[f"{full}::{word}"], text, end)
         if known is not None or scope.endswith(_INTERFACES):
             return False
         if scope not in vocabulary.classes and vocabulary.has_space(head):
             return False
-        return self._may_be_any(vocabulary.by_last(word), text, end)
+        return self._may_be_any(vocabulary.list_by_last(word), text, end)
 
     def _may_be_any(self, names: Iterable[str], text: str, end: int) -> bool:
         """Whether one of some names that all end alike may be used in a way that differs between versions."""
         every = map(self.vocabulary.names.__getitem__, names)
         return any(known.there or (known.what in CALLED and _may_differ(known, text, end)) for known in every)
 
-    @cached_method
-    def _named_bare(self, word: str) -> list[str]:
+    @cache_method
+    def _list_bare(self, word: str) -> list[str]:
         """The names that a word without an object or scopes before it may be: what is around them has to be near."""
-        owners = {name: name.rpartition("::")[0] for name in self.vocabulary.by_last(word)}
-        return [n for n, owner in owners.items() if not owner or self._is_near(self.vocabulary.speakers(owner))]
+        owners = {name: name.rpartition("::")[0] for name in self.vocabulary.list_by_last(word)}
+        return [n for n, owner in owners.items() if not owner or self._is_near(self.vocabulary.list_speakers(owner))]
 
-    @cached_method
+    @cache_method
     def _is_near(self, names: frozenset[str]) -> bool:
         """Whether one of some names stands in the file or in a header of the package that it reaches."""
         return any(file.mentions_any(names) for file in self.resolver.files)
@@ -122,57 +122,57 @@ class ApiUses:
     def _differs(self, found: FoundName) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
 
-    def _use(self, use: Written) -> FoundName | None:
+    def _resolve_use(self, use: Written) -> FoundName | None:
         if use.form == "member":
-            return self._of_object(use)
+            return self._find_object_member(use)
         if use.form == "scoped":
-            return self._in_scope(use)
+            return self._find_scoped(use)
         if use.form == "bare":
-            return self._bare(use)
+            return self._find_bare(use)
         if use.form == "assigned" and use.object is not None:
-            type_ = self.resolver.value_of(use.object, use.place)
-            return self._member(type_, use) if type_ is not None and type_.plain else None
+            type_ = self.resolver.resolve_value(use.object, use.place)
+            return self._find_member(type_, use) if type_ is not None and type_.plain else None
         return None
 
-    def _of_object(self, use: Written) -> FoundName | None:
+    def _find_object_member(self, use: Written) -> FoundName | None:
         assert use.object is not None
         if use.object.kind == "this":
-            return self._of_this(use)
-        type_ = self.resolver.value_of(use.object, use.place)
+            return self._find_this_member(use)
+        type_ = self.resolver.resolve_value(use.object, use.place)
         if type_ is None:
-            if any(self.resolver.known.mentions(one) for one in self.vocabulary.speakers_of(use.word)):
+            if any(self.resolver.known.mentions(one) for one in self.vocabulary.list_member_speakers(use.word)):
                 self.unresolved.add(use.offset)
             return None
-        return self._member(type_, use) if not type_.several and type_.pointer == use.arrow else None
+        return self._find_member(type_, use) if not type_.several and type_.pointer == use.arrow else None
 
-    def _member(self, type_: CppType, use: Written) -> FoundName | None:
+    def _find_member(self, type_: CppType, use: Written) -> FoundName | None:
         if not type_.name:
             return None
         if type_.own:
-            return self._of_own(type_.name, use)
-        member = self.vocabulary.member(type_.name, use.word)
-        return None if member is None else self._found(member[0], use, True, member[1])
+            return self._find_own_member(type_.name, use)
+        member = self.vocabulary.find_member(type_.name, use.word)
+        return None if member is None else self._make_use(member[0], use, True, member[1])
 
-    def _of_own(self, class_: str, use: Written) -> FoundName | None:
-        member = self.resolver.own_member(class_, use.word)
-        return None if member is None else self._found(member[0], use, "" not in member[1], member[1])
+    def _find_own_member(self, class_: str, use: Written) -> FoundName | None:
+        member = self.resolver.find_own_member(class_, use.word)
+        return None if member is None else self._make_use(member[0], use, "" not in member[1], member[1])
 
-    def _in_scope(self, use: Written) -> FoundName | None:
+    def _find_scoped(self, use: Written) -> FoundName | None:
         """`scope::word`."""
         scope = use.name.rpartition("::")[0]
         if scope == "std" or scope.startswith("std::"):
             return None
-        for full in self.resolver.meanings(scope, use.place):
+        for full in self.resolver.list_meanings(scope, use.place):
             name = f"{full}::{use.word}"
             if name in self.vocabulary.names:
-                return self._found(name, use, True, ())
-        type_ = self.resolver.named(scope, use.place)
+                return self._make_use(name, use, True, ())
+        type_ = self.resolver.resolve_name(scope, use.place)
         if type_ is None or type_.own or not type_.plain or not type_.name:
             return None
-        member = self.vocabulary.member(type_.name, use.word)
-        return None if member is None else self._found(member[0], use, True, member[1])
+        member = self.vocabulary.find_member(type_.name, use.word)
+        return None if member is None else self._make_use(member[0], use, True, member[1])
 
-    def _bare(self, use: Written) -> FoundName | None:
+    def _find_bare(self, use: Written) -> FoundName | None:
         names, word = self.vocabulary.names, use.word
         if use.local is not None:
             return None
@@ -180,31 +180,31 @@ class ApiUses:
             # A macro, a function of C, or a type; what else lies in no namespace may be anybody's.
             known = names[word]
             if known.what in _TYPES:
-                return self._found(word, use, True, ()) if self._is_bare_type(use, known.package) else None
+                return self._make_use(word, use, True, ()) if self._is_bare_type(use, known.package) else None
             if known.what not in ("macro", "function", "enumerator") or "_" not in word:
                 return None
-            return None if self.resolver.declares(word) else self._found(word, use, known.package in self.heads, ())
-        full = self._using(use)
+            return None if self.resolver.declares(word) else self._make_use(word, use, known.package in self.heads, ())
+        full = self._find_using(use)
         if full is not None:
-            return self._found(full, use, True, ()) if full in names else None
-        inner = self._of_this(use)
+            return self._make_use(full, use, True, ()) if full in names else None
+        inner = self._find_this_member(use)
         if inner is not None:
             # Without the member, the name is that of the package, if it declares one.
             return None if self.resolver.declares(word) else inner
-        for space in (*self._spaces(use.place), *self.resolver.opened(use.place)):
+        for space in (*self._list_namespaces(use.place), *self.resolver.list_opened(use.place)):
             full = f"{space}::{word}"
             if full in names and names[full].what not in ("method", "field") and not self.resolver.declares(word):
-                return self._found(full, use, False, ())
+                return self._make_use(full, use, False, ())
         return None
 
-    def _spaces(self, place: CodePlace) -> Iterator[str]:
+    def _list_namespaces(self, place: CodePlace) -> Iterator[str]:
         """The namespaces around a place."""
         around = place.scope
         while around:
             yield around
             around = around.rpartition("::")[0]
 
-    def _using(self, use: Written) -> str | None:
+    def _find_using(self, use: Written) -> str | None:
         """The full name that a using declaration makes known."""
         for full in use.place.used:
             if full.rpartition("::")[2] == use.word:
@@ -225,51 +225,52 @@ class ApiUses:
             and (not place.owner or place.scope != place.owner)
             and not self.vocabulary.knows(place.scope.partition("::")[0])
             and not any(
-                file.code.opened or word in file.code.using or any(file.aliases(word)) for file in self.resolver.files
+                file.code.opened or word in file.code.using or any(file.list_aliases(word))
+                for file in self.resolver.files
             )
             and not self.resolver.declares(word)
         )
 
-    def _of_this(self, use: Written) -> FoundName | None:
+    def _find_this_member(self, use: Written) -> FoundName | None:
         """A member of the class around a place that one of its bases in another package has."""
-        if not use.place.owner or not self.vocabulary.of_classes(use.word):
+        if not use.place.owner or not self.vocabulary.is_member(use.word):
             return None
-        return self._of_own(use.place.owner, use)
+        return self._find_own_member(use.place.owner, use)
 
-    def _construction(self, use: Written) -> FoundName | None:
+    def _find_construction(self, use: Written) -> FoundName | None:
         """A constructor that is called where the name of its class stands."""
         if use.call is None or not use.last or use.form in ("member", "assigned") or use.local is not None:
             return None
-        owners = self.vocabulary.constructors(use.word)
+        owners = self.vocabulary.list_constructors(use.word)
         if not owners:
             return None
         if not use.made and use.form != "initializer" and not use.place.function:
             return None
-        type_ = self.resolver.named(use.name, use.place)
+        type_ = self.resolver.resolve_name(use.name, use.place)
         if type_ is None or type_.own or not type_.plain or f"{type_.name}::{use.word}" not in owners:
             return None
         name = f"{type_.name}::{use.word}"
-        count, given = self._given(use)
+        count, given = self._describe_arguments(use)
         return FoundName(self.vocabulary.names[name].package, name, use.offset, "call", count, given,
                      use.template is not None, True, ())  # fmt: skip
 
-    def _found(self, name: str, use: Written, sure: bool, through: tuple[str, ...]) -> FoundName:
+    def _make_use(self, name: str, use: Written, sure: bool, through: tuple[str, ...]) -> FoundName:
         """The use that a name at a place is."""
         known = self.vocabulary.names[name]
         how, count, given = "name", -1, ()
         if known.what in CALLED and use.call is not None and not use.made:
             how = "call"
-            count, given = self._given(use)
+            count, given = self._describe_arguments(use)
         return FoundName(known.package, name, use.offset, how, count, given, use.template is not None, sure, through)
 
-    def _given(self, use: Written) -> tuple[int, tuple[str, ...]]:
+    def _describe_arguments(self, use: Written) -> tuple[int, tuple[str, ...]]:
         """How many arguments a call gives (-1: not to be told), and what each shows itself to be."""
         call = use.call or ()
         if any(argument.kind == "pack" for argument in call):
             return -1, ()
-        return len(call), tuple(self.shown(argument, use.place) for argument in call)
+        return len(call), tuple(self.classify(argument, use.place) for argument in call)
 
-    def shown(self, argument: Expr, place: CodePlace) -> str:
+    def classify(self, argument: Expr, place: CodePlace) -> str:
         """What an argument shows itself to be: `text`, `float`, `integer`, `bool`, `lambda`, `bind`, `null`, `this`,
         `*this`, `new`, `qos` (an rclcpp::QoS) or `profile` (an rmw_qos_profile_t); empty for the rest."""
         kind = argument.kind
@@ -288,7 +289,7 @@ class ApiUses:
             if argument.text == "NULL":
                 return "null"
             made = argument.text.startswith("rmw_qos_profile_")
-            return "profile" if made else self._shown_by_variable(argument, place)
+            return "profile" if made else self._classify_variable(argument, place)
         if kind not in ("call", "braces"):
             return ""
         callee = argument.parts[0] if kind == "call" else None
@@ -299,47 +300,51 @@ class ApiUses:
             return "profile" if name == "get_rmw_qos_profile" else ""
         return "qos" if re.fullmatch(r"rclcpp\s*::\s*\w*QoS", name) else ""
 
-    def _shown_by_variable(self, name: Expr, place: CodePlace) -> str:
+    def _classify_variable(self, name: Expr, place: CodePlace) -> str:
         """The same of a variable, by the type that it is declared with, or by what it begins with; empty where a
         directive stands between its declaration and here, which may leave that out."""
         local = name.local
         if local is not None and _DIRECTIVE.search(self.resolver.known.code.text, local.offset, name.offset):
             return ""
         if local is not None and "auto" in local.type:
-            return self.shown(local.value, place) if local.value is not None and local.how == "variable" else ""
-        type_ = self.resolver.written_type(name, place)
+            return self.classify(local.value, place) if local.value is not None and local.how == "variable" else ""
+        type_ = self.resolver.find_written_type(name, place)
         return next((shown for shown, known in _QOS_TYPES.items() if known.fullmatch(type_)), "")
 
-    def _overrides(self, words: frozenset[str]) -> Iterator[FoundName]:
+    def _find_overrides(self, words: frozenset[str]) -> Iterator[FoundName]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
         code = self.resolver.known.code
         virtual = {
             word for word in words
-            if self._is_near(self.vocabulary.speakers_of_virtual(word)) and code.may_declare(word)
+            if self._is_near(self.vocabulary.list_virtual_speakers(word)) and code.may_declare(word)
         }  # fmt: skip
         for class_ in code.file.classes if virtual and code.may_derive else ():
             if not class_.bases:
                 continue
             declared = sorted(virtual.intersection(class_.members))
-            lines = [self.resolver.known_bases(base, around_class(class_)) for base in class_.bases] if declared else []
+            lines = (
+                [self.resolver.list_known_bases(base, locate_class(class_)) for base in class_.bases]
+                if declared
+                else []
+            )
             for word in declared:
                 for method in class_.members[word]:
                     if method.kind != "function" or "static" in method.traits:
                         continue
                     for line in lines:
-                        member = self._first(line, word)
+                        member = self._find_first(line, word)
                         if member is None:
                             continue
-                        types = tuple(parameter_type(one) for one in method.parameters)
+                        types = tuple(normalise_parameter(one) for one in method.parameters)
                         marks = tuple(mark for mark in ("const", "override") if mark in method.traits)
                         if "final" in method.traits and "override" not in marks:
                             marks = (*marks, "override")
-                        given = describe_override(types, marks, parameter_type(method.type), class_.name)
+                        given = describe_override(types, marks, normalise_parameter(method.type), class_.name)
                         yield FoundName(names[member[0]].package, member[0], method.offset, "override", len(types),
                                     given, False, True, member[1])  # fmt: skip
 
-    def unimplemented(self, exported: Collection[str]) -> Iterator[FoundName]:
+    def find_unimplemented(self, exported: Collection[str]) -> Iterator[FoundName]:
         """Methods that a base class in another package makes others implement in some version, and that an exported
         class of the file does not have. exported: full names of classes that others make objects of."""
         code = self.resolver.known.code
@@ -348,25 +353,25 @@ class ApiUses:
         for class_ in code.file.classes:
             if class_.open or class_.template or not _is_among(class_.name, exported):
                 continue
-            own = self.resolver.line_of_own(class_.name)
+            own = self.resolver.list_own_lineage(class_.name)
             if any(one.open for one in own):
                 continue
             have = {name for one in own for name in one.members}
             for one in own:
                 for base in one.bases:
-                    type_ = self.resolver.type_of(base, around_class(one))
+                    type_ = self.resolver.find_type(base, locate_class(one))
                     if type_ is None or type_.own or not type_.name:
                         continue
-                    for name in self.vocabulary.pure(type_.name):
+                    for name in self.vocabulary.list_pure(type_.name):
                         package = self.vocabulary.names[name].package
                         if name.rpartition("::")[2] not in have and package not in self.vocabulary.home:
                             yield FoundName(package, name, class_.offset, "implement", -1, (), False, True, ())
 
-    def _first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
-        return next((found for one in classes if (found := self.vocabulary.member(one, word)) is not None), None)
+    def _find_first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
+        return next((found for one in classes if (found := self.vocabulary.find_member(one, word)) is not None), None)
 
 
-def _ahead(pattern: re.Pattern[str], text: str, end: int) -> str:
+def _find_ahead(pattern: re.Pattern[str], text: str, end: int) -> str:
     """What stands before an offset of a text, empty where it does not match. pattern: of the same backwards."""
     found = pattern.match(text[max(0, end - _FAR) : end][::-1])
     return found[0][::-1] if found is not None else ""
@@ -375,7 +380,7 @@ def _ahead(pattern: re.Pattern[str], text: str, end: int) -> str:
 def _is_declared(text: str, before: int, at: int) -> bool:
     """Whether the name at an offset stands behind a type, or in a sentence. before: where what stands before it ends.
     In capitals may be a macro, which is no type."""
-    last = _ahead(_LAST_WORD, text, before) if "\n" not in text[before:at] else ""
+    last = _find_ahead(_LAST_WORD, text, before) if "\n" not in text[before:at] else ""
     return last != "" and last not in _NO_TYPES and not last.isupper() and not last.startswith("__")
 
 
@@ -384,7 +389,7 @@ def _may_differ(known: ChangingName, text: str, at: int) -> bool:
     opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
     templated = text.startswith("<", opened)
     if templated:
-        types = template_arguments(text, opened + 1)
+        types = find_template_arguments(text, opened + 1)
         if types is None:
             return True
         opened = types.end()
@@ -397,7 +402,7 @@ def _may_differ(known: ChangingName, text: str, at: int) -> bool:
         opened = _SPACE.match(text, opened).end()  # type: ignore[union-attr]
         if not text.startswith("(", opened):
             return False
-    found = _arguments_near(text, opened)
+    found = _parse_arguments(text, opened)
     if found is None:
         return True
     count, given = found
@@ -406,7 +411,7 @@ def _may_differ(known: ChangingName, text: str, at: int) -> bool:
 
 
 @lru_cache(maxsize=64)  # every name that a word may be asks about the same place
-def _arguments_near(text: str, at: int) -> tuple[int, str] | None:
+def _parse_arguments(text: str, at: int) -> tuple[int, str] | None:
     """How many arguments a bracket gives that opens at an offset (-1 where it opens something else), and their text;
     None where that takes a parser."""
     depth, commas, place = 1, 0, at + 1
@@ -424,7 +429,7 @@ def _arguments_near(text: str, at: int) -> tuple[int, str] | None:
         elif sign == ";" and depth == 1:
             return -1, ""  # the body of a class
         elif sign == "<" and depth == 1:
-            types = template_arguments(text, place)
+            types = find_template_arguments(text, place)
             if types is not None and "," in types.group():
                 return None
         elif sign == "..." and depth == 1:
@@ -448,7 +453,7 @@ def _is_among(class_: str, names: Collection[str]) -> bool:
     return any(f"::{class_}".endswith(f"::{name}") for name in names)
 
 
-def parameter_type(parameter: WrittenParameter | str) -> str:
+def normalise_parameter(parameter: WrittenParameter | str) -> str:
     """The type of a parameter in the form that surfaces have."""
     text = parameter if isinstance(parameter, str) else parameter.type
     return " ".join(re.sub(r"\s*([<>,&*:]+)\s*", r"\1", text).split())
@@ -461,22 +466,22 @@ class MemberUses:
         assert resolver.scope is not None
         self.resolver, self.scope = resolver, resolver.scope
 
-    def found(self, words: Iterable[str], guess: bool) -> Iterator[FoundMember]:
+    def find_uses(self, words: Iterable[str], guess: bool) -> Iterator[FoundMember]:
         """Every use of such a member; guess: also accesses through something whose type does not show, of names that
         only one interface has."""
-        for use in self.resolver.known.code.uses(words):
+        for use in self.resolver.known.code.list_uses(words):
             if use.form == "scoped":
-                found = self._constant(use)
+                found = self._find_constant(use)
             elif use.form == "member" and use.call is None:
-                found = self._field(use, guess)
+                found = self._find_field(use, guess)
             else:
                 continue
             if found is not None:
                 yield found
 
-    def _field(self, use: Written, guess: bool) -> FoundMember | None:
+    def _find_field(self, use: Written, guess: bool) -> FoundMember | None:
         assert use.object is not None
-        type_ = self.resolver.value_of(use.object, use.place)
+        type_ = self.resolver.resolve_value(use.object, use.place)
         if type_ is None:
             if not guess or "_" not in use.word or self._shows(use.object) or self.resolver.declares(use.word):
                 return None
@@ -485,7 +490,7 @@ class MemberUses:
             return FoundMember(*meant[0], use.word, use.offset, False) if len(meant) == 1 else None
         if type_.interface is None or type_.several:
             return None
-        section = self.scope.changes(type_.of_interface(), use.word)
+        section = self.scope.find_changed_section(type_.make_interface_type(), use.word)
         return FoundMember(type_.interface, section, use.word, use.offset, True) if section is not None else None
 
     def _shows(self, object_: Expr) -> bool:
@@ -501,18 +506,18 @@ class MemberUses:
             one.kind == "variable" and "auto" not in one.type
             for file in self.resolver.files
             if file.mentions(object_.text)
-            for one in (*file.names.get(object_.text, ()), *_members(file, object_.text))
+            for one in (*file.names.get(object_.text, ()), *_list_members(file, object_.text))
         )
 
-    def _constant(self, use: Written) -> FoundMember | None:
+    def _find_constant(self, use: Written) -> FoundMember | None:
         """`pkg::msg::Type::CONSTANT`, also through an alias or a part (`Type::Request::CONSTANT`)."""
-        type_ = self.resolver.named(use.name.rpartition("::")[0], use.place)
+        type_ = self.resolver.resolve_name(use.name.rpartition("::")[0], use.place)
         if type_ is None or type_.interface is None:
             return None
-        if self.scope.changes(type_.of_interface(), use.word) is None:
+        if self.scope.find_changed_section(type_.make_interface_type(), use.word) is None:
             return None
         return FoundMember(type_.interface, type_.section, use.word, use.offset, True)
 
 
-def _members(file: KnownFile, name: str):
+def _list_members(file: KnownFile, name: str):
     return [one for class_ in file.code.file.classes for one in class_.members.get(name, ())]

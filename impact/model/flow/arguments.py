@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from ...facts.flow import FlowCall, FlowExpr
-from .code import FlowCode, Fn, around, is_number, tail
+from .code import FlowCode, Fn, get_outer, get_tail, is_number
 
 # Functions that give argv without what is ROS's; those of C++ put it into their third argument or return it.
 _COPIES = frozenset(
@@ -41,17 +41,17 @@ class CommandLine:
             begun = self.start(value.parts[0], fn, depth + 1)
             return begun + int(value.parts[1].text) if begun is not None and is_number(value.parts[1].text) else None
         if value.kind == "call":
-            return 0 if tail(value.text) in _COPIES else None
+            return 0 if get_tail(value.text) in _COPIES else None
         if value.kind != "name":
             return None
-        if fn.source.facts.language == "python" and self.code.meant(value.text, fn.source) == "sys.argv":
+        if fn.source.facts.language == "python" and self.code.resolve_name(value.text, fn.source) == "sys.argv":
             return 0
         if fn.name == "main" and [parameter.name for parameter in fn.facts.parameters[1:2]] == [value.text]:
             return 0
-        variable = self.code.identity(value.text, fn)
+        variable = self.code.identify(value.text, fn)
         if any(call.arguments[2] == value for call in self._copies.get(fn, ())):
             return 0
-        for writer, each in self.code.writes(variable):
+        for writer, each in self.code.list_writes(variable):
             if each.value != value and each.operator == "=":
                 begun = self.start(each.value, writer, depth + 1)
                 if begun is not None:
@@ -62,12 +62,12 @@ class CommandLine:
     def _copies(self) -> dict[Fn, list[FlowCall]]:
         """Calls that put a copy of argv into their third argument, by the function they stand in."""
         found: dict[Fn, list[FlowCall]] = {}
-        for fn, call in self.code.calls_named(_COPIES):
+        for fn, call in self.code.list_calls_named(_COPIES):
             if len(call.arguments) == 3:
                 found.setdefault(fn, []).append(call)
         return found
 
-    def places(self, container: FlowExpr, index: FlowExpr, fn: Fn) -> range | None:
+    def find_places(self, container: FlowExpr, index: FlowExpr, fn: Fn) -> range | None:
         """The places of argv that an element may be of, None for what is no element of it; open ended where the index
         is not a number."""
         begun = self.start(container, fn)
@@ -79,13 +79,13 @@ class CommandLine:
             return range(begun + int(index.text), begun + int(index.text) + 1)
         first = 0
         if index.kind == "name":
-            for _, each in self.code.writes(self.code.identity(index.text, fn)):
+            for _, each in self.code.list_writes(self.code.identify(index.text, fn)):
                 if each.operator == "=" and each.value.kind == "number" and is_number(each.value.text):
                     first = int(each.value.text)
                     break
         return range(begun + first, 10_000)
 
-    def excluded(self, fn: Fn, guard: int, number: int) -> bool:
+    def excludes(self, fn: Fn, guard: int, number: int) -> bool:
         """Whether a guard cannot hold with argc being number."""
         guards, seen = fn.facts.guards, 0
         while 0 <= guard < len(guards) and seen < 64:
@@ -98,38 +98,38 @@ class CommandLine:
 
     # argparse
 
-    def parsed(self, path: str, fn: Fn, arguments: Sequence[str] | None) -> Iterator[tuple[str, str]]:
+    def list_parsed_texts(self, path: str, fn: Fn, arguments: Sequence[str] | None) -> Iterator[tuple[str, str]]:
         """What `args.topic` is: texts with `given` for those of the command line, and `default`.
 
         arguments: what is given to the program, None where that is not known. Nothing where it is none of argparse's.
         """
-        head, name = around(path), tail(path)
+        head, name = get_outer(path), get_tail(path)
         if not head or fn.source.facts.language != "python":
             return
-        for writer, each in self.code.writes(self.code.identity(head, fn)):
+        for writer, each in self.code.list_writes(self.code.identify(head, fn)):
             value = each.value.parts[0] if each.value.kind == "index" and each.value.parts else each.value
-            if value.kind != "call" or tail(value.text) not in ("parse_args", "parse_known_args"):
+            if value.kind != "call" or get_tail(value.text) not in ("parse_args", "parse_known_args"):
                 continue
-            options = list(self._options(around(value.text), writer))
+            options = list(self._list_options(get_outer(value.text), writer))
             found = _read(options, name, arguments)
             if found is not None:
                 yield found
 
-    def _options(self, parser: str, fn: Fn) -> Iterator[tuple[tuple[str, ...], dict[str, object]]]:
+    def _list_options(self, parser: str, fn: Fn) -> Iterator[tuple[tuple[str, ...], dict[str, object]]]:
         """What `parser.add_argument()` is told, as far as it is literal."""
-        wanted = self.code.identity(parser, fn)
+        wanted = self.code.identify(parser, fn)
         for call in fn.facts.calls:
-            if tail(call.callee) not in ("add_argument", "add_option"):
+            if get_tail(call.callee) not in ("add_argument", "add_option"):
                 continue
-            if self.code.identity(around(call.callee), fn) != wanted:
+            if self.code.identify(get_outer(call.callee), fn) != wanted:
                 continue
             names = tuple(a.text for a in call.arguments if a.kind == "text")
-            told = {a.text: _literal(a.parts[0]) for a in call.arguments if a.kind == "keyword" and a.parts}
+            told = {a.text: _evaluate_literal(a.parts[0]) for a in call.arguments if a.kind == "keyword" and a.parts}
             kept = ("dest", "default", "nargs", "action")
             yield names, {key: value for key, value in told.items() if key in kept and value is not None}
 
 
-def _literal(value: FlowExpr) -> object:
+def _evaluate_literal(value: FlowExpr) -> object:
     if value.kind == "text":
         return value.text
     if value.kind == "number":
@@ -141,7 +141,7 @@ def _literal(value: FlowExpr) -> object:
         with contextlib.suppress(ValueError):
             return float(value.text)
     if value.kind == "list":
-        return [_literal(part) for part in value.parts]
+        return [_evaluate_literal(part) for part in value.parts]
     return None
 
 

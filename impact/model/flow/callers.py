@@ -53,7 +53,7 @@ class Callers(msgspec.Struct, frozen=True, array_like=True, dict=True):
                 found.setdefault(caller, []).append(place)
         return found
 
-    def leading_to(self, path: str, name: str, line: int) -> list[Led]:
+    def list_triggers(self, path: str, name: str, line: int) -> list[Led]:
         """What triggers a function, itself or through its callers, nearest first."""
         place = self._places.get((path, name, line))
         if place is None:
@@ -65,7 +65,7 @@ class Callers(msgspec.Struct, frozen=True, array_like=True, dict=True):
                 found.setdefault(trigger, Led(trigger, steps, one))
         return list(found.values())
 
-    def called_from(self, path: str, name: str, line: int) -> list[Called]:
+    def list_called(self, path: str, name: str, line: int) -> list[Called]:
         """A function and all that it calls, nearest first; empty where it is not known."""
         place = self._places.get((path, name, line))
         if place is None:
@@ -84,7 +84,7 @@ class Callers(msgspec.Struct, frozen=True, array_like=True, dict=True):
                 queue.extend((each, steps + 1) for each in fresh)
 
 
-def callers(join: Join) -> Callers:
+def build_callers(join: Join) -> Callers:
     """The callers of all functions of a Join."""
     code, triggers = join.code, join.triggers
     above: dict[Fn, list[Fn]] = {}
@@ -92,7 +92,7 @@ def callers(join: Join) -> Callers:
         calling = [caller for caller, _ in code.callers.get(fn, ())]
         if not calling and not triggers.get(fn):
             # What is only defined there, a lambda or an inner function, runs because of what is around it.
-            around = code.enclosing(fn)
+            around = code.find_enclosing(fn)
             calling = [around] if around is not None else []
         above[fn] = list(dict.fromkeys(calling))
     calls = {caller for calling in above.values() for caller in calling}

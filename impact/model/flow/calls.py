@@ -10,9 +10,9 @@ from msgspec import structs
 
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import Assignment, FlowCall, FlowExpr
-from .code import FlowCode, Fn, Variable, around, parts_of, tail
+from .code import FlowCode, Fn, Variable, get_outer, get_tail, split_name
 from .frameworks import FrameworkRow, Frameworks, Spot
-from .types import FlowType, parsed
+from .types import FlowType, parse_flow_type
 
 # Names that mean something else in most code: their receiver has to be known to be of the framework.
 _COMMON = frozenset(
@@ -46,18 +46,18 @@ class Calls:
         """In the order of files and lines."""
         found: list[FrameworkCall] = []
         described: dict[Fn, list[FlowCall]] = {}
-        for fn, call in self.code.calls_named(self.table.calls):
+        for fn, call in self.code.list_calls_named(self.table.calls):
             described.setdefault(fn, []).append(call)
         for fn in self.code.functions:
             for call in described.get(fn, ()):
-                use = self.use_of(fn, call)
+                use = self.find_use(fn, call)
                 if use is not None:
                     found.append(use)
-            found.extend(self._objects(fn))
+            found.extend(self._list_objects(fn))
         found.sort(key=lambda use: (use.fn.source.path, use.call.line, use.call.column))
         return found
 
-    def doing(self, what: str) -> list[FrameworkCall]:
+    def select_uses(self, what: str) -> list[FrameworkCall]:
         """The uses that do something, as their rows call it; in order."""
         return self._doing.get(what, [])
 
@@ -68,26 +68,26 @@ class Calls:
             found.setdefault(use.row.does, []).append(use)
         return found
 
-    def kinds_of(self, kind: FlowType, fn: Fn) -> frozenset[str]:
+    def find_kinds(self, kind: FlowType, fn: Fn) -> frozenset[str]:
         """Kinds of framework classes that a type belongs to, by itself or by its bases."""
         if not kind.name:
             return frozenset()
         known = self._kinds.get(kind)
         if known is None:
-            found = {self.table.kind_of(kind.name)}
-            cls = self.code.class_of(kind.name, fn.source, fn.scope)
+            found = {self.table.find_kind(kind.name)}
+            cls = self.code.find_class(kind.name, fn.source, fn.scope)
             if cls is not None:
-                found |= {self.table.kind_of(name) for name in self.code.base_names(cls) if name}
+                found |= {self.table.find_kind(name) for name in self.code.list_base_names(cls) if name}
             known = self._kinds[kind] = frozenset(found - {""})
         return known
 
-    def own_kinds(self, fn: Fn) -> frozenset[str]:
+    def find_own_kinds(self, fn: Fn) -> frozenset[str]:
         """Kinds of the class that a function belongs to."""
-        return self.kinds_of(FlowType(fn.facts.owner), fn) if fn.facts.owner else frozenset()
+        return self.find_kinds(FlowType(fn.facts.owner), fn) if fn.facts.owner else frozenset()
 
-    def use_of(self, fn: Fn, call: FlowCall) -> FrameworkCall | None:
+    def find_use(self, fn: Fn, call: FlowCall) -> FrameworkCall | None:
         """The use that a call is, None when no row describes it."""
-        rows = self.table.calls.get(tail(call.callee))
+        rows = self.table.calls.get(get_tail(call.callee))
         if not rows:
             return None
         key = id(call)
@@ -97,70 +97,70 @@ class Calls:
 
     def _find_use(self, fn: Fn, call: FlowCall, rows: list[FrameworkRow]) -> FrameworkCall | None:
         language = fn.source.facts.language
-        receiver, kinds, free = self._receiver(fn, call)
+        receiver, kinds, free = self._resolve_receiver(fn, call)
         weak = None
         for row in rows:
             if row.language and row.language != language:
                 continue
-            if row.first and not self._first_fits(row.first, fn, call):
+            if row.first and not self._fits_first(row.first, fn, call):
                 continue
             if row.free or row.on:
                 if free is not None and (free in row.free and (free or not receiver)):
                     return FrameworkCall(fn, row, call)
                 if kinds & set(row.on):
                     return FrameworkCall(fn, row, call)
-                unknown = row.on and receiver and not kinds and not self.code.targets(call.callee, fn)
+                unknown = row.on and receiver and not kinds and not self.code.list_targets(call.callee, fn)
                 # A receiver of a type that is none of ours is not of the framework.
-                if weak is None and unknown and not self._typed(receiver, fn) and self._distinct(row, call):
+                if weak is None and unknown and not self._has_type(receiver, fn) and self._is_distinct(row, call):
                     weak = FrameworkCall(fn, row, call, False)
                 continue
             if free is not None and free not in ("rclcpp", "this", "") and "::" in call.callee:
                 continue
-            if self.code.targets(call.callee, fn) and not kinds & {"node"}:
+            if self.code.list_targets(call.callee, fn) and not kinds & {"node"}:
                 continue  # a function of the code's own that has the same name
             return FrameworkCall(fn, row, call)
         return weak
 
-    def _receiver(self, fn: Fn, call: FlowCall) -> tuple[str, frozenset[str], str | None]:
+    def _resolve_receiver(self, fn: Fn, call: FlowCall) -> tuple[str, frozenset[str], str | None]:
         """The receiver as written, its kinds, and the scope of a function that has no receiver."""
         callee = call.callee
         if fn.source.facts.language == "python":
-            receiver = around(callee)
+            receiver = get_outer(callee)
             if receiver in ("this", "super()"):
-                return receiver, self.own_kinds(fn), None
-            meant = self.code.meant(callee, fn.source)
-            head = parts_of(callee)[0] if callee else ""
+                return receiver, self.find_own_kinds(fn), None
+            meant = self.code.resolve_name(callee, fn.source)
+            head = split_name(callee)[0] if callee else ""
             imported = meant != callee or head in self.code.aliases[fn.source.path]
             if not receiver or imported:
-                return receiver, frozenset(), around(meant)
-            return receiver, self.kinds_of(self.code.type_of_name(receiver, fn), fn), None
+                return receiver, frozenset(), get_outer(meant)
+            return receiver, self.find_kinds(self.code.resolve_name_type(receiver, fn), fn), None
         if "." in callee:
             receiver = callee.rpartition(".")[0]
             if receiver == "this":
-                return receiver, self.own_kinds(fn), None
+                return receiver, self.find_own_kinds(fn), None
             if receiver.endswith("()"):
-                kind = self.code.type_of_call(receiver, fn)
+                kind = self.code.resolve_call_type(receiver, fn)
             else:
-                kind = self.code.type_of_name(receiver, fn)
-            return receiver, self.kinds_of(kind, fn) | self._getter(receiver), None
+                kind = self.code.resolve_name_type(receiver, fn)
+            return receiver, self.find_kinds(kind, fn) | self._find_getter_kinds(receiver), None
         if "::" in callee:
-            return "", frozenset(), around(self.code.meant(callee, fn.source, fn.scope))
-        return "", self.own_kinds(fn), ""
+            return "", frozenset(), get_outer(self.code.resolve_name(callee, fn.source, fn.scope))
+        return "", self.find_own_kinds(fn), ""
 
-    def _getter(self, receiver: str) -> frozenset[str]:
+    def _find_getter_kinds(self, receiver: str) -> frozenset[str]:
         """What well-known functions give: nodelets hand out node handles."""
-        name = tail(receiver.removesuffix("()")) if receiver.endswith("()") else ""
+        name = get_tail(receiver.removesuffix("()")) if receiver.endswith("()") else ""
         return frozenset(("handle",)) if name.endswith("NodeHandle") and name.startswith("get") else frozenset()
 
-    def _typed(self, receiver: str, fn: Fn) -> bool:
-        return bool(not receiver.endswith("()") and self.code.type_of_name(receiver, fn).name)
+    def _has_type(self, receiver: str, fn: Fn) -> bool:
+        return bool(not receiver.endswith("()") and self.code.resolve_name_type(receiver, fn).name)
 
-    def _distinct(self, row: FrameworkRow, call: FlowCall) -> bool:
+    def _is_distinct(self, row: FrameworkRow, call: FlowCall) -> bool:
         if row.does in ("publisher", "subscriber") and call.types:
             return True
-        return tail(call.callee) not in _COMMON or row.does == "publish"
+        return get_tail(call.callee) not in _COMMON or row.does == "publish"
 
-    def _first_fits(self, wanted: str, fn: Fn, call: FlowCall) -> bool:
+    def _fits_first(self, wanted: str, fn: Fn, call: FlowCall) -> bool:
         positional = [argument for argument in call.arguments if argument.kind != "keyword"]
         if not positional:
             return wanted == "other" or (wanted == "text" and bool(call.arguments))
@@ -171,96 +171,98 @@ class Calls:
         if value.kind == "name":
             if value.text == "this" or value.text in ("self", "*this"):
                 return True
-            if self.kinds_of(self.code.type_of(value, fn), fn) & {
+            if self.find_kinds(self.code.resolve_type(value, fn), fn) & {
                 "node",
                 "handle",
                 "image_transport",
                 "cloud_transport",
             }:
                 return True
-            kind = self.code.type_of(value, fn).name
-            return tail(kind) in ("NodeT", "NodeType", "Node") or (not kind and tail(value.text).strip("_") in _NODES)
+            kind = self.code.resolve_type(value, fn).name
+            return get_tail(kind) in ("NodeT", "NodeType", "Node") or (
+                not kind and get_tail(value.text).strip("_") in _NODES
+            )
         if value.kind == "call":
-            name = tail(value.text)
-            if self.kinds_of(self.code.type_of(value, fn), fn) & {"node", "handle"}:
+            name = get_tail(value.text)
+            if self.find_kinds(self.code.resolve_type(value, fn), fn) & {"node", "handle"}:
                 return True
             return name in ("shared_from_this", "lock", "get_node_base_interface", "getNodeHandle") or (
                 name.endswith("NodeHandle") or name.startswith("get_node")
             )
         return value.kind == "other" and "this" in value.text
 
-    def _objects(self, fn: Fn) -> Iterator[FrameworkCall]:
+    def _list_objects(self, fn: Fn) -> Iterator[FrameworkCall]:
         seen = set()
-        for name, call in self._made(fn):
-            for row in self._rows(name, fn):
+        for name, call in self._list_made(fn):
+            for row in self._list_rows(name, fn):
                 if row.does == "node" and not call.arguments:
                     continue
-                if row.first and not self._first_fits(row.first, fn, call):
+                if row.first and not self._fits_first(row.first, fn, call):
                     continue
                 key = (row.types, call.line, call.target)
                 if key not in seen:
                     seen.add(key)
                     yield FrameworkCall(fn, row, call)
 
-    def _rows(self, name: str, fn: Fn) -> list[FrameworkRow]:
+    def _list_rows(self, name: str, fn: Fn) -> list[FrameworkRow]:
         """The rows about objects of a class that a function makes; none for most classes."""
         key = (name, fn.source.facts.language)
         known = self._objects_of.get(key)
         if known is None:
-            known = self._objects_of[key] = self.table.objects_of(name, key[1] == "python") if name else []
+            known = self._objects_of[key] = self.table.list_objects(name, key[1] == "python") if name else []
         return known
 
-    def _made(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
+    def _list_made(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
         """Objects of named classes, with the call that makes them: declared, initialised as members or bases, or made
         by make_shared."""
         code, source, scope = self.code, fn.source, fn.scope
         cpp = source.facts.language == "cpp"
         for call in fn.facts.calls:
-            last = tail(call.callee)
+            last = get_tail(call.callee)
             if last in ("make_shared", "make_unique") and call.types:
-                kind = code.meant_type(call.types, source, scope)
+                kind = code.resolve_written(call.types, source, scope)
                 yield kind.name, structs.replace(call, types=", ".join(kind.arguments), returned=False)
             elif last == "make_shared" and "::" in call.callee:
-                yield code.meant(around(call.callee), source, scope), call
+                yield code.resolve_name(get_outer(call.callee), source, scope), call
             elif cpp and last[:1].isupper() and "::" in call.callee and "." not in call.callee:
-                kind = code.meant_type(call.callee, source, scope)
+                kind = code.resolve_written(call.callee, source, scope)
                 types = ", ".join(kind.arguments)
                 yield kind.name, call if call.types else structs.replace(call, types=types, returned=False)
             for argument in call.arguments if cpp else ():
-                for make in _nested(argument) if argument.parts or argument.kind == "make" else ():
-                    target = around(call.callee) if last == "reset" else ""
-                    kind = code.meant_type(make.text, source, scope)
-                    yield kind.name, _making(kind, make.text, make.parts, call, target)
+                for make in _list_nested(argument) if argument.parts or argument.kind == "make" else ():
+                    target = get_outer(call.callee) if last == "reset" else ""
+                    kind = code.resolve_written(make.text, source, scope)
+                    yield kind.name, _make_call(kind, make.text, make.parts, call, target)
             if last and not cpp:
-                yield from ((name, call) for name in self._made_in_python(fn, call, last))
-        yield from self._made_by_members(fn)
+                yield from ((name, call) for name in self._list_made_in_python(fn, call, last))
+        yield from self._list_made_by_members(fn)
         for each in fn.facts.assignments:
             value = each.value
-            base = code.base_made(fn, each) if each.target.startswith("this.") else None
+            base = code.find_base_made(fn, each) if each.target.startswith("this.") else None
             if base is not None:
-                yield base[0], _making(FlowType(base[0]), *base, each, "")
+                yield base[0], _make_call(FlowType(base[0]), *base, each, "")
                 continue
-            for make in _nested(value) if value.parts or value.kind == "make" else ():
+            for make in _list_nested(value) if value.parts or value.kind == "make" else ():
                 if make.text:
-                    kind = code.meant_type(make.text, source, scope)
-                    yield kind.name, _making(kind, make.text, make.parts, each, each.target)
+                    kind = code.resolve_written(make.text, source, scope)
+                    yield kind.name, _make_call(kind, make.text, make.parts, each, each.target)
             if value.kind == "make" and value.text:
                 continue
             whole = value.kind in ("list", "make")
             if whole or (value.kind in ("name", "text", "call") and each.target.startswith("this.")):
-                kind = self._initialised(fn, each.target)
-                yield kind.name, _making(kind, kind.name, value.parts if whole else (value,), each, each.target)
+                kind = self._find_initialised_type(fn, each.target)
+                yield kind.name, _make_call(kind, kind.name, value.parts if whole else (value,), each, each.target)
 
-    def _made_by_members(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
+    def _list_made_by_members(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
         """Members that a class has by value, or makes where they stand, and that its constructors do not initialise,
         told once."""
-        owner = self.code.owner_of(fn) if fn.source.facts.language == "cpp" and fn.facts.owner else None
+        owner = self.code.find_owner(fn) if fn.source.facts.language == "cpp" and fn.facts.owner else None
         if owner is None:
             return
         known = self._makers.get(id(owner.facts))
         if known is None:
-            functions = self.code.functions_of(owner)
-            constructors = [one for one in functions if tail(one.name) == tail(owner.name)]
+            functions = self.code.list_functions(owner)
+            constructors = [one for one in functions if get_tail(one.name) == get_tail(owner.name)]
             # A class without a constructor of its own has them made by whatever makes it.
             known = self._makers[id(owner.facts)] = next(iter(constructors or functions), None), constructors
         maker, constructors = known
@@ -271,32 +273,32 @@ class Calls:
             target = f"this.{member.name}"
             given = member.value
             if given is not None and given.kind == "make" and given.text and target not in begun:
-                kind = self.code.meant_type(given.text, owner.source, owner.name)
+                kind = self.code.resolve_written(given.text, owner.source, owner.name)
                 types = ", ".join(kind.arguments)
                 yield kind.name, FlowCall(kind.name, given.parts, member.line, 0, -1, types, target)
             elif member.value is None and target not in begun and "*" not in member.type and "&" not in member.type:
-                kind = self.code.meant_type(member.type, owner.source, owner.name)
+                kind = self.code.resolve_written(member.type, owner.source, owner.name)
                 # What is left is a pointer: `Client<T>::SharedPtr`.
                 whole = "<" not in member.type or member.type.rstrip().endswith(">")
-                if whole and parsed(member.type).name == member.type.partition("<")[0]:
+                if whole and parse_flow_type(member.type).name == member.type.partition("<")[0]:
                     types = ", ".join(kind.arguments)
                     yield kind.name, FlowCall(kind.name, (), fn.facts.line, 0, -1, types, target)
 
-    def _made_in_python(self, fn: Fn, call: FlowCall, last: str) -> Iterator[str]:
+    def _list_made_in_python(self, fn: Fn, call: FlowCall, last: str) -> Iterator[str]:
         if call.callee == "super().__init__":
-            owner = self.code.owner_of(fn)
-            yield from self.code.base_names(owner) if owner else ()
+            owner = self.code.find_owner(fn)
+            yield from self.code.list_base_names(owner) if owner else ()
         elif last[:1].isupper():
-            yield self.code.meant(call.callee, fn.source)
+            yield self.code.resolve_name(call.callee, fn.source)
         elif last == "__init__":
-            yield self.code.meant(around(call.callee), fn.source)
+            yield self.code.resolve_name(get_outer(call.callee), fn.source)
 
-    def _initialised(self, fn: Fn, target: str) -> FlowType:
-        variable = self.code.identity(target, fn)
-        text, source, scope = self.code.declared_type(variable, fn)
-        return self.code.meant_type(text, source, scope) if text else FlowType("")
+    def _find_initialised_type(self, fn: Fn, target: str) -> FlowType:
+        variable = self.code.identify(target, fn)
+        text, source, scope = self.code.find_declared_type(variable, fn)
+        return self.code.resolve_written(text, source, scope) if text else FlowType("")
 
-    def argument(self, use: FrameworkCall, spots: tuple[Spot, ...]) -> FlowExpr | None:
+    def find_argument(self, use: FrameworkCall, spots: tuple[Spot, ...]) -> FlowExpr | None:
         """The first of some spots that a use has."""
         call = use.call
         positional = [argument for argument in call.arguments if argument.kind != "keyword"]
@@ -308,12 +310,12 @@ class Calls:
                 return FlowExpr("text", spot[1:])
             elif spot.startswith("text "):
                 place = int(spot[5:])
-                if place < len(positional) and self.textual(positional[place], use.fn):
+                if place < len(positional) and self.is_textual(positional[place], use.fn):
                     return positional[place]
             elif spot.startswith("<"):
                 continue
             elif spot == "after topic":
-                topic = self.argument(use, use.row.topic)
+                topic = self.find_argument(use, use.row.topic)
                 place = positional.index(topic) + 1 if topic in positional else len(positional)
                 if place < len(positional):
                     return positional[place]
@@ -323,38 +325,38 @@ class Calls:
                         return argument.parts[0]
         return None
 
-    def textual(self, value: FlowExpr, fn: Fn) -> bool:
+    def is_textual(self, value: FlowExpr, fn: Fn) -> bool:
         """Whether an expression shows itself to be a string."""
         if value.kind in ("text", "join"):
             return True
-        kind = self.code.type_of(value, fn).name
+        kind = self.code.resolve_type(value, fn).name
         if value.kind == "make":
-            return tail(kind) == "string"
-        return tail(kind) in ("string", "str", "char") or (
+            return get_tail(kind) == "string"
+        return get_tail(kind) in ("string", "str", "char") or (
             not kind
             and value.kind in ("name", "call")
             and any(part in value.text.lower() for part in ("name", "topic"))
         )
 
-    def template_argument(self, use: FrameworkCall, number: int) -> str:
+    def get_template_argument(self, use: FrameworkCall, number: int) -> str:
         """A template argument as written, empty when there is none."""
         arguments = split_at_commas(use.call.types) if use.call.types else []
         return arguments[number] if number < len(arguments) else ""
 
-    def receiver_of(self, use: FrameworkCall) -> str:
+    def get_receiver(self, use: FrameworkCall) -> str:
         """The receiver of a method's call as written, empty for none."""
         callee = use.call.callee
         return callee.rpartition(".")[0] if "." in callee else ""
 
-    def kept_in(self, use: FrameworkCall) -> Variable | None:
+    def find_kept_variable(self, use: FrameworkCall) -> Variable | None:
         """The variable that a use's result is kept in."""
-        return self.code.identity(use.call.target, use.fn) if use.call.target else None
+        return self.code.identify(use.call.target, use.fn) if use.call.target else None
 
 
 _NODES = frozenset(("node", "nh", "n", "pnh", "private_nh", "node_handle", "nodehandle", "parent", "node_ptr"))
 
 
-def _making(
+def _make_call(
     kind: FlowType, name: str, arguments: tuple[FlowExpr, ...], at: FlowCall | Assignment, target: str
 ) -> FlowCall:  # fmt: skip
     """The call that makes an object where something else stands."""
@@ -362,11 +364,11 @@ def _making(
     return FlowCall(name, arguments, at.line, column, at.guard, ", ".join(kind.arguments), target)
 
 
-def _nested(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
+def _list_nested(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
     if value.kind == "make":
         return [value]
     found: list[FlowExpr] = []
     for part in value.parts if depth < 3 and value.kind in ("call", "choice", "bind", "list") else ():
         if part.parts or part.kind == "make":
-            found += _nested(part, depth + 1)
+            found += _list_nested(part, depth + 1)
     return found

@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 from operator import itemgetter
 from typing import Generic, NamedTuple, TypeVar
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ...facts.flow import (
     Alias,
     Assignment,
@@ -20,7 +20,7 @@ from ...facts.flow import (
     FlowFunction,
     FlowParameter,
 )
-from .types import UNKNOWN, FlowType, parsed
+from .types import UNKNOWN, FlowType, parse_flow_type
 
 _Row = TypeVar("_Row", bound=tuple)
 
@@ -52,9 +52,9 @@ class Fn:
         self.targets: dict[str, list[Fn]] = {}
         self.made: list[tuple[str, tuple[FlowExpr, ...], int]] | None = None
         # Namespaces and class around the function, joined as its language does.
-        self.scope = around(facts.name)
-        self.owner = parts_of(facts.owner)
-        self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(tail(facts.name)))
+        self.scope = get_outer(facts.name)
+        self.owner = split_name(facts.owner)
+        self.is_lambda = facts.name.startswith("lambda@", len(facts.name) - len(get_tail(facts.name)))
         self.assigned: dict[str, list[Assignment]] = {}
         # What is declared here hides members of the same name.
         self.locals = {p.name for p in facts.parameters}
@@ -84,7 +84,7 @@ class Cls:
 
     def __init__(self, source: CodeFile, facts: FlowClass):
         self.source, self.facts, self.name = source, facts, facts.name
-        self.parts = parts_of(facts.name)
+        self.parts = split_name(facts.name)
 
 
 class Variable(NamedTuple):
@@ -96,7 +96,7 @@ class Variable(NamedTuple):
     name: str
 
 
-def _names_of(source: CodeFile) -> tuple[object, ...]:
+def _collect_names(source: CodeFile) -> tuple[object, ...]:
     """What a file contributes to what names mean: where they are equal, names mean the same."""
     facts = source.facts
     return source.path, source.package, facts.language, facts.aliases, id(facts) if facts.classes else 0
@@ -116,33 +116,33 @@ class _About(Generic[_Row]):
             self._rows.append(row)
             self._places[path].append(place)
         for path in self._places:
-            pieces = _pieces(path)
+            pieces = _split_path(path)
             self._paths[pieces[-1] if pieces else path].append(path)
         self._found: dict[str, dict[Variable, list[_Row]]] = {}
 
-    def of(self, variable: Variable, meaning: Callable[[str, Fn], Variable]) -> Sequence[_Row]:
+    def select_rows(self, variable: Variable, meaning: Callable[[str, Fn], Variable]) -> Sequence[_Row]:
         """The rows about a variable, in order. meaning: of a path in a function."""
         known = self._found.get(variable.name)
         if known is None:
             known = self._found[variable.name] = {}
-            for path, row in self.named(variable.name):
+            for path, row in self.select_named(variable.name):
                 known.setdefault(meaning(path, row[0]), []).append(row)
         return known.get(variable, ())
 
-    def named(self, name: str) -> Iterator[tuple[str, _Row]]:
+    def select_named(self, name: str) -> Iterator[tuple[str, _Row]]:
         """The rows whose path ends in a name, in order, with their path."""
         found = ((place, path) for path in self._paths.get(name, ()) for place in self._places[path])
         yield from ((path, self._rows[place]) for place, path in sorted(found))
 
 
 @lru_cache(maxsize=100_000)
-def parts_of(name: str) -> tuple[str, ...]:
+def split_name(name: str) -> tuple[str, ...]:
     """The parts of a path or qualified name of either language."""
     return tuple(part for part in name.replace("::", ".").split(".") if part)
 
 
 @lru_cache(maxsize=100_000)
-def _pieces(path: str) -> tuple[str, ...]:
+def _split_path(path: str) -> tuple[str, ...]:
     """The parts of a path, elements left out."""
     return tuple(part for part in path.replace("[]", "").split(".") if part)
 
@@ -154,12 +154,12 @@ def is_number(text: str) -> bool:
 
 
 @lru_cache(maxsize=100_000)
-def tail(name: str) -> str:
+def get_tail(name: str) -> str:
     """The last part of a path or qualified name."""
-    return parts[-1] if (parts := parts_of(name)) else ""
+    return parts[-1] if (parts := split_name(name)) else ""
 
 
-def around(name: str) -> str:
+def get_outer(name: str) -> str:
     """What stands before the last part of a qualified name."""
     return name.rpartition("::" if "::" in name else ".")[0]
 
@@ -173,7 +173,7 @@ class FlowCode:
 
     def __init__(self, sources: Iterable[CodeFile], before: FlowCode | None = None):
         self.sources = list(sources)
-        self.names = tuple(_names_of(source) for source in self.sources)
+        self.names = tuple(_collect_names(source) for source in self.sources)
         if before is not None and before.names != self.names:
             before = None
         self.functions: list[Fn] = []
@@ -202,7 +202,7 @@ class FlowCode:
                     if alias.scope:
                         self._qualified.setdefault(alias.name, []).append((source.package, alias))
             for cls in source.facts.classes if before is None else ():
-                self.classes.setdefault(tail(cls.name), []).append(Cls(source, cls))
+                self.classes.setdefault(get_tail(cls.name), []).append(Cls(source, cls))
             if before is not None and before.sources[place].facts is source.facts:
                 functions = before.functions_in[source.path]
                 for fn in functions:
@@ -213,7 +213,7 @@ class FlowCode:
             for fn in functions:
                 self.functions.append(fn)
                 self._first_in.setdefault(source.path, fn)
-                self.by_tail.setdefault(tail(fn.name), []).append(fn)
+                self.by_tail.setdefault(get_tail(fn.name), []).append(fn)
                 self.by_name.setdefault((source.path, fn.name), fn)
         # By names alone; a later state of the code may take these over.
         self._class_of: dict[tuple[str, str, str], Cls | None] = before._class_of if before is not None else {}
@@ -222,7 +222,7 @@ class FlowCode:
 
     # Names
 
-    def meant(self, name: str, source: CodeFile, scope: str = "") -> str:
+    def resolve_name(self, name: str, source: CodeFile, scope: str = "") -> str:
         """A name with aliases of its file (and, in C++, its package's headers) resolved, at most five times over."""
         key = (name, source.path, scope)
         known = self._meant.get(key)
@@ -232,21 +232,21 @@ class FlowCode:
 
     def _find_meant(self, name: str, source: CodeFile, scope: str) -> str:
         for _ in range(5):
-            head, separator, rest = _first(name)
-            alias = self._alias(head, source, scope)
+            head, separator, rest = _split_first(name)
+            alias = self._find_alias(head, source, scope)
             if alias is None and rest:
-                alias = self._qualified_alias(name, source)
+                alias = self._find_qualified_alias(name, source)
                 separator, rest = ("", "") if alias is not None else (separator, rest)
             if alias is None:
                 break
-            target = parsed(alias.target).name if source.facts.language == "cpp" and not rest else alias.target
+            target = parse_flow_type(alias.target).name if source.facts.language == "cpp" and not rest else alias.target
             new = f"{target}{separator}{rest}" if rest else target
             if new == name or not new:
                 break
             name = new
         return name
 
-    def meant_type(self, text: str, source: CodeFile, scope: str = "") -> FlowType:
+    def resolve_written(self, text: str, source: CodeFile, scope: str = "") -> FlowType:
         """A type as written, aliases resolved; those that stand for types with template arguments too."""
         key = (text, source.path, scope)
         known = self._meant_types.get(key)
@@ -255,54 +255,56 @@ class FlowCode:
         return known
 
     def _find_meant_type(self, text: str, source: CodeFile, scope: str) -> FlowType:
-        kind = parsed(text)
+        kind = parse_flow_type(text)
         for _ in range(5):
-            head, _, rest = _first(kind.name)
-            alias = self._alias(head, source, scope)
+            head, _, rest = _split_first(kind.name)
+            alias = self._find_alias(head, source, scope)
             if alias is None and rest:
-                alias = self._qualified_alias(kind.name, source)
+                alias = self._find_qualified_alias(kind.name, source)
                 rest = "" if alias is not None else rest
             if alias is None:
                 break
             if rest:
-                new = FlowType(f"{parsed(alias.target).name}{'::' if '::' in kind.name else '.'}{rest}", kind.arguments)
+                new = FlowType(
+                    f"{parse_flow_type(alias.target).name}{'::' if '::' in kind.name else '.'}{rest}", kind.arguments
+                )
                 # `using Msg = a::B; Msg::SharedPtr`
-                new = FlowType(parsed(new.name).name, new.arguments or parsed(alias.target).arguments)
+                new = FlowType(parse_flow_type(new.name).name, new.arguments or parse_flow_type(alias.target).arguments)
             else:
-                new = parsed(alias.target)
+                new = parse_flow_type(alias.target)
                 new = FlowType(new.name, new.arguments or kind.arguments)
             if new == kind or not new.name:
                 break
             kind = new
         return kind
 
-    def _alias(self, head: str, source: CodeFile, scope: str) -> Alias | None:
+    def _find_alias(self, head: str, source: CodeFile, scope: str) -> Alias | None:
         found = self.aliases[source.path].get(head)
         if found is None and source.facts.language == "cpp":
             found = self.shared_aliases.get((source.package, head))
         if not found:
             return None
-        fitting = [alias for alias in found if not alias.scope or _within(scope, alias.scope)]
+        fitting = [alias for alias in found if not alias.scope or _is_within(scope, alias.scope)]
         if not fitting and len({alias.target for alias in found}) == 1:
             fitting = found[:1]
         return max(fitting, key=lambda alias: len(alias.scope), default=None)
 
-    def _qualified_alias(self, name: str, source: CodeFile) -> Alias | None:
+    def _find_qualified_alias(self, name: str, source: CodeFile) -> Alias | None:
         """What `ns::Name` is another name of, in C++; of several packages' the own one's."""
         if source.facts.language != "cpp" or "::" not in name:
             return None
-        wanted = parts_of(name)
+        wanted = split_name(name)
         if not wanted or wanted[-1] not in self._qualified:
             return None
         found = [
             (package, alias)
             for package, alias in self._qualified.get(wanted[-1], ())
-            if (*parts_of(alias.scope), alias.name)[-len(wanted) :] == wanted
+            if (*split_name(alias.scope), alias.name)[-len(wanted) :] == wanted
         ]
         own = [alias for package, alias in found if package == source.package] or [alias for _, alias in found]
         return own[0] if own and len({alias.target for alias in own}) == 1 else None
 
-    def class_of(self, name: str, source: CodeFile, scope: str = "") -> Cls | None:
+    def find_class(self, name: str, source: CodeFile, scope: str = "") -> Cls | None:
         """The class that a name means in a file and scope; None when there is none, or several that fit as well."""
         key = (name, source.path, scope)
         try:
@@ -312,31 +314,31 @@ class FlowCode:
             return found
 
     def _find_class(self, name: str, source: CodeFile, scope: str) -> Cls | None:
-        name = self.meant(parsed(name).name if "<" in name else name, source, scope)
+        name = self.resolve_name(parse_flow_type(name).name if "<" in name else name, source, scope)
         if not name:
             return None
-        wanted = _absolute(name, source.path)
+        wanted = _resolve_module(name, source.path)
         found = [cls for cls in self.classes.get(wanted[-1], ()) if cls.parts[-len(wanted) :] == wanted]
         if not found and source.facts.language == "python" and len(wanted) > 1:
             # Imported: the module is in the path, not in the class's name.
             found = [
                 cls
-                for path in self.exported_from(wanted)
+                for path in self.list_exporting_paths(wanted)
                 for cls in self.classes.get(path[-1], ())
-                if _module_of(cls.source.path, path[:-1]) and cls.name == path[-1]
+                if _may_be_module(cls.source.path, path[:-1]) and cls.name == path[-1]
             ]
         if len(found) > 1:
-            found = max(_groups(found, source, scope).items(), default=(0, found))[1]
+            found = max(_group_by_nearness(found, source, scope).items(), default=(0, found))[1]
         names = {(cls.name, cls.source.package) for cls in found}
         # Of several bodies under one name (behind `#if`, say) the largest.
         return max(found, key=lambda cls: cls.facts.end - cls.facts.line) if len(names) == 1 else None
 
-    def class_meant(self, type_: str, source: CodeFile, scope: str) -> Cls | None:
+    def find_class_of_type(self, type_: str, source: CodeFile, scope: str) -> Cls | None:
         """The class that a type means, as class_of() says; of a pointer or container that of what it holds."""
-        return self.class_of(self.meant_type(type_, source, scope).name, source, scope)
+        return self.find_class(self.resolve_written(type_, source, scope).name, source, scope)
 
-    @cached_method
-    def bases(self, cls: Cls) -> list[Cls]:
+    @cache_method
+    def list_bases(self, cls: Cls) -> list[Cls]:
         """The class and those it derives from, nearest first, as far as they are in the code."""
         known: list[Cls] = []
         queue = [cls]
@@ -345,7 +347,7 @@ class FlowCode:
             if one in known:
                 continue
             known.append(one)
-            found = (self.class_of(base, one.source, one.name) for base in one.facts.bases)
+            found = (self.find_class(base, one.source, one.name) for base in one.facts.bases)
             queue.extend(base for base in found if base is not None)
         return known
 
@@ -355,52 +357,52 @@ class FlowCode:
         found: dict[str, list[Cls]] = {}
         for group in self.classes.values():
             for cls in group:
-                for base in self.bases(cls)[1:]:
+                for base in self.list_bases(cls)[1:]:
                     found.setdefault(base.name, []).append(cls)
         return found
 
-    def base_made(self, fn: Fn, each: Assignment) -> tuple[str, tuple[FlowExpr, ...]] | None:
+    def find_base_made(self, fn: Fn, each: Assignment) -> tuple[str, tuple[FlowExpr, ...]] | None:
         """The base class, as meant, and the arguments that a constructor's initialiser gives it; None for others."""
         if not each.target.startswith("this.") or fn.source.facts.language != "cpp":
             return None
-        owner = self.owner_of(fn)
+        owner = self.find_owner(fn)
         if owner is None or not owner.facts.bases:
             return None
-        name = tail(each.target[5:])
+        name = get_tail(each.target[5:])
         for base in owner.facts.bases:
-            if tail(parsed(base).name) == name:
+            if get_tail(parse_flow_type(base).name) == name:
                 value = each.value
                 made = value.kind in ("make", "list") and not value.text
-                kind = self.meant_type(base, owner.source, owner.name)
+                kind = self.resolve_written(base, owner.source, owner.name)
                 return kind.name, value.parts if made else (value,)
         return None
 
-    def base_names(self, cls: Cls) -> Iterator[str]:
+    def list_base_names(self, cls: Cls) -> Iterator[str]:
         """Names of all bases, those outside of the code too, aliases resolved."""
-        for one in self.bases(cls):
+        for one in self.list_bases(cls):
             for base in one.facts.bases:
-                yield self.meant_type(base, one.source, one.name).name
+                yield self.resolve_written(base, one.source, one.name).name
 
-    @cached_method
-    def owner_of(self, fn: Fn) -> Cls | None:
+    @cache_method
+    def find_owner(self, fn: Fn) -> Cls | None:
         """The class a function belongs to; that of the function around it for a lambda."""
         if not fn.owner:
             return None
-        found = self.class_of(fn.facts.owner, fn.source, fn.scope)
+        found = self.find_class(fn.facts.owner, fn.source, fn.scope)
         if found is None and fn.owner[:1] == fn.owner[1:2]:
             # `void a::B::f()` inside `namespace a`
-            found = self.class_of("::".join(fn.owner[1:]), fn.source, fn.scope)
+            found = self.find_class("::".join(fn.owner[1:]), fn.source, fn.scope)
         return found
 
-    @cached_method
-    def method(self, cls: Cls, name: str) -> list[Fn]:
+    @cache_method
+    def find_method(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method, of the nearest class that has some; overloads are several."""
-        return next(filter(None, (self._bodies(one, name) for one in self.bases(cls))), [])
+        return next(filter(None, (self._list_bodies(one, name) for one in self.list_bases(cls))), [])
 
-    def _bodies(self, cls: Cls, name: str) -> list[Fn]:
+    def _list_bodies(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method of one class."""
         candidates = self._methods.get((cls.parts[-1], name), ()) if cls.parts else ()
-        return [fn for fn in candidates if self._owned(fn, cls)]
+        return [fn for fn in candidates if self._is_owned(fn, cls)]
 
     @cached_property
     def _methods(self) -> dict[tuple[str, str], list[Fn]]:
@@ -408,15 +410,15 @@ class FlowCode:
         found: dict[tuple[str, str], list[Fn]] = {}
         for fn in self.functions:
             if fn.owner and not fn.is_lambda:
-                found.setdefault((fn.owner[-1], tail(fn.name)), []).append(fn)
+                found.setdefault((fn.owner[-1], get_tail(fn.name)), []).append(fn)
         return found
 
-    @cached_method
-    def overrides(self, cls: Cls, name: str) -> list[Fn]:
+    @cache_method
+    def list_overrides(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method in classes that derive from a class."""
-        return [fn for one in self.derived.get(cls.name, ()) for fn in self._bodies(one, name)]
+        return [fn for one in self.derived.get(cls.name, ()) for fn in self._list_bodies(one, name)]
 
-    def enclosing(self, fn: Fn) -> Fn | None:
+    def find_enclosing(self, fn: Fn) -> Fn | None:
         """The function that a lambda, or a function of Python, stands in."""
         if not fn.scope or (not fn.is_lambda and (fn.source.path, fn.scope) in self._class_bodies):
             return None
@@ -426,18 +428,18 @@ class FlowCode:
     def _class_bodies(self) -> set[tuple[str, str]]:
         return {(source.path, cls.name) for source in self.sources for cls in source.facts.classes}
 
-    def chain(self, fn: Fn) -> Iterator[Fn]:
+    def list_enclosing_chain(self, fn: Fn) -> Iterator[Fn]:
         """The function, and for a lambda those around it."""
         seen = 0
         while fn is not None and seen < 10:
             yield fn
-            fn, seen = self.enclosing(fn), seen + 1  # type: ignore[assignment]
+            fn, seen = self.find_enclosing(fn), seen + 1  # type: ignore[assignment]
 
     # Variables
 
-    def variable(self, path: str, fn: Fn) -> tuple[Variable, tuple[str, ...]]:
+    def resolve_variable(self, path: str, fn: Fn) -> tuple[Variable, tuple[str, ...]]:
         """What the head of a path means in a function, and the parts that follow it."""
-        parts = _pieces(path)
+        parts = _split_path(path)
         if not parts:
             return Variable("local", fn.place, path), ()
         head = parts[0]
@@ -446,47 +448,47 @@ class FlowCode:
                 return Variable("this", fn.facts.owner, "this"), ()
             known = fn.heads.get(parts[:2])
             if known is None:
-                known = fn.heads[parts[:2]] = self.member(fn, parts[1])
+                known = fn.heads[parts[:2]] = self.make_member(fn, parts[1])
             return known, parts[2:]
         known = fn.heads.get(head)
         if known is None:
-            known = fn.heads[head] = self._head(head, fn)
+            known = fn.heads[head] = self._resolve_head(head, fn)
         return known, parts[1:]
 
-    def _head(self, head: str, fn: Fn) -> Variable:
+    def _resolve_head(self, head: str, fn: Fn) -> Variable:
         if head in fn.locals:
             return Variable("local", fn.place, head)
-        for one in self.chain(fn):
+        for one in self.list_enclosing_chain(fn):
             if head in one.locals:
                 return Variable("local", one.place, head)
         if fn.source.facts.language == "cpp" and fn.facts.owner and "::" not in head:
-            owner = self.owner_of(fn)
+            owner = self.find_owner(fn)
             if owner is not None:
-                for cls in self.bases(owner):
-                    if head in self.members(cls):
+                for cls in self.list_bases(owner):
+                    if head in self.list_members(cls):
                         return Variable("member", cls.name, head)
             elif head.endswith("_"):
                 return Variable("member", fn.facts.owner, head)
         return Variable("global", fn.source.path, head)
 
-    @cached_method
-    def members(self, cls: Cls) -> frozenset[str]:
+    @cache_method
+    def list_members(self, cls: Cls) -> frozenset[str]:
         """Names of the members that a class declares."""
         return frozenset(member.name for member in cls.facts.members)
 
-    def member(self, fn: Fn, name: str) -> Variable:
+    def make_member(self, fn: Fn, name: str) -> Variable:
         """The member of a function's class, under the name of the class that declares it."""
-        owner = self.owner_of(fn)
+        owner = self.find_owner(fn)
         if owner is None:
             return Variable("member", fn.facts.owner, name)
-        return Variable("member", self._declaring(owner, name).name, name)
+        return Variable("member", self._find_declaring_class(owner, name).name, name)
 
-    def _declaring(self, cls: Cls, name: str) -> Cls:
+    def _find_declaring_class(self, cls: Cls, name: str) -> Cls:
         """The class that declares a member which a class has, as far as the code tells."""
-        declaring = [one for one in self.bases(cls) if name in self.members(one)]
+        declaring = [one for one in self.list_bases(cls) if name in self.list_members(one)]
         return declaring[-1] if declaring else cls
 
-    def identity(self, path: str, fn: Fn, depth: int = 0) -> Variable:
+    def identify(self, path: str, fn: Fn, depth: int = 0) -> Variable:
         """The variable that a whole path means: that of its last part, in the class of what stands before it.
 
         depth: how far types are followed already; from 5 on only declared ones count."""
@@ -495,26 +497,26 @@ class FlowCode:
             return known
         if depth == 0 and path in fn.identities:
             return fn.identities[path]
-        found, rest = self.variable(path, fn)
+        found, rest = self.resolve_variable(path, fn)
         for part in rest:
-            kind = self.type_of_variable(found, fn, depth)
-            cls = self.class_of(kind.name, fn.source, fn.scope)
-            owner = self._declaring(cls, part).name if cls else f"{found.owner}.{found.name}"
+            kind = self.resolve_variable_type(found, fn, depth)
+            cls = self.find_class(kind.name, fn.source, fn.scope)
+            owner = self._find_declaring_class(cls, part).name if cls else f"{found.owner}.{found.name}"
             found = Variable("member", owner, part)
         if depth == 0:
             fn.identities[path] = found
         return found
 
-    def functions_of_class(self, name: str) -> list[Fn]:
+    def list_class_functions(self, name: str) -> list[Fn]:
         """All functions whose owner is a class of this name, lambdas in them included."""
-        return self._by_owner.get(tail(name), [])
+        return self._by_owner.get(get_tail(name), [])
 
-    @cached_method
-    def functions_of(self, cls: Cls) -> list[Fn]:
+    @cache_method
+    def list_functions(self, cls: Cls) -> list[Fn]:
         """The functions of one class, lambdas in them included."""
-        return [fn for fn in self._by_owner.get(cls.parts[-1], ()) if self._owned(fn, cls)]
+        return [fn for fn in self._by_owner.get(cls.parts[-1], ()) if self._is_owned(fn, cls)]
 
-    def _owned(self, fn: Fn, cls: Cls) -> bool:
+    def _is_owned(self, fn: Fn, cls: Cls) -> bool:
         own, wanted = fn.owner, cls.parts
         if own[-len(wanted) :] != wanted and wanted[-len(own) :] != own:
             return False
@@ -525,24 +527,24 @@ class FlowCode:
         found: dict[str, list[Fn]] = {}
         for fn in self.functions:
             if fn.facts.owner:
-                found.setdefault(tail(fn.facts.owner), []).append(fn)
+                found.setdefault(get_tail(fn.facts.owner), []).append(fn)
         return found
 
-    def writes(self, variable: Variable) -> Sequence[tuple[Fn, Assignment]]:
+    def list_writes(self, variable: Variable) -> Sequence[tuple[Fn, Assignment]]:
         """All assignments that change a variable."""
-        return self._writes.of(variable, self._declared)
+        return self._writes.select_rows(variable, self._identify_declared)
 
-    def results(self, variable: Variable) -> Sequence[tuple[Fn, FlowCall]]:
+    def list_results(self, variable: Variable) -> Sequence[tuple[Fn, FlowCall]]:
         """Calls whose result a variable keeps."""
-        return self._results.of(variable, self._declared)
+        return self._results.select_rows(variable, self._identify_declared)
 
-    def passed(self, variable: Variable) -> Sequence[tuple[Fn, FlowCall, int]]:
+    def list_passed(self, variable: Variable) -> Sequence[tuple[Fn, FlowCall, int]]:
         """Calls of functions of the code that a variable is passed to, with the argument's number."""
-        return self._passed.of(variable, self.identity)
+        return self._passed.select_rows(variable, self.identify)
 
-    def _declared(self, path: str, fn: Fn) -> Variable:
+    def _identify_declared(self, path: str, fn: Fn) -> Variable:
         """What a path means by what is declared alone."""
-        return self.identity(path, fn, 9)
+        return self.identify(path, fn, 9)
 
     @cached_property
     def _writes(self) -> _About[tuple[Fn, Assignment]]:
@@ -556,24 +558,24 @@ class FlowCode:
     def _passed(self) -> _About[tuple[Fn, FlowCall, int]]:
         return _About(
             (argument.text, (fn, call, place))
-            for fn, call in self.calls_named(self.by_tail)
+            for fn, call in self.list_calls_named(self.by_tail)
             if fn.source.facts.language == "cpp"
             for place, argument in enumerate(call.arguments)
             if argument.kind == "name"
         )
 
-    def declared_type(self, variable: Variable, fn: Fn) -> tuple[str, CodeFile, str]:
+    def find_declared_type(self, variable: Variable, fn: Fn) -> tuple[str, CodeFile, str]:
         """The type a variable is declared with, as written, and the file and scope in which to read it."""
         if variable.kind == "member":
-            return self._member_type(variable.owner, variable.name) or ("", fn.source, fn.scope)
+            return self._find_member_type(variable.owner, variable.name) or ("", fn.source, fn.scope)
         if variable.kind == "local":
-            for one in self.chain(fn):
+            for one in self.list_enclosing_chain(fn):
                 if one.place == variable.owner:
                     for parameter in one.facts.parameters:
                         if parameter.name == variable.name and parameter.type:
                             return parameter.type, one.source, one.name
                     for each in one.assigned.get(variable.name, ()):
-                        if each.type and parsed(each.type).name:
+                        if each.type and parse_flow_type(each.type).name:
                             return each.type, one.source, one.name
         else:
             for constant in fn.source.facts.constants:
@@ -581,29 +583,29 @@ class FlowCode:
                     return constant.type, fn.source, ""
         return "", fn.source, fn.scope
 
-    def declared_values(self, variable: Variable, fn: Fn) -> Iterator[tuple[FlowExpr, Fn]]:
+    def list_declared_values(self, variable: Variable, fn: Fn) -> Iterator[tuple[FlowExpr, Fn]]:
         """What a member or a constant is declared with, and a function of the file in which to read it."""
         if variable.kind == "member":
             rows = [
                 (member, cls.source)
-                for cls in self.classes.get(tail(variable.owner), ())
+                for cls in self.classes.get(get_tail(variable.owner), ())
                 if cls.name == variable.owner
                 for member in cls.facts.members
                 if member.name == variable.name
             ]
         elif variable.kind == "global":
-            rows = self.constants(variable.name, fn.source)
+            rows = self.list_constants(variable.name, fn.source)
         else:
             return
         for member, source in rows:
-            holder = self.first_in(source, fn)
+            holder = self.find_first(source, fn)
             if member.value is not None:
                 yield member.value, holder
 
-    def constants(self, name: str, source: CodeFile) -> list[tuple[DataMember, CodeFile]]:
+    def list_constants(self, name: str, source: CodeFile) -> list[tuple[DataMember, CodeFile]]:
         """The constants of a name, by its last part, that a file has; else those of the first file of its package that
         has any."""
-        by_path = self._constants.get(tail(name), {})
+        by_path = self._constants.get(get_tail(name), {})
         beside = (path for path, rows in by_path.items() if rows[0][1].package == source.package)
         path = source.path if source.path in by_path else next(beside, "")
         return by_path.get(path, [])
@@ -614,85 +616,85 @@ class FlowCode:
         found: dict[str, dict[str, list[tuple[DataMember, CodeFile]]]] = {}
         for source in self.sources:
             for constant in source.facts.constants:
-                by_path = found.setdefault(tail(constant.name), {})
+                by_path = found.setdefault(get_tail(constant.name), {})
                 by_path.setdefault(source.path, []).append((constant, source))
         return found
 
-    def first_in(self, source: CodeFile, otherwise: Fn) -> Fn:
+    def find_first(self, source: CodeFile, otherwise: Fn) -> Fn:
         """The first function of a file; `otherwise` for a file without functions."""
         return self._first_in.get(source.path, otherwise)
 
-    @cached_method
-    def _member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:
-        for cls in self.classes.get(tail(owner), ()):
+    @cache_method
+    def _find_member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:
+        for cls in self.classes.get(get_tail(owner), ()):
             if cls.name == owner:
                 for member in cls.facts.members:
                     if member.name == name and member.type:
                         return member.type, cls.source, cls.name
         return None
 
-    def type_of_variable(self, variable: Variable, fn: Fn, depth: int = 0) -> FlowType:
+    def resolve_variable_type(self, variable: Variable, fn: Fn, depth: int = 0) -> FlowType:
         """The type of a variable, also where `auto` or Python leave it to what it is made from."""
         if variable.kind == "this":
             return FlowType(variable.owner)
-        text, source, scope = self.declared_type(variable, fn)
-        kind = self.meant_type(text, source, scope) if text else UNKNOWN
+        text, source, scope = self.find_declared_type(variable, fn)
+        kind = self.resolve_written(text, source, scope) if text else UNKNOWN
         if kind.name or depth > 4:
             return kind
-        for writer, each in self.writes(variable):
-            kind = self.type_of(each.value, writer, depth + 1)
+        for writer, each in self.list_writes(variable):
+            kind = self.resolve_type(each.value, writer, depth + 1)
             if kind.name:
                 return kind
         return UNKNOWN
 
-    def type_of(self, value: FlowExpr, fn: Fn, depth: int = 0) -> FlowType:
+    def resolve_type(self, value: FlowExpr, fn: Fn, depth: int = 0) -> FlowType:
         """The type of an expression as far as it shows."""
         if value.kind == "make":
-            return self.meant_type(value.text, fn.source, fn.scope)
+            return self.resolve_written(value.text, fn.source, fn.scope)
         if value.kind == "name":
-            return self.type_of_name(value.text, fn, depth)
+            return self.resolve_name_type(value.text, fn, depth)
         if value.kind == "call":
-            return self.type_of_call(value.text, fn, depth)
+            return self.resolve_call_type(value.text, fn, depth)
         if (value.kind == "list" and len(value.parts) == 1) or (value.kind == "index" and value.parts):
             # The type of a container is that of its elements.
-            return self.type_of(value.parts[0], fn, depth)
+            return self.resolve_type(value.parts[0], fn, depth)
         return UNKNOWN
 
-    def type_of_name(self, path: str, fn: Fn, depth: int = 0) -> FlowType:
+    def resolve_name_type(self, path: str, fn: Fn, depth: int = 0) -> FlowType:
         """The type of what a path means in a function."""
-        variable, rest = self.variable(path, fn)
-        return self.type_of_variable(self.identity(path, fn, depth + 1) if rest else variable, fn, depth)
+        variable, rest = self.resolve_variable(path, fn)
+        return self.resolve_variable_type(self.identify(path, fn, depth + 1) if rest else variable, fn, depth)
 
-    def type_of_call(self, callee: str, fn: Fn, depth: int = 0) -> FlowType:
+    def resolve_call_type(self, callee: str, fn: Fn, depth: int = 0) -> FlowType:
         """The type that a call gives: the class for a constructor, the declared type of a function of the code."""
         name = callee.removesuffix("()")
         if depth > 4:
             return UNKNOWN
-        last = tail(name)
+        last = get_tail(name)
         if last in ("make_shared", "make_unique") or (last == "create" and "::" in name):
-            scope = around(name)
-            return self.meant_type(scope, fn.source, fn.scope) if scope not in ("std", "boost", "") else UNKNOWN
-        for target in self.targets(name, fn, depth + 1):
+            scope = get_outer(name)
+            return self.resolve_written(scope, fn.source, fn.scope) if scope not in ("std", "boost", "") else UNKNOWN
+        for target in self.list_targets(name, fn, depth + 1):
             if target.facts.returns:
-                return self.meant_type(target.facts.returns, target.source, target.scope)
-        meant = self.meant(name, fn.source, fn.scope)
-        if tail(meant)[:1].isupper():
+                return self.resolve_written(target.facts.returns, target.source, target.scope)
+        meant = self.resolve_name(name, fn.source, fn.scope)
+        if get_tail(meant)[:1].isupper():
             return FlowType(meant)
         return UNKNOWN
 
-    def kept(self, variable: Variable) -> Iterator[tuple[Fn, FlowCall | FlowExpr]]:
+    def list_kept(self, variable: Variable) -> Iterator[tuple[Fn, FlowCall | FlowExpr]]:
         """The calls whose result a variable keeps, and what is assigned to it, with the function they stand in; by the
-        types that everything shows, where writes() and results() go by those declared."""
-        for path, (fn, call) in self._results.named(variable.name):
-            if self.identity(path, fn) == variable:
+        types that everything shows, where list_writes() and results() go by those declared."""
+        for path, (fn, call) in self._results.select_named(variable.name):
+            if self.identify(path, fn) == variable:
                 yield fn, call
-        for path, (fn, each) in self._writes.named(variable.name):
-            if self.identity(path, fn) == variable:
+        for path, (fn, each) in self._writes.select_named(variable.name):
+            if self.identify(path, fn) == variable:
                 yield fn, each.value
 
     # Calls
 
-    def calls_named(self, names: Iterable[str]) -> list[tuple[Fn, FlowCall]]:
+    def list_calls_named(self, names: Iterable[str]) -> list[tuple[Fn, FlowCall]]:
         """Calls of functions of some names, by the last part of the callee; in the order of the code."""
         found = [row for name in names for row in self._calls.get(name, ())]
         found.sort(key=itemgetter(0))
@@ -704,14 +706,14 @@ class FlowCode:
         found: dict[str, list[tuple[int, Fn, FlowCall]]] = defaultdict(list)
         every = ((fn, call) for fn in self.functions for call in fn.facts.calls)
         for place, (fn, call) in enumerate(every):
-            found[tail(call.callee)].append((place, fn, call))
+            found[get_tail(call.callee)].append((place, fn, call))
         return found
 
-    def targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
+    def list_targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
         """The functions of the code that a call may reach; none when it leaves the code or cannot be told."""
         known = fn.targets.get(callee)
         if known is None:
-            last = tail(callee)
+            last = get_tail(callee)
             if last not in self.by_tail and last not in self.classes:
                 return []
             known = self._find_targets(callee, fn, depth)
@@ -720,88 +722,88 @@ class FlowCode:
         return known
 
     def _find_targets(self, callee: str, fn: Fn, depth: int) -> list[Fn]:
-        last = tail(callee)
+        last = get_tail(callee)
         candidates = self.by_tail.get(last)
         head = callee.rpartition(".")[0] if "." in callee else ""
         if "." in callee:
-            return self._called_methods(head, last, fn, depth)
+            return self._list_called_methods(head, last, fn, depth)
         if "::" in callee:
-            meant = self.meant(callee, fn.source, fn.scope)
-            cls = self.class_of(around(meant), fn.source, fn.scope)
-            if cls is not None and (tail(cls.name), last) in self._methods:
-                return self.method(cls, last)
-            wanted = parts_of(meant)
-            found = [f for f in candidates or () if not f.facts.owner and parts_of(f.name)[-len(wanted) :] == wanted]
-            return self._nearest(found, fn)
-        for one in self.chain(fn):
+            meant = self.resolve_name(callee, fn.source, fn.scope)
+            cls = self.find_class(get_outer(meant), fn.source, fn.scope)
+            if cls is not None and (get_tail(cls.name), last) in self._methods:
+                return self.find_method(cls, last)
+            wanted = split_name(meant)
+            found = [f for f in candidates or () if not f.facts.owner and split_name(f.name)[-len(wanted) :] == wanted]
+            return self._select_nearest(found, fn)
+        for one in self.list_enclosing_chain(fn):
             local = self.by_name.get(
                 (fn.source.path, f"{one.name}{'::' if fn.source.facts.language == 'cpp' else '.'}{last}")
             )
             if local is not None:
                 return [local]
         if fn.source.facts.language == "cpp":
-            owner = self.owner_of(fn)
+            owner = self.find_owner(fn)
             if owner is not None:
-                found = self.method(owner, last)
+                found = self.find_method(owner, last)
                 if found:
-                    return [*found, *self.overrides(owner, last)]
+                    return [*found, *self.list_overrides(owner, last)]
         elif last in self.aliases[fn.source.path]:
-            return self.imported(self.meant(last, fn.source), fn.source)
-        return self._nearest([f for f in candidates or () if not f.facts.owner and f.name], fn)
+            return self.list_imported(self.resolve_name(last, fn.source), fn.source)
+        return self._select_nearest([f for f in candidates or () if not f.facts.owner and f.name], fn)
 
-    def _called_methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
+    def _list_called_methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
         if receiver in ("this", "super()", "super"):
-            owner = self.owner_of(fn)
+            owner = self.find_owner(fn)
             if owner is None:
                 return [f for f in self.by_tail.get(name, ()) if f.facts.owner == fn.facts.owner]
-            found = self.method(owner, name)
+            found = self.find_method(owner, name)
             if receiver != "this":
                 return [f for f in found if f.facts.owner != fn.facts.owner]
-            return [*found, *self.overrides(owner, name)]
+            return [*found, *self.list_overrides(owner, name)]
         if fn.source.facts.language == "python":
-            meant = self.meant(f"{receiver}.{name}", fn.source)
-            found = self.imported(meant, fn.source) if meant != f"{receiver}.{name}" else []
+            meant = self.resolve_name(f"{receiver}.{name}", fn.source)
+            found = self.list_imported(meant, fn.source) if meant != f"{receiver}.{name}" else []
             if found:
                 return found
-        cls = self._class_of_receiver(receiver, fn) if depth == 0 else self._receiving(receiver, fn, depth)
-        return [] if cls is None else [*self.method(cls, name), *self.overrides(cls, name)]
+        cls = self._find_receiver_class(receiver, fn) if depth == 0 else self._resolve_receiver(receiver, fn, depth)
+        return [] if cls is None else [*self.find_method(cls, name), *self.list_overrides(cls, name)]
 
-    @cached_method
-    def _class_of_receiver(self, receiver: str, fn: Fn) -> Cls | None:
-        return self._receiving(receiver, fn, 0)
+    @cache_method
+    def _find_receiver_class(self, receiver: str, fn: Fn) -> Cls | None:
+        return self._resolve_receiver(receiver, fn, 0)
 
-    def _receiving(self, receiver: str, fn: Fn, depth: int) -> Cls | None:
+    def _resolve_receiver(self, receiver: str, fn: Fn, depth: int) -> Cls | None:
         """The class of what a method is called on."""
         if receiver.endswith("()"):
-            kind = self.type_of_call(receiver, fn, depth + 1)
+            kind = self.resolve_call_type(receiver, fn, depth + 1)
         else:
-            kind = self.type_of_name(receiver, fn, depth)
-        return self.class_of(kind.name, fn.source, fn.scope)
+            kind = self.resolve_name_type(receiver, fn, depth)
+        return self.find_class(kind.name, fn.source, fn.scope)
 
-    def imported(self, name: str, source: CodeFile) -> list[Fn]:
+    def list_imported(self, name: str, source: CodeFile) -> list[Fn]:
         """The functions of Python that a name with its module means in a file; of several packages' the own one's."""
         found = [
             f
-            for *module, last in self.exported_from(_absolute(name, source.path))
+            for *module, last in self.list_exporting_paths(_resolve_module(name, source.path))
             for f in self.by_tail.get(last, ())
-            if not f.facts.owner and _module_of(f.source.path, module)
+            if not f.facts.owner and _may_be_module(f.source.path, module)
         ]
         own = [f for f in found if f.source.package == source.package]
         return own or found
 
-    def exported_from(self, path: tuple[str, ...], depth: int = 0) -> Iterator[tuple[str, ...]]:
+    def list_exporting_paths(self, path: tuple[str, ...], depth: int = 0) -> Iterator[tuple[str, ...]]:
         """A module of Python and a name in it, and the modules from which its package has the name."""
         yield path
         module, name = path[:-1], path[-1]
         for source in self._packages.get(module[-1], ()) if module and depth < 4 else ():
-            if not _module_of(source.path, module):
+            if not _may_be_module(source.path, module):
                 continue
             for alias in self.aliases[source.path].get(name, ()):
-                yield from self.exported_from(_absolute(alias.target, source.path), depth + 1)
+                yield from self.list_exporting_paths(_resolve_module(alias.target, source.path), depth + 1)
             for alias in self.aliases[source.path].get("*", ()):
-                yield from self.exported_from((*_absolute(alias.target, source.path), name), depth + 1)
+                yield from self.list_exporting_paths((*_resolve_module(alias.target, source.path), name), depth + 1)
 
-    def _nearest(self, found: list[Fn], fn: Fn) -> list[Fn]:
+    def _select_nearest(self, found: list[Fn], fn: Fn) -> list[Fn]:
         for near in (
             [f for f in found if f.source.path == fn.source.path],
             [
@@ -818,8 +820,8 @@ class FlowCode:
     def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:
         """Calls that reach a function of the code, by the function."""
         found: dict[Fn, list[tuple[Fn, FlowCall]]] = {}
-        for fn, call in self.calls_named(self.by_tail.keys() | self.classes.keys()):
-            for target in self.targets(call.callee, fn):
+        for fn, call in self.list_calls_named(self.by_tail.keys() | self.classes.keys()):
+            for target in self.list_targets(call.callee, fn):
                 if target is not fn:
                     found.setdefault(target, []).append((fn, call))
         return found
@@ -833,7 +835,7 @@ class FlowCode:
             if value.kind == "bind" and value.parts and value.parts[0].kind in ("function", "name"):
                 name, arguments = value.parts[0].text, value.parts[1:]
                 method = "::" in name and bool(arguments) and arguments[0].text == "this"
-                for target in self.targets(name, fn):
+                for target in self.list_targets(name, fn):
                     found.setdefault(target, []).append((fn, arguments[1:] if method else arguments))
             for part in value.parts if depth < 3 else ():
                 if part.parts:
@@ -851,50 +853,50 @@ class FlowCode:
         """Where objects of a class of the code are made: name of the class to function, arguments and line."""
         found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
         for fn in self.functions:
-            for name, arguments, line in made_in(fn, self):
-                last = tail(name)
+            for name, arguments, line in list_made(fn, self):
+                last = get_tail(name)
                 if last in self.classes or last in self._renamed:
-                    cls = self.class_of(name, fn.source, fn.scope)
+                    cls = self.find_class(name, fn.source, fn.scope)
                     if cls is not None:
                         found.setdefault(cls.name, []).append((fn, arguments, line))
         return found
 
 
-def made_in(fn: Fn, code: FlowCode) -> list[tuple[str, tuple[FlowExpr, ...], int]]:
+def list_made(fn: Fn, code: FlowCode) -> list[tuple[str, tuple[FlowExpr, ...], int]]:
     """Objects that a function makes: type as meant (template arguments kept), arguments, line."""
     if fn.made is None:
-        fn.made = list(_made_in(fn, code))
+        fn.made = list(_find_made(fn, code))
     return fn.made
 
 
-def _made_in(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ...], int]]:
+def _find_made(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ...], int]]:
     for call in fn.facts.calls:
-        last = tail(call.callee)
+        last = get_tail(call.callee)
         if last in ("make_shared", "make_unique", "allocate_shared") and call.types:
             yield call.types, call.arguments, call.line
         elif last == "make_shared" and "::" in call.callee:
-            yield around(call.callee), call.arguments, call.line
+            yield get_outer(call.callee), call.arguments, call.line
         elif fn.source.facts.language == "python" and last[:1].isupper():
-            yield code.meant(call.callee, fn.source), call.arguments, call.line
+            yield code.resolve_name(call.callee, fn.source), call.arguments, call.line
         for argument in call.arguments:
             if argument.parts or argument.kind == "make":
-                for value in _makes(argument):
+                for value in _list_makes(argument):
                     yield value.text, value.parts, call.line
     for each in fn.facts.assignments:
         if each.value.parts or each.value.kind == "make":
-            for value in _makes(each.value):
+            for value in _list_makes(each.value):
                 yield value.text, value.parts, each.line
 
 
-def _makes(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
+def _list_makes(value: FlowExpr, depth: int = 0) -> list[FlowExpr]:
     found = [value] if value.kind == "make" and value.text else []
     for part in value.parts if depth < 4 else ():
         if part.parts or part.kind == "make":
-            found += _makes(part, depth + 1)
+            found += _list_makes(part, depth + 1)
     return found
 
 
-def parameter_of(fn: Fn, name: str) -> tuple[int, FlowParameter] | None:
+def find_parameter(fn: Fn, name: str) -> tuple[int, FlowParameter] | None:
     """The place and facts of a parameter; `self` is not counted."""
     rows = fn.facts.parameters
     offset = 1 if rows and rows[0].name in ("self", "cls") and fn.source.facts.language == "python" else 0
@@ -904,7 +906,7 @@ def parameter_of(fn: Fn, name: str) -> tuple[int, FlowParameter] | None:
     return None
 
 
-def _first(name: str) -> tuple[str, str, str]:
+def _split_first(name: str) -> tuple[str, str, str]:
     """Head, separator and rest of a qualified name."""
     one, other = name.find("::"), name.find(".")
     if one < 0 and other < 0:
@@ -914,11 +916,11 @@ def _first(name: str) -> tuple[str, str, str]:
     return name[:other], ".", name[other + 1 :]
 
 
-def _within(scope: str, outer: str) -> bool:
+def _is_within(scope: str, outer: str) -> bool:
     return scope == outer or scope.startswith((outer + "::", outer + "."))
 
 
-def _module_of(path: str, module: Sequence[str]) -> bool:
+def _may_be_module(path: str, module: Sequence[str]) -> bool:
     """Whether a path may be that of a Python module."""
     parts = path.removesuffix(".py").split("/")
     if parts and parts[-1] == "__init__":
@@ -927,17 +929,17 @@ def _module_of(path: str, module: Sequence[str]) -> bool:
     return bool(names) and parts[-len(names) :] == names
 
 
-def _absolute(target: str, path: str) -> tuple[str, ...]:
+def _resolve_module(target: str, path: str) -> tuple[str, ...]:
     """The module that a file imports: of a relative one (`.node`) the folders too."""
     up = len(target) - len(target.lstrip("."))
-    return (*path.split("/")[:-up], *parts_of(target)) if up else parts_of(target)
+    return (*path.split("/")[:-up], *split_name(target)) if up else split_name(target)
 
 
-def _groups(found: list[Cls], source: CodeFile, scope: str) -> Mapping[int, list[Cls]]:
+def _group_by_nearness(found: list[Cls], source: CodeFile, scope: str) -> Mapping[int, list[Cls]]:
     """Classes by how near they are to whoever names them."""
     groups: dict[int, list[Cls]] = {}
     for cls in found:
         near = 4 * (cls.source.path == source.path) + 2 * (cls.source.package == source.package)
-        near += _within(scope, around(cls.name)) if around(cls.name) else 0
+        near += _is_within(scope, get_outer(cls.name)) if get_outer(cls.name) else 0
         groups.setdefault(near, []).append(cls)
     return groups

@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 from msgspec import structs
 
 from .graph import Endpoint, Graph, GuardAt, Publish, Qos
-from .select import kind_of
+from .select import get_kind
 
 Mark = Literal["", "added", "removed", "changed"]
 _CHOICE = re.compile(r"\|\||\?|\b(?:or|if|lambda)\b")
@@ -42,21 +42,21 @@ class Edge(NamedTuple):
         return self.role in _OUT
 
 
-def edges(graph: Graph, base: Graph | None = None) -> list[Edge]:
+def list_edges(graph: Graph, base: Graph | None = None) -> list[Edge]:
     """The edges of a graph, sorted by name, role and node; those that only the base has come marked as removed."""
-    now = {(edge.node, edge.name, edge.role): edge for edge in _edges(graph)}
+    now = {(edge.node, edge.name, edge.role): edge for edge in _make_edges(graph)}
     if base is not None:
-        old = {(edge.node, edge.name, edge.role): edge for edge in _edges(base)}
+        old = {(edge.node, edge.name, edge.role): edge for edge in _make_edges(base)}
         for key, edge in now.items():
             before = old.get(key)
-            why = "" if before is None else _difference(before, edge)
+            why = "" if before is None else _describe_difference(before, edge)
             mark: Mark = "added" if before is None else "changed" if why else ""
             now[key] = edge._replace(mark=mark, why=why, before=before if why else None)
         now.update({key: edge._replace(mark="removed") for key, edge in old.items() if key not in now})
     return sorted(now.values(), key=lambda edge: (edge.name, edge.kind, not edge.outward, edge.role, edge.node))
 
 
-def _edges(graph: Graph) -> Iterator[Edge]:
+def _make_edges(graph: Graph) -> Iterator[Edge]:
     found: dict[tuple[str, str, str], list[Endpoint]] = {}
     for endpoint in graph.endpoints:
         if endpoint.topic:
@@ -68,23 +68,23 @@ def _edges(graph: Graph) -> Iterator[Edge]:
     for (node, name, role), endpoints in found.items():
         types = tuple(sorted({endpoint.type for endpoint in endpoints if endpoint.type}))
         publishes = tuple(said.get((node, name), ())) if role == "publisher" else ()
-        yield Edge(node, name, kind_of(endpoints[0]), role, types, tuple(endpoints), publishes)
+        yield Edge(node, name, get_kind(endpoints[0]), role, types, tuple(endpoints), publishes)
 
 
-def _difference(before: Edge, now: Edge) -> str:
+def _describe_difference(before: Edge, now: Edge) -> str:
     found = []
     if before.types != now.types:
         found.append("type")
-    if {_qos(each) for each in before.endpoints} != {_qos(each) for each in now.endpoints}:
+    if {_describe_qos(each) for each in before.endpoints} != {_describe_qos(each) for each in now.endpoints}:
         found.append("QoS")
-    if _guards(before.publishes) != _guards(now.publishes):
+    if _collect_guards(before.publishes) != _collect_guards(now.publishes):
         found.append("guards")
-    if _triggers(before.publishes) != _triggers(now.publishes):
+    if _collect_triggers(before.publishes) != _collect_triggers(now.publishes):
         found.append("trigger")
     return ", ".join(found)
 
 
-def _qos(endpoint: Endpoint) -> Qos | str:
+def _describe_qos(endpoint: Endpoint) -> Qos | str:
     """What is told; how it is written counts where nothing else is known, and where it is written never."""
     if endpoint.qos is None:
         return Qos()
@@ -92,17 +92,17 @@ def _qos(endpoint: Endpoint) -> Qos | str:
     return _PLACE.sub("lambda", endpoint.qos.written) if told == Qos() and endpoint.qos.written else told
 
 
-def _guards(publishes: Sequence[Publish]) -> frozenset:
+def _collect_guards(publishes: Sequence[Publish]) -> frozenset:
     return frozenset(
         tuple((guard.kind, guard.text) for guard in way.guards) for publish in publishes for way in publish.by
     )
 
 
-def _triggers(publishes: Sequence[Publish]) -> frozenset:
+def _collect_triggers(publishes: Sequence[Publish]) -> frozenset:
     return frozenset((trigger.kind, trigger.detail) for publish in publishes for trigger in publish.triggers)
 
 
-def names_of(graph: Graph) -> dict[str, str]:
+def name_nodes(graph: Graph) -> dict[str, str]:
     """How drawings call each node, by its id: the name in the system where it is a name of one node alone."""
     count: dict[str, int] = {}
     for node in graph.nodes:
@@ -110,7 +110,7 @@ def names_of(graph: Graph) -> dict[str, str]:
     return {node.id: node.name if node.name and count[node.name] == 1 else node.id for node in graph.nodes}
 
 
-def conditions(guards: Sequence[GuardAt]) -> str:
+def format_conditions(guards: Sequence[GuardAt]) -> str:
     """What must hold, in one line; what is a choice itself stands in parentheses among others. Empty for nothing."""
     asked = [guard for guard in guards if guard.kind in ("if", "unless")]
     return " and ".join(
@@ -123,12 +123,12 @@ def conditions(guards: Sequence[GuardAt]) -> str:
     )
 
 
-def loops(guards: Sequence[GuardAt]) -> str:
+def format_loops(guards: Sequence[GuardAt]) -> str:
     """The loops, `catch` and the like among guards, outermost first; empty for none."""
     return " in ".join(f"{guard.kind} {guard.text}" for guard in guards if guard.kind not in ("if", "unless"))
 
 
-def guard_text(publish: Publish) -> str:
+def format_guards(publish: Publish) -> str:
     """The guards of a publish statement in one line."""
-    asked, around = conditions(publish.guards), loops(publish.guards)
+    asked, around = format_conditions(publish.guards), format_loops(publish.guards)
     return ", ".join([*([asked] if asked else []), *([f"in {around}"] if around else [])])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from functools import cache
 
-from ...targets.surface.fields import default_fields
+from ...targets.surface.fields import load_fields
 
 # Messages that ROS 1 makes of an action.
 _OF_ACTIONS = ("ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback")
@@ -23,14 +23,14 @@ class DefinedInterfaces:
         package, _, name = interface.partition("/")
         names = self.own.get(package)
         if names is None and self.ros:
-            names = released(package, self.ros) or None
+            names = list_released(package, self.ros) or None
         if names is None:
             return None
         return name in names or any(name.endswith(part) and name.removesuffix(part) in names for part in _OF_ACTIONS)
 
 
 @cache
-def released(package: str, ros: int) -> frozenset[str]:
+def list_released(package: str, ros: int) -> frozenset[str]:
     """The interfaces that a released package ever had, none when it is not known."""
-    history = default_fields().history(package, ros)
+    history = load_fields().find_history(package, ros)
     return frozenset(name.rpartition("/")[2] for name in history.interfaces) if history is not None else frozenset()

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
 
-from ....edges.memory import kept_with
+from ....edges.memory import cache_in_derived
 from ..workspace import Workspace
-from .defined import released
+from .defined import list_released
 from .graph import Endpoint, Graph, Node
 from .launches import Launch
-from .workspace import flow_of
+from .workspace import get_flow
 
 # Of these the workspace says what runs; plugins and libraries get their names from whoever loads them, but for names
 # that begin with a slash.
@@ -70,11 +70,11 @@ class Flow:
         self._of_node: dict[tuple[str, str, str], list[Endpoint]] = {}
         for one in graph.endpoints:
             if one.topic:
-                self.known.setdefault((_kind(one.role), one.topic), []).append(one)
+                self.known.setdefault((_get_kind(one.role), one.topic), []).append(one)
                 self._of_role.setdefault((one.role, one.topic), []).append(one)
                 self._of_node.setdefault((one.node, one.role, one.topic), []).append(one)
 
-    def sure(self, *roles: str) -> Iterator[Sure]:
+    def list_sure(self, *roles: str) -> Iterator[Sure]:
         """Endpoints whose name is certain, of some roles or of all: in the order of the graph."""
         for one in self.graph.endpoints:
             node = self.nodes.get(one.node)
@@ -92,16 +92,16 @@ class Flow:
         alone = (one.node, one.role, one.path, one.line, one.written) in self._alone
         return bool(runs and one.topic and one.how in _SURE and alone)
 
-    def type_of(self, endpoint: Endpoint) -> str:
+    def find_type(self, endpoint: Endpoint) -> str:
         """The type of an endpoint, empty where it is not known to be a message's (or a service's, or an action's)."""
         package, _, name = endpoint.type.partition("/")
         own = self.interfaces.get(package)
         if own is None:
-            own = released(package, self.graph.ros)
+            own = list_released(package, self.graph.ros)
         known = name in own if own else package.endswith(_INTERFACES)
         return endpoint.type if name and known else ""
 
-    def others(self, endpoint: Endpoint) -> list[Endpoint]:
+    def list_others(self, endpoint: Endpoint) -> list[Endpoint]:
         """The other side of an endpoint's topic, service or action, sure or not."""
         return self._of_role.get((_OTHER_SIDE[endpoint.role], endpoint.topic), [])
 
@@ -123,41 +123,41 @@ class Flow:
             found.setdefault("publisher", set()).add("")
         return found
 
-    def of_node(self, one: Endpoint) -> list[Endpoint]:
+    def list_alternatives(self, one: Endpoint) -> list[Endpoint]:
         """Everything of the same node and role at the same name: code may choose among several."""
         return self._of_node.get((one.node, one.role, one.topic), [])
 
-    def pairs(self, launch: str = "") -> Iterator[FlowPair]:
+    def list_pairs(self, launch: str = "") -> Iterator[FlowPair]:
         """Every two sure endpoints that meet under a name, each two places of source once; of a name that very many
         meet under, the first."""
         seen = set()
         in_all = _MOST_PAIRS_IN_ALL
         for giving, taking in _SIDES:
             givers: dict[str, list[Sure]] = {}
-            for one in self.sure(giving):
+            for one in self.list_sure(giving):
                 givers.setdefault(one.endpoint.topic, []).append(one)
             left = dict.fromkeys(givers, _MOST_PAIRS)
-            for taker in self.sure(taking):
+            for taker in self.list_sure(taking):
                 topic = taker.endpoint.topic
                 for giver in givers.get(topic, ())[: min(left.get(topic, 0), in_all)]:
                     left[topic] -= 1
                     in_all -= 1
-                    key = (*_place(giver.endpoint), *_place(taker.endpoint))
+                    key = (*_get_place(giver.endpoint), *_get_place(taker.endpoint))
                     if key not in seen:
                         seen.add(key)
                         yield FlowPair(self, giver, taker, launch)
 
 
-def uncompared(workspace: Workspace) -> Iterator[tuple[Endpoint, int]]:
+def list_uncompared(workspace: Workspace) -> Iterator[tuple[Endpoint, int]]:
     """Subscribers and clients at names that too many meet under: the first at each, and how many pairs pairs() leaves
     out there."""
     seen = set()
-    for _, flow in flows(workspace):
+    for _, flow in list_flows(workspace):
         in_all = _MOST_PAIRS_IN_ALL
         for giving, taking in _SIDES:
-            givers = Counter(one.endpoint.topic for one in flow.sure(giving))
+            givers = Counter(one.endpoint.topic for one in flow.list_sure(giving))
             takers: dict[str, list[Endpoint]] = {}
-            for one in flow.sure(taking):
+            for one in flow.list_sure(taking):
                 takers.setdefault(one.endpoint.topic, []).append(one.endpoint)
             for topic, listed in takers.items():
                 number = givers[topic] * len(listed)
@@ -168,39 +168,39 @@ def uncompared(workspace: Workspace) -> Iterator[tuple[Endpoint, int]]:
                     yield listed[0], number - compared
 
 
-@kept_with
-def flows(workspace: Workspace) -> list[tuple[str, Flow]]:
+@cache_in_derived
+def list_flows(workspace: Workspace) -> list[tuple[str, Flow]]:
     """What each launch file surely starts, by its path; then the whole workspace, with an empty path."""
-    whole = whole_flow(workspace)
-    started = [(launch.path, launched_flow(whole, launch)) for launch in flow_of(workspace).launches]
+    whole = build_whole_flow(workspace)
+    started = [(launch.path, build_launched_flow(whole, launch)) for launch in get_flow(workspace).launches]
     return [*started, ("", whole)]
 
 
-@kept_with
-def whole_flow(workspace: Workspace) -> Flow:
+@cache_in_derived
+def build_whole_flow(workspace: Workspace) -> Flow:
     """The flow of a whole workspace, under the names that its source gives."""
     names = {each.name: workspace.interface_names.get(each.name, set()) for each in workspace}
-    return Flow(flow_of(workspace).graph, names)
+    return Flow(get_flow(workspace).graph, names)
 
 
-def launched_flow(whole: Flow, launch: Launch) -> Flow:
+def build_launched_flow(whole: Flow, launch: Launch) -> Flow:
     """The flow of what a launch file surely starts."""
     surely = {start.node for start in launch.starts if not start.uncertain}
     return Flow(launch.graph, whole.interfaces, surely, whole)
 
 
-@kept_with
-def met(workspace: Workspace) -> list[FlowPair]:
+@cache_in_derived
+def list_met_pairs(workspace: Workspace) -> list[FlowPair]:
     """Pairs that a launch file starts, then pairs that nothing starts together and that have nobody else to talk to:
     the workspace's programs need not be made to run together, but these have no other use. What launch files start of
     the latter has to go by the same name there."""
     seen = set()
     found: list[FlowPair] = []
     started = _Started(workspace)
-    for launch, flow in flows(workspace):
-        for pair in flow.pairs(launch):
-            key = (*_place(pair.giver.endpoint), *_place(pair.taker.endpoint))
-            if key in seen or (not launch and not (started.may_meet(pair) and _left_to_each_other(flow, pair))):
+    for launch, flow in list_flows(workspace):
+        for pair in flow.list_pairs(launch):
+            key = (*_get_place(pair.giver.endpoint), *_get_place(pair.taker.endpoint))
+            if key in seen or (not launch and not (started.may_meet(pair) and _lacks_other_partner(flow, pair))):
                 continue
             seen.add(key)
             found.append(pair)
@@ -213,7 +213,7 @@ class _Started:
     def __init__(self, workspace: Workspace):
         self._names: dict[str, set[str]] = {}
         self._together: list[set[str]] = []
-        for launch in flow_of(workspace).launches:
+        for launch in get_flow(workspace).launches:
             programs = {start.node: start.program for start in launch.starts}
             self._together.append(set(programs.values()))
             for program in programs.values():
@@ -230,31 +230,31 @@ class _Started:
         return all(side.endpoint.topic in self._names.get(side.node.id, {side.endpoint.topic}) for side in sides)
 
 
-def unstarted(workspace: Workspace) -> Flow:
+def build_unstarted_flow(workspace: Workspace) -> Flow:
     """The workspace's flow as far as no launch file starts its nodes: these have the names that the source gives."""
-    whole = whole_flow(workspace)
-    started = {start.program for launch in flow_of(workspace).launches for start in launch.starts}
+    whole = build_whole_flow(workspace)
+    started = {start.program for launch in get_flow(workspace).launches for start in launch.starts}
     return Flow(whole.graph, whole.interfaces, whole.nodes.keys() - started, whole)
 
 
-def _left_to_each_other(flow: Flow, pair: FlowPair) -> bool:
+def _lacks_other_partner(flow: Flow, pair: FlowPair) -> bool:
     """Whether neither side has a partner of its own type in the workspace."""
     giver, taker = pair.giver.endpoint, pair.taker.endpoint
     return not (
-        any(_fit(giver, other) for other in flow.others(giver) if _place(other) != _place(taker))
-        or any(_fit(taker, other) for other in flow.others(taker) if _place(other) != _place(giver))
+        any(_fits_type(giver, other) for other in flow.list_others(giver) if _get_place(other) != _get_place(taker))
+        or any(_fits_type(taker, other) for other in flow.list_others(taker) if _get_place(other) != _get_place(giver))
     )
 
 
-def _fit(one: Endpoint, other: Endpoint) -> bool:
+def _fits_type(one: Endpoint, other: Endpoint) -> bool:
     return one.type == other.type or not one.type or not other.type or "*" in (one.type, other.type)
 
 
-def _kind(role: str) -> str:
+def _get_kind(role: str) -> str:
     return _WHAT.get(role, "action")
 
 
-def _place(endpoint: Endpoint) -> tuple[str, int]:
+def _get_place(endpoint: Endpoint) -> tuple[str, int]:
     return endpoint.path, endpoint.line
 
 
@@ -263,6 +263,6 @@ def begins(endpoint: Endpoint, with_: str) -> bool:
     return endpoint.written.startswith(f'"{with_}')
 
 
-def display_name(node: Node) -> str:
+def get_label(node: Node) -> str:
     """A node as a message names it: its name in a running system where a launch tells it, else what is started."""
     return node.name if node.started else node.executable or node.plugin or node.id

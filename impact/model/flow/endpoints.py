@@ -11,16 +11,16 @@ from typing import Any, NamedTuple, get_args
 
 from msgspec import structs
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import FlowCall, FlowExpr
 from .calls import Calls, FrameworkCall
-from .code import FlowCode, Fn, Variable, around, is_number, parameter_of, tail
+from .code import FlowCode, Fn, Variable, find_parameter, get_outer, get_tail, is_number
 from .defined import DefinedInterfaces
 from .graph import Role
 from .templates import Templates
-from .types import interface_of, interface_of_header, parsed
-from .values import FlowValue, FlowValues, beside
+from .types import find_header_interface, find_interface, parse_flow_type
+from .values import FlowValue, FlowValues, make_sibling
 
 _HANDLES = frozenset(("handle", "image_transport", "cloud_transport"))
 LOST = "?"
@@ -82,14 +82,14 @@ def _feeds(kept: tuple[Fn, FlowCall | FlowExpr]) -> bool:
     given = kept[1]
     if isinstance(given, FlowExpr):
         return given.kind in ("make", "list", "call")
-    last = tail(given.callee)
+    last = get_tail(given.callee)
     return last not in _CONNECTS and (last != "registerCallback" or "." not in given.callee)
 
 
-def _words(value: FlowExpr) -> Iterator[str]:
+def _list_words(value: FlowExpr) -> Iterator[str]:
     yield value.text
     for part in value.parts:
-        yield from _words(part)
+        yield from _list_words(part)
 
 
 def _holds(value: FlowExpr, made: set[tuple[str, tuple[FlowExpr, ...]]]) -> bool:
@@ -105,7 +105,7 @@ def _serves(fn: Fn) -> bool:
     return any("::Request" in each or "::Response" in each for each in types)
 
 
-def _place_in_row(value: FlowExpr) -> tuple[FlowExpr, int] | None:
+def _split_row_index(value: FlowExpr) -> tuple[FlowExpr, int] | None:
     """What is walked through, and the place in each of its rows, of `rows[each][1]`."""
     if value.kind == "index" and len(value.parts) == 2 and value.parts[0].kind == "index":
         walked, place = value.parts[0].parts[:1], value.parts[1]
@@ -114,15 +114,15 @@ def _place_in_row(value: FlowExpr) -> tuple[FlowExpr, int] | None:
     return None
 
 
-def shown(value: FlowExpr | None) -> str:
+def unparse(value: FlowExpr | None) -> str:
     """An expression for people, near to how it is written."""
     if value is None:
         return ""
-    parts = [shown(part) for part in value.parts]
+    parts = [unparse(part) for part in value.parts]
     if value.kind == "text":
         return f'"{value.text}"'
     if value.kind in ("call", "make"):
-        name = f"{shown(value.receiver)}.{tail(value.text)}" if value.receiver is not None else value.text
+        name = f"{unparse(value.receiver)}.{get_tail(value.text)}" if value.receiver is not None else value.text
         return f"{name}({', '.join(parts)})"
     if value.kind == "join":
         return f" {value.text or '+'} ".join(parts)
@@ -152,10 +152,10 @@ class Sites:
         found: list[Site] = []
         for use in self.calls.uses:
             if use.row.does in _ROLES and not self.wraps(use.fn):
-                for one in self._rows(use):
-                    found.extend(self._endpoints(one))
+                for one in self._expand_rows(use):
+                    found.extend(self._make_endpoints(one))
             elif use.row.does in ("node", "further"):
-                found.extend(self._further(Site("publisher", use, (), "", self.prefix(use), "")))
+                found.extend(self._list_implied(Site("publisher", use, (), "", self.find_prefix(use), "")))
         return found
 
     @cached_property
@@ -166,11 +166,11 @@ class Sites:
     def wraps(self, fn: Fn, does: str = "") -> bool:
         """Whether a function stands for the framework's own of the same name: its callers are the sites. does: what the
         framework's function does, any endpoint when left out."""
-        rows = self.calls.table.calls.get(tail(fn.name), ())
+        rows = self.calls.table.calls.get(get_tail(fn.name), ())
         meant = any(row.does == does if does else row.does in _ROLES for row in rows)
         return bool(fn.facts.parameters) and meant and not fn.is_lambda
 
-    def _rows(self, use: FrameworkCall) -> Iterator[FrameworkCall]:
+    def _expand_rows(self, use: FrameworkCall) -> Iterator[FrameworkCall]:
         """The use for each row of the list that its arguments walk through together, with what the row has for them:
         `[Subscriber(topic, type) for topic, type in rows]`."""
         bound: dict[str, tuple[FlowExpr, int]] = {}
@@ -180,10 +180,10 @@ class Sites:
                     (a for a in use.fn.assigned[argument.text] if a.line <= use.call.line),
                     key=lambda a: a.line, default=None,
                 )  # fmt: skip
-                place = _place_in_row(each.value) if each is not None else None
+                place = _split_row_index(each.value) if each is not None else None
                 if place is not None:
                     bound[argument.text] = place
-        rows = self.values.rows(next(iter(bound.values()))[0], use.fn) if len(bound) > 1 else []
+        rows = self.values.list_rows(next(iter(bound.values()))[0], use.fn) if len(bound) > 1 else []
         if not rows or len({walked for walked, _ in bound.values()}) > 1:
             yield use
             return
@@ -195,30 +195,30 @@ class Sites:
                 )
                 yield use._replace(call=structs.replace(use.call, arguments=arguments))
 
-    def _endpoints(self, use: FrameworkCall) -> Iterator[Site]:
+    def _make_endpoints(self, use: FrameworkCall) -> Iterator[Site]:
         calls, row = self.calls, use.row
-        named = calls.argument(use, row.topic)
+        named = calls.find_argument(use, row.topic)
         fixed = bool(row.topic) and isinstance(row.topic[0], str) and row.topic[0].startswith("=")
-        prefix = "" if fixed else self.prefix(use)
-        names = self.names(use, prefix, self.values)
-        callbacks, reason = self._callbacks(use)
+        prefix = "" if fixed else self.find_prefix(use)
+        names = self.list_names(use, prefix, self.values)
+        callbacks, reason = self._find_callbacks(use)
         site = Site(
-            _ROLES[row.does], use, names, shown(named), prefix, self.type_of(use), callbacks,
-            self._variable(use), reason, fixed,
+            _ROLES[row.does], use, names, unparse(named), prefix, self.find_type(use), callbacks,
+            self._find_variable(use), reason, fixed,
         )  # fmt: skip
         if not site.type:
-            site = site._replace(types=tuple(dict.fromkeys(self._types_of_template(use))))
+            site = site._replace(types=tuple(dict.fromkeys(self._list_template_types(use))))
         yield site
         if row.camera_info:
             # https://docs.ros.org/en/api/image_transport: camera_info stands beside the image's topic.
-            infos = tuple(v if v.text is None else v._replace(text=beside(v.text, "camera_info")) for v in names)
+            infos = tuple(v if v.text is None else v._replace(text=make_sibling(v.text, "camera_info")) for v in names)
             yield site._replace(names=infos, type="sensor_msgs/CameraInfo", implied=True)
-        yield from self._further(site)
+        yield from self._list_implied(site)
 
-    def names(self, use: FrameworkCall, prefix: str, values: FlowValues) -> tuple[FlowValue, ...]:
+    def list_names(self, use: FrameworkCall, prefix: str, values: FlowValues) -> tuple[FlowValue, ...]:
         """What the name of an endpoint may be, before the node's own. prefix: of its node handle; values: what
         expressions are worth where it runs."""
-        found = tuple(values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line))
+        found = tuple(values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line))
         if not prefix.startswith(LOST):
             return found
         lost = "the namespace of its node handle is not known"
@@ -230,34 +230,34 @@ class Sites:
         )
 
     @staticmethod
-    def _further(site: Site) -> Iterator[Site]:
+    def _list_implied(site: Site) -> Iterator[Site]:
         """What the framework makes beside an endpoint or a node."""
-        words = {tail(word) for argument in site.use.call.arguments for word in _words(argument)}
+        words = {get_tail(word) for argument in site.use.call.arguments for word in _list_words(argument)}
         for also in site.use.row.also:
             if words.intersection(also.unless):
                 continue
             role, names = _ROLES[also.role], (FlowValue(also.topic),)
             yield site._replace(role=role, names=names, type=also.type, callbacks=(), reason="", implied=True)
 
-    def _variable(self, use: FrameworkCall) -> Variable | None:
-        kept = self.calls.kept_in(use)
+    def _find_variable(self, use: FrameworkCall) -> Variable | None:
+        kept = self.calls.find_kept_variable(use)
         if kept is not None:
             return kept
         if use.row.on and "filter" in use.row.on:
-            receiver = self.calls.receiver_of(use)
-            return self.code.identity(receiver, use.fn) if receiver else None
-        put, wrapped = self._holders(use.fn)
+            receiver = self.calls.get_receiver(use)
+            return self.code.identify(receiver, use.fn) if receiver else None
+        put, wrapped = self._find_holders(use.fn)
         callee = put.get(use.call.arguments)
         if callee is not None:
-            return self.code.identity(callee.rpartition(".")[0], use.fn)
+            return self.code.identify(callee.rpartition(".")[0], use.fn)
         if use.row.does == "publisher":
             for each in wrapped.get((use.call.callee, use.call.arguments), ()):
                 if self._is_publisher(each.value, use.fn):
-                    return self.code.identity(each.target, use.fn)
+                    return self.code.identify(each.target, use.fn)
         return None
 
-    @cached_method
-    def _holders(
+    @cache_method
+    def _find_holders(
         self, fn: Fn
     ) -> tuple[dict[tuple[FlowExpr, ...], str], dict[tuple[str, tuple[FlowExpr, ...]], list[Any]]]:
         """What a function puts into containers, by the arguments of the call that makes it: the first call that puts
@@ -265,7 +265,7 @@ class Sites:
         # `pubs.push_back(nh.advertise(...))`, `pubs.emplace(name, create_publisher(...))`
         put: dict[tuple[FlowExpr, ...], str] = {}
         for call in fn.facts.calls:
-            if "." in call.callee and tail(call.callee) in _PUTS:
+            if "." in call.callee and get_tail(call.callee) in _PUTS:
                 for argument in call.arguments:
                     if argument.kind in ("call", "make"):
                         put.setdefault(argument.parts, call.callee)
@@ -279,31 +279,31 @@ class Sites:
 
     def _is_publisher(self, value: FlowExpr, fn: Fn) -> bool:
         """Whether an object that is made is a publisher."""
-        return "publisher" in self.calls.kinds_of(self.code.meant_type(value.text, fn.source, fn.scope), fn)
+        return "publisher" in self.calls.find_kinds(self.code.resolve_written(value.text, fn.source, fn.scope), fn)
 
-    def template_parameter(self, use: FrameworkCall) -> str:
+    def find_template_parameter(self, use: FrameworkCall) -> str:
         """The parameter of a template that tells an endpoint's type, empty for none."""
         for spot in use.row.type:
             text = ""
             if isinstance(spot, str) and spot.startswith("<"):
-                text = self.calls.template_argument(use, int(spot.strip("<>")))
+                text = self.calls.get_template_argument(use, int(spot.strip("<>")))
             elif spot == "of receiver":
-                kind = self.code.type_of_name(self.calls.receiver_of(use), use.fn)
+                kind = self.code.resolve_name_type(self.calls.get_receiver(use), use.fn)
                 text = kind.arguments[0] if kind.arguments else ""
-            name = self.code.meant_type(text, use.fn.source, use.fn.scope).name if text else ""
+            name = self.code.resolve_written(text, use.fn.source, use.fn.scope).name if text else ""
             if name and self.templates.has(name, use.fn):
                 return name
         return ""
 
-    def _types_of_template(self, use: FrameworkCall) -> Iterator[TemplateType]:
-        name = self.template_parameter(use)
-        for one in self.templates.given(name, use.fn) if name else ():
-            kind = self.code.meant_type(one.text, one.source, one.scope)
-            known = interface_of(kind.name)
+    def _list_template_types(self, use: FrameworkCall) -> Iterator[TemplateType]:
+        name = self.find_template_parameter(use)
+        for one in self.templates.list_given(name, use.fn) if name else ():
+            kind = self.code.resolve_written(one.text, one.source, one.scope)
+            known = find_interface(kind.name)
             if known:
                 yield TemplateType(known, one.cls, one.fn)
 
-    def type_of(self, use: FrameworkCall, values: FlowValues | None = None) -> str:
+    def find_type(self, use: FrameworkCall, values: FlowValues | None = None) -> str:
         """The interface an endpoint is of, as `package/Name`; `*` for any, empty when it is not known. values: what
         expressions are worth where it runs."""
         code, row, fn, values = self.code, use.row, use.fn, values or self.values
@@ -312,86 +312,86 @@ class Sites:
             if isinstance(spot, str) and spot.startswith("="):
                 return spot[1:]
             if isinstance(spot, str) and spot.startswith("<"):
-                text = self.calls.template_argument(use, int(spot.strip("<>")))
+                text = self.calls.get_template_argument(use, int(spot.strip("<>")))
                 if not text and row.does in ("subscriber", "server"):
-                    text = self._parameter_type(use)
+                    text = self._find_parameter_type(use)
             elif spot == "of receiver":
-                kind = code.type_of_name(self.calls.receiver_of(use), fn)
-                if tail(kind.name) == "SubscriberFilter":
+                kind = code.resolve_name_type(self.calls.get_receiver(use), fn)
+                if get_tail(kind.name) == "SubscriberFilter":
                     return "sensor_msgs/PointCloud2" if "point_cloud" in kind.name else "sensor_msgs/Image"
                 text = kind.arguments[0] if kind.arguments else ""
             elif isinstance(spot, str) and spot.startswith("argument "):
                 place = int(spot[9:])
                 if place < len(use.call.arguments):
-                    text = code.type_of(use.call.arguments[place], fn).name
+                    text = code.resolve_type(use.call.arguments[place], fn).name
             else:
-                value = self.calls.argument(use, (spot,))
+                value = self.calls.find_argument(use, (spot,))
                 if value is not None and value.kind == "text":
                     parts = value.text.split("/")
                     return f"{parts[0]}/{parts[-1]}" if len(parts) > 1 else value.text
                 if value is not None and value.kind in ("name", "call"):
                     text = value.text
                     if fn.source.facts.language == "python":
-                        text = self._python_type(value, fn, values)
+                        text = self._find_python_type(value, fn, values)
                         if text == "*" or "/" in text:
                             return text
             if text:
-                kind = code.meant_type(text, fn.source, fn.scope)
+                kind = code.resolve_written(text, fn.source, fn.scope)
                 if self.templates.has(kind.name, fn):
                     continue
-                if tail(kind.name) in ("ShapeShifter", "AnyMsg", "SerializedMessage"):
+                if get_tail(kind.name) in ("ShapeShifter", "AnyMsg", "SerializedMessage"):
                     return "*"
-                known = self.calls.table.types.get(kind.name) or interface_of(
+                known = self.calls.table.types.get(kind.name) or find_interface(
                     f"{kind.name}<{', '.join(kind.arguments)}>" if kind.arguments else kind.name
                 )
                 if not known:
-                    known = self._in_namespaces(kind.name, fn) or self._in_scope(kind.name, fn)
+                    known = self._resolve_in_namespaces(kind.name, fn) or self._resolve_in_scope(kind.name, fn)
                 if known:
                     return known
         if not use.row.type and use.row.does in _ROLES:
             return ""
-        options = self.calls.argument(use, (0,))
+        options = self.calls.find_argument(use, (0,))
         if options is not None and options.kind == "name":
-            for _, call in code.results(code.identity(options.text, fn)):
+            for _, call in code.list_results(code.identify(options.text, fn)):
                 if "Options::" in call.callee and call.types:
-                    return self._interface(split_at_commas(call.types)[0], fn)
-        kept = self.calls.kept_in(use)
+                    return self._resolve_interface(split_at_commas(call.types)[0], fn)
+        kept = self.calls.find_kept_variable(use)
         if kept is not None:
-            kind = code.type_of_variable(kept, fn)
+            kind = code.resolve_variable_type(kept, fn)
             if kind.arguments:
-                return self._interface(kind.arguments[0], fn)
+                return self._resolve_interface(kind.arguments[0], fn)
         return ""
 
-    def _interface(self, type_: str, fn: Fn) -> str:
-        return interface_of(self.code.meant_type(type_, fn.source, fn.scope).name)
+    def _resolve_interface(self, type_: str, fn: Fn) -> str:
+        return find_interface(self.code.resolve_written(type_, fn.source, fn.scope).name)
 
-    def _in_namespaces(self, name: str, fn: Fn) -> str:
+    def _resolve_in_namespaces(self, name: str, fn: Fn) -> str:
         """A type's interface by `using namespace sensor_msgs` and `using namespace std_msgs::msg`."""
         if fn.source.facts.language != "cpp" or ("::" in name and not name.startswith("msg::")):
             return ""
         found: list[str] = []
         for alias in self.code.aliases[fn.source.path].get("*", ()):
-            known = interface_of(f"{alias.target}::{name}")
+            known = find_interface(f"{alias.target}::{name}")
             if known and alias.target.endswith(("::msg", "::srv", "::action", "_msgs", "_srvs")):
                 found.append(known)
         if len(found) > 1:
-            included = {interface_of_header(header) for header in fn.source.facts.includes}
+            included = {find_header_interface(header) for header in fn.source.facts.includes}
             found = [known for known in found if known in included] or found
         sure = [known for known in found if self.defined.has(known)]
-        return self._last_there([*found, *sure])
+        return self._select_last_existing([*found, *sure])
 
-    def _last_there(self, found: list[str]) -> str:
+    def _select_last_existing(self, found: list[str]) -> str:
         """Of interfaces that a name may mean the last that exists; empty where that cannot be told."""
         may = [known for known in dict.fromkeys(reversed(found)) if self.defined.has(known) is not False]
         return may[0] if len(may) == 1 or (may and self.defined.has(may[0])) else ""
 
-    def _in_scope(self, name: str, fn: Fn) -> str:
+    def _resolve_in_scope(self, name: str, fn: Fn) -> str:
         """A type's interface by the namespaces around the function: `Pose` inside `namespace turtlesim`."""
         if fn.source.facts.language != "cpp":
             return ""
         scope = fn.name.rpartition("::")[0]
         while scope:
-            known = interface_of(f"{scope}::{name}")
+            known = find_interface(f"{scope}::{name}")
             package = known.partition("/")[0]
             ours = package == fn.source.package or package.endswith(("_msgs", "_srvs", "_interfaces"))
             if ours and self.defined.has(known) is not False:
@@ -401,105 +401,107 @@ class Sites:
 
     def _is_free(self, name: str, fn: Fn) -> bool:
         """Whether a name of Python is neither a variable nor made in the file."""
-        return self.code.identity(name, fn).kind == "global" and not self.code.writes(self.code.identity(name, fn))
+        return self.code.identify(name, fn).kind == "global" and not self.code.list_writes(self.code.identify(name, fn))
 
-    def _python_type(self, value: FlowExpr, fn: Fn, values: FlowValues) -> str:
-        meant = self.code.meant(value.text, fn.source)
-        if interface_of(meant):
+    def _find_python_type(self, value: FlowExpr, fn: Fn, values: FlowValues) -> str:
+        meant = self.code.resolve_name(value.text, fn.source)
+        if find_interface(meant):
             return meant
         if "." not in value.text:
             # Of two modules that have it, the one that is imported last.
             stars = [alias.target for alias in self.code.aliases[fn.source.path].get("*", ())]
             found = [f"{star}.{value.text}" for star in stars if star.endswith((".msg", ".srv", ".action"))]
             if found and self._is_free(value.text, fn):
-                return self._last_there([interface_of(one) for one in found])
-        for one in values.of(value, fn):
-            if one.text and interface_of(one.text):
+                return self._select_last_existing([find_interface(one) for one in found])
+        for one in values.evaluate(value, fn):
+            if one.text and find_interface(one.text):
                 return one.text
-        by_name = self._class_by_name(value, fn, values)
+        by_name = self._find_class_by_name(value, fn, values)
         if by_name:
             return by_name
         # `import std_msgs.msg` leaves the name as it is; a variable may hold the class.
-        variable = self.code.identity(value.text, fn)
-        for writer, each in self.code.writes(variable):
+        variable = self.code.identify(value.text, fn)
+        for writer, each in self.code.list_writes(variable):
             if each.value.kind == "name":
-                found = self.code.meant(each.value.text, writer.source)
-                if interface_of(found):
+                found = self.code.resolve_name(each.value.text, writer.source)
+                if find_interface(found):
                     return found
         return meant
 
-    def _class_by_name(self, value: FlowExpr, fn: Fn, values: FlowValues, depth: int = 0) -> str:
+    def _find_class_by_name(self, value: FlowExpr, fn: Fn, values: FlowValues, depth: int = 0) -> str:
         """The type of a class that is looked up by its name, `*` for that of whatever a topic has."""
         if value.kind == "index" and value.parts:
             value = value.parts[0]
-        if value.kind == "call" and tail(value.text) in ("get_message_class", "get_service_class") and value.parts:
-            return next((one.text for one in values.of(value.parts[0], fn) if one.text and "/" in one.text), "")
-        if value.kind == "call" and tail(value.text) == "get_topic_class":
+        if value.kind == "call" and get_tail(value.text) in ("get_message_class", "get_service_class") and value.parts:
+            return next((one.text for one in values.evaluate(value.parts[0], fn) if one.text and "/" in one.text), "")
+        if value.kind == "call" and get_tail(value.text) == "get_topic_class":
             return "*"
         if value.kind == "name" and depth < 4:
-            for writer, each in self.code.writes(self.code.identity(value.text, fn)):
-                found = self._class_by_name(each.value, writer, values, depth + 1)
+            for writer, each in self.code.list_writes(self.code.identify(value.text, fn)):
+                found = self._find_class_by_name(each.value, writer, values, depth + 1)
                 if found:
                     return found
         return ""
 
-    def _parameter_type(self, use: FrameworkCall) -> str:
+    def _find_parameter_type(self, use: FrameworkCall) -> str:
         """The message type that a callback's parameter tells."""
-        callbacks, _ = self._callbacks(use)
+        callbacks, _ = self._find_callbacks(use)
         for fn in callbacks:
             for parameter in fn.facts.parameters[:1]:
-                kind = self.code.meant_type(parameter.type, fn.source, fn.scope)
+                kind = self.code.resolve_written(parameter.type, fn.source, fn.scope)
                 name = kind.name if not kind.arguments else f"{kind.name}<{', '.join(kind.arguments)}>"
-                if tail(kind.name) == "MessageEvent" and kind.arguments:
-                    name = parsed(kind.arguments[0]).name
+                if get_tail(kind.name) == "MessageEvent" and kind.arguments:
+                    name = parse_flow_type(kind.arguments[0]).name
                 if name:
                     return name
         return ""
 
-    def _callbacks(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str]:
+    def _find_callbacks(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str]:
         row = use.row
         if not row.callback:
-            return self._joined_callbacks(use)
+            return self._find_joined_callbacks(use)
         if isinstance(row.callback[0], str) and row.callback[0].startswith("="):
             name = row.callback[0][1:]
-            owner = self.code.owner_of(use.fn)
-            return tuple(self.code.method(owner, name)) if owner else (), ""
+            owner = self.code.find_owner(use.fn)
+            return tuple(self.code.find_method(owner, name)) if owner else (), ""
         value = None
         for spot in row.callback:
-            one = self.calls.argument(use, (spot,))
-            found = self.bodies(one, use.fn, use) if one is not None else []
+            one = self.calls.find_argument(use, (spot,))
+            found = self.list_bodies(one, use.fn, use) if one is not None else []
             if found:
                 return tuple(found), ""
             value = value or one
         if value is None:
-            return self._callbacks_of_options(use) or self._joined_callbacks(use)
-        return (), f"the callback `{shown(value)[:80]}` is not in the workspace or not followed"
+            return self._find_options_callbacks(use) or self._find_joined_callbacks(use)
+        return (), f"the callback `{unparse(value)[:80]}` is not in the workspace or not followed"
 
-    def _callbacks_of_options(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str] | None:
+    def _find_options_callbacks(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str] | None:
         """Those of the options of ROS 1 that are all a call is given, None without any: `subscribe(options)`.
 
         Source: http://docs.ros.org/en/noetic/api/roscpp/html/structros_1_1SubscribeOptions.html (create, init)."""
-        options = self.calls.argument(use, (0,))
+        options = self.calls.find_argument(use, (0,))
         if options is None or options.kind != "name":
             return None
-        fn, variable = use.fn, self.code.identity(options.text, use.fn)
-        made = [call for _, call in self.code.results(variable) if "Options::create" in call.callee]
+        fn, variable = use.fn, self.code.identify(options.text, use.fn)
+        made = [call for _, call in self.code.list_results(variable) if "Options::create" in call.callee]
         made += [call for call in fn.facts.calls if call.callee.startswith(f"{options.text}.init")]
-        found = [body for call in made if len(call.arguments) > 2 for body in self.bodies(call.arguments[2], fn, use)]
+        found = [
+            body for call in made if len(call.arguments) > 2 for body in self.list_bodies(call.arguments[2], fn, use)
+        ]
         return (tuple(found), "") if found else None
 
-    def _joined_callbacks(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str]:
+    def _find_joined_callbacks(self, use: FrameworkCall) -> tuple[tuple[Fn, ...], str]:
         """For filters: the callbacks registered with whatever joins them."""
         # A listener to transforms that a filter waits for feeds nothing through it.
         fixed = isinstance(use.row.topic[0], str) and use.row.topic[0].startswith("=") if use.row.topic else False
         feeds = use.row.does == "subscriber" and not fixed
-        variable = (self._variable(use) or self._joint(use)) if feeds else None
+        variable = (self._find_variable(use) or self._find_joint(use)) if feeds else None
         if variable is None:
             return (), ""
         found = list(dict.fromkeys(fn for fn in self.joins.get(variable, ())))
         return tuple(found), ""
 
-    def _joint(self, use: FrameworkCall) -> Variable | None:
+    def _find_joint(self, use: FrameworkCall) -> Variable | None:
         """What is made of filters that stand among its arguments: `sync = TimeSynchronizer([Subscriber(...)], 10)`."""
         calls, here = use.fn.facts.calls, (use.call.line, use.call.column)
         made = {(call.callee, call.arguments) for call in calls if (call.line, call.column) == here}
@@ -510,7 +512,7 @@ class Sites:
         ]
         if around:
             nearest = min(around, key=lambda call: abs(call.line - use.call.line))
-            return self.code.identity(nearest.target, use.fn)
+            return self.code.identify(nearest.target, use.fn)
         return None
 
     @cached_property
@@ -518,14 +520,14 @@ class Sites:
         """Filters to the callbacks that get what comes through them, synchronizers and caches in between."""
         code = self.code
         registered: dict[Variable, list[Fn]] = {}
-        for fn, call in code.calls_named(("registerCallback",)):
+        for fn, call in code.list_calls_named(("registerCallback",)):
             receiver = call.callee.rpartition(".")[0]
             if receiver and call.arguments:
-                registered.setdefault(code.identity(receiver, fn), []).extend(self.bodies(call.arguments[0], fn))
+                registered.setdefault(code.identify(receiver, fn), []).extend(self.list_bodies(call.arguments[0], fn))
         connected: dict[Variable, list[tuple[Fn, FlowCall]]] = {}
-        for fn, call in code.calls_named(_CONNECTS) if registered else ():
+        for fn, call in code.list_calls_named(_CONNECTS) if registered else ():
             if "." in call.callee:
-                joint = code.identity(call.callee.rpartition(".")[0], fn)
+                joint = code.identify(call.callee.rpartition(".")[0], fn)
                 connected.setdefault(joint, []).append((fn, call))
         found: dict[Variable, list[Fn]] = {}
         for joint, bodies in registered.items():
@@ -533,22 +535,22 @@ class Sites:
             while queue:
                 one = queue.pop()
                 found.setdefault(one, []).extend(bodies)
-                for fn, given in (*connected.get(one, ()), *filter(_feeds, code.kept(one))):
+                for fn, given in (*connected.get(one, ()), *filter(_feeds, code.list_kept(one))):
                     arguments = given.arguments if isinstance(given, FlowCall) else given.parts
-                    for fed in self._named(arguments, fn):
+                    for fed in self._list_named(arguments, fn):
                         if fed not in seen and len(seen) < 40:
                             seen.add(fed)
                             queue.append(fed)
         return found
 
-    def _named(self, arguments: tuple[FlowExpr, ...], fn: Fn, depth: int = 0) -> Iterator[Variable]:
+    def _list_named(self, arguments: tuple[FlowExpr, ...], fn: Fn, depth: int = 0) -> Iterator[Variable]:
         for argument in arguments:
             if argument.kind == "name":
-                yield self.code.identity(argument.text, fn)
+                yield self.code.identify(argument.text, fn)
             elif depth < 3 and argument.kind in ("list", "make", "call", "keyword"):
-                yield from self._named(argument.parts, fn, depth + 1)
+                yield from self._list_named(argument.parts, fn, depth + 1)
 
-    def bodies(self, value: FlowExpr, fn: Fn, use: FrameworkCall | None = None, depth: int = 0) -> list[Fn]:
+    def list_bodies(self, value: FlowExpr, fn: Fn, use: FrameworkCall | None = None, depth: int = 0) -> list[Fn]:
         """The functions of the code that a callback expression may call."""
         code = self.code
         if depth > 5:
@@ -557,88 +559,90 @@ class Sites:
             found = code.by_name.get((fn.source.path, value.text))
             return [found] if found else []
         if value.kind == "bind" and value.parts:
-            return self.bodies(value.parts[0], fn, use, depth + 1)
+            return self.list_bodies(value.parts[0], fn, use, depth + 1)
         if value.kind in ("keyword", "make", "list") and value.parts:
             for part in value.parts:
-                found = self.bodies(part, fn, use, depth + 1)
+                found = self.list_bodies(part, fn, use, depth + 1)
                 if found:
                     return found
             return []
         if value.kind == "choice":
-            return [one for part in value.parts[1:] for one in self.bodies(part, fn, use, depth + 1)]
+            return [one for part in value.parts[1:] for one in self.list_bodies(part, fn, use, depth + 1)]
         if value.kind == "function" or (value.kind == "name" and "::" in value.text):
-            found = self._function(value.text, fn)
+            found = self._list_functions(value.text, fn)
             if found:
-                return self._fitting(found, use)
+                return self._select_fitting(found, use)
         if value.kind in ("name", "function"):
-            variable = code.identity(value.text, fn)
-            for writer, each in code.writes(variable):
+            variable = code.identify(value.text, fn)
+            for writer, each in code.list_writes(variable):
                 if each.value != value:
-                    found = self.bodies(each.value, writer, use, depth + 1)
+                    found = self.list_bodies(each.value, writer, use, depth + 1)
                     if found:
                         return found
-            found = self._function(value.text, fn)
+            found = self._list_functions(value.text, fn)
             if found:
-                return self._fitting(found, use)
-            return self._passed_bodies(value.text, fn, use, depth)
+                return self._select_fitting(found, use)
+            return self._list_passed_bodies(value.text, fn, use, depth)
         if value.kind == "call":
-            if tail(value.text) in ("forward", "move", "bind", "ref", "function") and value.parts:
-                return self.bodies(value.parts[0], fn, use, depth + 1)
+            if get_tail(value.text) in ("forward", "move", "bind", "ref", "function") and value.parts:
+                return self.list_bodies(value.parts[0], fn, use, depth + 1)
             for part in value.parts:
                 if part.kind in ("function", "lambda", "bind"):
-                    return self.bodies(part, fn, use, depth + 1)
-            for target in code.targets(value.text, fn):
+                    return self.list_bodies(part, fn, use, depth + 1)
+            for target in code.list_targets(value.text, fn):
                 for each in target.facts.assignments:
                     if each.operator == "return":
-                        found = self.bodies(each.value, target, use, depth + 1)
+                        found = self.list_bodies(each.value, target, use, depth + 1)
                         if found:
                             return found
         return []
 
-    def _passed_bodies(self, name: str, fn: Fn, use: FrameworkCall | None, depth: int) -> list[Fn]:
-        for one in self.code.chain(fn):
-            place = parameter_of(one, name)
+    def _list_passed_bodies(self, name: str, fn: Fn, use: FrameworkCall | None, depth: int) -> list[Fn]:
+        for one in self.code.list_enclosing_chain(fn):
+            place = find_parameter(one, name)
             if place is None:
                 continue
             found: list[Fn] = []
             for caller, call in self.code.callers.get(one, ()):
                 positional = [argument for argument in call.arguments if argument.kind != "keyword"]
                 if place[0] < len(positional):
-                    found += self.bodies(positional[place[0]], caller, use, depth + 1)
-            owner = self.code.owner_of(one)
+                    found += self.list_bodies(positional[place[0]], caller, use, depth + 1)
+            owner = self.code.find_owner(one)
             if owner is not None:
                 for caller, arguments, _ in self.code.constructions.get(owner.name, ()):
                     if place[0] < len(arguments):
-                        found += self.bodies(arguments[place[0]], caller, use, depth + 1)
+                        found += self.list_bodies(arguments[place[0]], caller, use, depth + 1)
             return list(dict.fromkeys(found))
         return []
 
-    def _function(self, name: str, fn: Fn) -> list[Fn]:
+    def _list_functions(self, name: str, fn: Fn) -> list[Fn]:
         code = self.code
         if name.startswith("this."):
-            owner = code.owner_of(fn)
+            owner = code.find_owner(fn)
             if owner is None:
                 return []
-            return code.method(owner, tail(name)) or code.overrides(owner, tail(name))
+            return code.find_method(owner, get_tail(name)) or code.list_overrides(owner, get_tail(name))
         if "::" in name:
-            cls = code.class_of(around(name), fn.source, fn.scope)
+            cls = code.find_class(get_outer(name), fn.source, fn.scope)
             if cls is not None:
-                return code.method(cls, tail(name)) or code.overrides(cls, tail(name))
-            own = code.owner_of(fn)
+                return code.find_method(cls, get_tail(name)) or code.list_overrides(cls, get_tail(name))
+            own = code.find_owner(fn)
             # `&NodeT::callback` inside a template, `&Outer::callback` where only the definition tells the class.
-            found = [f for f in code.by_tail.get(tail(name), ()) if tail(f.facts.owner) == tail(around(name))]
+            found = [
+                f for f in code.by_tail.get(get_tail(name), ()) if get_tail(f.facts.owner) == get_tail(get_outer(name))
+            ]
             if not found and own is not None:
-                found = code.method(own, tail(name)) if tail(around(name)) == tail(own.name) else []
-            return found or [f for f in code.targets(name, fn) if not f.facts.owner]
+                found = code.find_method(own, get_tail(name)) if get_tail(get_outer(name)) == get_tail(own.name) else []
+            return found or [f for f in code.list_targets(name, fn) if not f.facts.owner]
         if "." in name:
-            return code.targets(name, fn)
-        found = code.targets(name, fn)
+            return code.list_targets(name, fn)
+        found = code.list_targets(name, fn)
         if found:
             return found
-        owner = code.owner_of(fn)
-        return code.method(owner, name) if owner is not None else []
+        owner = code.find_owner(fn)
+        return code.find_method(owner, name) if owner is not None else []
 
-    def _fitting(self, found: list[Fn], use: FrameworkCall | None) -> list[Fn]:
+    def _select_fitting(self, found: list[Fn], use: FrameworkCall | None) -> list[Fn]:
         """Of overloads those that fit: a service's callback has its request, and a subscriber's first parameter is of
         the message's type."""
         if use is not None and len(found) > 1 and use.row.does in ("subscriber", "server"):
@@ -646,123 +650,123 @@ class Sites:
             found = [fn for fn in found if _serves(fn) == serving] or found
         if use is None or len(found) < 2 or not use.call.types:
             return found
-        wanted = self._interface(self.calls.template_argument(use, 0), use.fn)
+        wanted = self._resolve_interface(self.calls.get_template_argument(use, 0), use.fn)
         given = ((fn, fn.facts.parameters[:1]) for fn in found)
-        return [fn for fn, first in given if first and self._interface(first[0].type, fn) == wanted] or found
+        return [fn for fn, first in given if first and self._resolve_interface(first[0].type, fn) == wanted] or found
 
     # Namespaces of node handles
 
-    def prefix(self, use: FrameworkCall) -> str:
+    def find_prefix(self, use: FrameworkCall) -> str:
         """The namespace of the handle that a name is given to: `~` for a private one, `` for the node's own."""
         row = use.row
         if row.first == "node" and use.call.arguments:
             handle = next((a for a in use.call.arguments if self.calls.is_node(a, use.fn)), None)
-            return self.handle(handle, use.fn) if handle is not None else ""
+            return self.resolve_handle(handle, use.fn) if handle is not None else ""
         if row.does in ("action server", "action client") and use.call.arguments:
             handle = use.call.arguments[0]
-            return self.handle(handle, use.fn) if self.calls.is_node(handle, use.fn) else ""
-        receiver = self.calls.receiver_of(use)
+            return self.resolve_handle(handle, use.fn) if self.calls.is_node(handle, use.fn) else ""
+        receiver = self.calls.get_receiver(use)
         if row.framework in ("roscpp", "image_transport") and receiver:
             if not receiver.endswith("()"):
-                return self.handle(FlowExpr("name", receiver), use.fn)
+                return self.resolve_handle(FlowExpr("name", receiver), use.fn)
             made = receiver.removesuffix("()")
             near = [call for call in use.fn.facts.calls if call.callee == made]
             near.sort(key=lambda call: abs(call.line - use.call.line))
-            return self.handle(FlowExpr("call", made, near[0].arguments if near else ()), use.fn)
+            return self.resolve_handle(FlowExpr("call", made, near[0].arguments if near else ()), use.fn)
         return ""
 
-    def handle(self, value: FlowExpr, fn: Fn, depth: int = 0) -> str:
+    def resolve_handle(self, value: FlowExpr, fn: Fn, depth: int = 0) -> str:
         """The namespace of a node handle, or of a transport that was made with one; it begins with LOST where that is
         not known."""
         if depth > 6:
             return LOST
-        last = tail(value.text)
+        last = get_tail(value.text)
         if value.kind == "call":
             if "PrivateNodeHandle" in last or last in ("getPrivateNodeHandle", "private_node_handle"):
                 return "~"
-            if self.calls.kinds_of(self.code.meant_type(value.text, fn.source, fn.scope), fn) & _HANDLES:
-                return self._made_handle(value.parts, fn, depth)
+            if self.calls.find_kinds(self.code.resolve_written(value.text, fn.source, fn.scope), fn) & _HANDLES:
+                return self._resolve_made_handle(value.parts, fn, depth)
             found = [
-                self.handle(each.value, target, depth + 1)
-                for target in self.code.targets(value.text, fn)
+                self.resolve_handle(each.value, target, depth + 1)
+                for target in self.code.list_targets(value.text, fn)
                 for each in target.facts.assignments
                 if each.operator == "return"
             ]
-            return self._one(found) if found else self._unless_handle(value, fn)
+            return self._select_agreed(found) if found else self._resolve_unless_handle(value, fn)
         if value.kind in ("make", "list"):
-            return self._made_handle(value.parts, fn, depth)
+            return self._resolve_made_handle(value.parts, fn, depth)
         if value.kind != "name":
             return ""
-        variable = self.code.identity(value.text, fn)
-        for writer, each in self.code.writes(variable):
+        variable = self.code.identify(value.text, fn)
+        for writer, each in self.code.list_writes(variable):
             if each.value.kind in ("make", "list", "call", "name", "text") and each.value != value:
                 if each.value.kind == "text":
-                    return self._made_handle((each.value,), writer, depth)
-                return self.handle(each.value, writer, depth + 1)
-        for caller, call in self.code.results(variable):
-            if tail(call.callee) in ("make_shared", "make_unique"):
-                return self._made_handle(call.arguments, caller, depth)
+                    return self._resolve_made_handle((each.value,), writer, depth)
+                return self.resolve_handle(each.value, writer, depth + 1)
+        for caller, call in self.code.list_results(variable):
+            if get_tail(call.callee) in ("make_shared", "make_unique"):
+                return self._resolve_made_handle(call.arguments, caller, depth)
         for other in self._resets.get(variable, ()):
-            return self.handle(other[1], other[0], depth + 1)
-        named = "priv" in value.text.lower() or tail(value.text).strip("_") in ("pnh", "nh_p")
+            return self.resolve_handle(other[1], other[0], depth + 1)
+        named = "priv" in value.text.lower() or get_tail(value.text).strip("_") in ("pnh", "nh_p")
         private = "~" if named else ""
         if variable.kind == "local":
-            for one in self.code.chain(fn):
-                place = parameter_of(one, variable.name)
+            for one in self.code.list_enclosing_chain(fn):
+                place = find_parameter(one, variable.name)
                 if place is not None:
-                    given = list(self._given_handles(one, place[0], depth))
-                    return self._one(given) if given else private or self._unless_handle(value, fn)
+                    given = list(self._list_given_handles(one, place[0], depth))
+                    return self._select_agreed(given) if given else private or self._resolve_unless_handle(value, fn)
         return private
 
-    def _given_handles(self, fn: Fn, place: int, depth: int) -> Iterator[str]:
+    def _list_given_handles(self, fn: Fn, place: int, depth: int) -> Iterator[str]:
         """The namespaces of the handles that are passed for a parameter."""
-        owner = self.code.owner_of(fn)
+        owner = self.code.find_owner(fn)
         makers = [(caller, call.arguments, 0) for caller, call in self.code.callers.get(fn, ())]
-        if owner is not None and tail(fn.name) == tail(owner.name):
+        if owner is not None and get_tail(fn.name) == get_tail(owner.name):
             makers += self.code.constructions.get(owner.name, ())
             makers += self.values.bases_made.get(owner.name, ())
         for caller, arguments, _ in makers:
             if place < len(arguments):
-                yield self.handle(arguments[place], caller, depth + 1)
+                yield self.resolve_handle(arguments[place], caller, depth + 1)
 
     @staticmethod
-    def _one(found: list[str]) -> str:
+    def _select_agreed(found: list[str]) -> str:
         """The namespace where all ways lead to the same."""
         return found[0] if len(set(found)) == 1 else LOST
 
-    def _unless_handle(self, value: FlowExpr, fn: Fn) -> str:
+    def _resolve_unless_handle(self, value: FlowExpr, fn: Fn) -> str:
         """The node's own namespace for what only stands for a node; that of a handle from elsewhere is not known."""
-        own = value.kind == "call" and tail(value.text).endswith("NodeHandle")
-        known = self.calls.kinds_of(self.code.type_of(value, fn), fn)
+        own = value.kind == "call" and get_tail(value.text).endswith("NodeHandle")
+        known = self.calls.find_kinds(self.code.resolve_type(value, fn), fn)
         return LOST if "handle" in known and not own else ""
 
     @cached_property
     def _resets(self) -> dict[Variable, list[tuple[Fn, FlowExpr]]]:
         found: dict[Variable, list[tuple[Fn, FlowExpr]]] = {}
-        for fn, call in self.code.calls_named(("reset",)):
+        for fn, call in self.code.list_calls_named(("reset",)):
             if "." in call.callee and call.arguments:
-                variable = self.code.identity(call.callee.rpartition(".")[0], fn)
+                variable = self.code.identify(call.callee.rpartition(".")[0], fn)
                 found.setdefault(variable, []).append((fn, call.arguments[0]))
         return found
 
-    def _made_handle(self, arguments: tuple[FlowExpr, ...], fn: Fn, depth: int) -> str:
+    def _resolve_made_handle(self, arguments: tuple[FlowExpr, ...], fn: Fn, depth: int) -> str:
         if not arguments:
             return ""
         first = arguments[0]
         if first.kind in ("text", "join"):
-            return self._namespace(first, fn)
-        if first.kind == "name" and not self.calls.is_node(first, fn) and self.calls.textual(first, fn):
-            return self._namespace(first, fn)
-        base = self.handle(first, fn, depth + 1)
-        if len(arguments) > 1 and (self.calls.textual(arguments[1], fn)):
-            below = self._namespace(arguments[1], fn)
+            return self._resolve_namespace(first, fn)
+        if first.kind == "name" and not self.calls.is_node(first, fn) and self.calls.is_textual(first, fn):
+            return self._resolve_namespace(first, fn)
+        base = self.resolve_handle(first, fn, depth + 1)
+        if len(arguments) > 1 and (self.calls.is_textual(arguments[1], fn)):
+            below = self._resolve_namespace(arguments[1], fn)
             if below:
                 return f"{base}/{below}" if base and base != "~" else f"~{below}" if base == "~" else below
         return base
 
-    def _namespace(self, value: FlowExpr, fn: Fn) -> str:
+    def _resolve_namespace(self, value: FlowExpr, fn: Fn) -> str:
         """What a namespace is that is given to a handle."""
-        text = self.values.of(value, fn)[0].text
+        text = self.values.evaluate(value, fn)[0].text
         return LOST if text is None else text
 
     @cached_property
@@ -789,30 +793,30 @@ class Sites:
         found: list[Statement] = []
         for use in self.calls.uses:
             if use.row.does == "publish":
-                statement = self._statement(use)
+                statement = self._make_statement(use)
                 if statement is not None:
                     found.append(statement)
             elif use.row.does == "publish by name":
-                named = self.calls.argument(use, use.row.topic)
-                names = tuple(self.values.of(named, use.fn, use.call.line))
-                site = Site("publisher", use, names, shown(named), "", "*")
-                found.append(Statement(use, (site,), "*", shown(self.calls.argument(use, use.row.message))))
-        found.extend(self._through(found))
+                named = self.calls.find_argument(use, use.row.topic)
+                names = tuple(self.values.evaluate(named, use.fn, use.call.line))
+                site = Site("publisher", use, names, unparse(named), "", "*")
+                found.append(Statement(use, (site,), "*", unparse(self.calls.find_argument(use, use.row.message))))
+        found.extend(self._find_wrapper_calls(found))
         found.sort(key=lambda one: (one.use.fn.source.path, one.use.call.line, one.use.call.column))
         return found
 
-    def _through(self, direct: list[Statement]) -> Iterator[Statement]:
+    def _find_wrapper_calls(self, direct: list[Statement]) -> Iterator[Statement]:
         """Calls of the code's own methods that are called as the framework's, and publish."""
         inside: dict[Fn, list[Statement]] = {}
         for statement in direct:
             inside.setdefault(statement.use.fn, []).append(statement)
         names = {name for name, rows in self.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
-        for fn, call in self.code.calls_named(names):
-            for target in self.code.targets(call.callee, fn):
+        for fn, call in self.code.list_calls_named(names):
+            for target in self.code.list_targets(call.callee, fn):
                 inner = inside.get(target) or [
                     statement
                     for further in target.facts.calls
-                    for last in self.code.targets(further.callee, target)
+                    for last in self.code.list_targets(further.callee, target)
                     for statement in inside.get(last, ())
                 ]
                 if inner:
@@ -820,65 +824,65 @@ class Sites:
                     types = {statement.type for statement in inner}
                     use = FrameworkCall(fn, inner[0].use.row, call)
                     kind = types.pop() if len(types) == 1 else ""
-                    message = shown(call.arguments[0]) if call.arguments else ""
+                    message = unparse(call.arguments[0]) if call.arguments else ""
                     yield Statement(use, sites, kind, message, "", target.name)
                     break
 
-    def _statement(self, use: FrameworkCall) -> Statement | None:
-        receiver = self.calls.receiver_of(use)
-        message = self.calls.argument(use, use.row.message)
-        expression = shown(message)
+    def _make_statement(self, use: FrameworkCall) -> Statement | None:
+        receiver = self.calls.get_receiver(use)
+        message = self.calls.find_argument(use, use.row.message)
+        expression = unparse(message)
         if not receiver:
             return None
-        sites = tuple(dict.fromkeys(self.publishers(receiver, use.fn)))
+        sites = tuple(dict.fromkeys(self.list_publishers(receiver, use.fn)))
         if sites:
             types = {site.type for site in sites if site.type}
             return Statement(use, sites, types.pop() if len(types) == 1 else "", expression)
-        kind = self.code.type_of_name(receiver, use.fn)
+        kind = self.code.resolve_name_type(receiver, use.fn)
         if not use.sure and kind.name:
             return None  # of a class that is not a framework's
         if not use.sure and len(use.call.arguments) > 2:
             return None
-        known = self._interface(kind.arguments[0], use.fn) if kind.arguments else ""
+        known = self._resolve_interface(kind.arguments[0], use.fn) if kind.arguments else ""
         return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be told")
 
-    def publishers(self, receiver: str, fn: Fn, depth: int = 0) -> Iterator[Site]:
+    def list_publishers(self, receiver: str, fn: Fn, depth: int = 0) -> Iterator[Site]:
         """The publishers that an expression may stand for: kept there, passed in, or copied from elsewhere."""
         if depth > 5:
             return
         code = self.code
         if receiver.endswith("()"):
-            for target in code.targets(receiver.removesuffix("()"), fn):
+            for target in code.list_targets(receiver.removesuffix("()"), fn):
                 for each in target.facts.assignments:
                     if each.operator == "return" and each.value.kind == "name":
-                        yield from self.publishers(each.value.text, target, depth + 1)
+                        yield from self.list_publishers(each.value.text, target, depth + 1)
                 yield from (site for site in self.made_in.get(target, ()) if site.role == "publisher")
-            if tail(receiver.removesuffix("()")) in ("get", "lock", "at", "value", "second", "front", "back"):
-                yield from self.publishers(around(receiver.removesuffix("()")), fn, depth + 1)
+            if get_tail(receiver.removesuffix("()")) in ("get", "lock", "at", "value", "second", "front", "back"):
+                yield from self.list_publishers(get_outer(receiver.removesuffix("()")), fn, depth + 1)
             return
-        variable = code.identity(receiver, fn)
+        variable = code.identify(receiver, fn)
         found = self.kept.get(variable)
         if found:
             yield from found
-        wrapped = [(writer, each.value) for writer, each in code.writes(variable)]
+        wrapped = [(writer, each.value) for writer, each in code.list_writes(variable)]
         for writer, value in [*wrapped, *self._resets.get(variable, ())]:
             # `RealtimePublisher(publisher)`
             if value.kind == "make" and self._is_publisher(value, writer):
                 for part in value.parts:
                     if part.kind == "name":
-                        yield from self.publishers(part.text, writer, depth + 1)
-        for writer, each in code.writes(variable):
+                        yield from self.list_publishers(part.text, writer, depth + 1)
+        for writer, each in code.list_writes(variable):
             if each.value.kind in ("name", "index", "call") and each.operator in ("=", "for"):
                 text = each.value.text
                 if each.value.kind == "index":
-                    text = shown(each.value.parts[0]) if each.value.parts else ""
+                    text = unparse(each.value.parts[0]) if each.value.parts else ""
                 elif each.value.kind == "call":
-                    text = around(text) if tail(text) in ("at", "value", "get") else f"{text}()"
+                    text = get_outer(text) if get_tail(text) in ("at", "value", "get") else f"{text}()"
                 if text and text != receiver:
-                    yield from self.publishers(text, writer, depth + 1)
+                    yield from self.list_publishers(text, writer, depth + 1)
         if variable.kind == "local":
-            for one in code.chain(fn):
-                place = parameter_of(one, variable.name)
+            for one in code.list_enclosing_chain(fn):
+                place = find_parameter(one, variable.name)
                 if place is None:
                     continue
                 for caller, arguments in [
@@ -887,13 +891,13 @@ class Sites:
                 ]:  # fmt: skip
                     positional = [argument for argument in arguments if argument.kind != "keyword"]
                     if place[0] < len(positional) and positional[place[0]].kind == "name":
-                        yield from self.publishers(positional[place[0]].text, caller, depth + 1)
+                        yield from self.list_publishers(positional[place[0]].text, caller, depth + 1)
 
     @cached_property
     def timers(self) -> list[TimerSite]:
         """All timers."""
         return [
-            TimerSite(use, shown(self.calls.argument(use, use.row.period)), self._callbacks(use)[0])
+            TimerSite(use, unparse(self.calls.find_argument(use, use.row.period)), self._find_callbacks(use)[0])
             for use in self.calls.uses
             if use.row.does == "timer"
         ]

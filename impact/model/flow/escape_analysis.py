@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from ...facts.flow import FlowExpr
 from ..workspace import Workspace
-from .code import Fn, made_in, parts_of, tail
+from .code import Fn, get_tail, list_made, split_name
 from .join import Join, Running
 
 _LOADERS = frozenset(
@@ -84,24 +84,26 @@ class Seeing:
     def __init__(self, workspace: Workspace, join: Join):
         self.workspace, self.join = workspace, join
 
-    def of(self, one: Running) -> Sight:
+    def find_sight(self, one: Running) -> Sight:
         """What of a program is in sight."""
         functions = sorted(one.functions, key=self._order.__getitem__)
         if not one.program.roots or not functions:
             return Sight("its code is not in the workspace", "its code is not in the workspace")
         classes = self.join.code.classes
         paths = {fn.source.path for fn in functions}
-        paths.update(cls.source.path for name in one.classes for cls in classes.get(tail(name), ()) if cls.name == name)
-        steps = (self._outside(paths), self._bases(one), self._given(functions), self._unreached(one))
+        paths.update(
+            cls.source.path for name in one.classes for cls in classes.get(get_tail(name), ()) if cls.name == name
+        )
+        steps = (self._list_outside(paths), self._list_bases(one), self._list_given(functions), self._list_dead(one))
         both = next(chain(*steps), "")
-        names = both or next(self._unnamed(functions), "")
-        return Sight(names, both or next(self._unlisted(functions), ""))
+        names = both or next(self._list_unnamed(functions), "")
+        return Sight(names, both or next(self._list_unlisted(functions), ""))
 
     @cached_property
     def _order(self) -> dict[Fn, int]:
         return {fn: place for place, fn in enumerate(self.join.code.functions)}
 
-    def _outside(self, paths: set[str]) -> Iterator[str]:
+    def _list_outside(self, paths: set[str]) -> Iterator[str]:
         for path in sorted(paths):
             yield from (f"`{name}` is outside of the workspace" for name in self._uses.get(path, ()))
 
@@ -112,38 +114,38 @@ class Seeing:
         for package in self.workspace:
             for include in package.digest.includes:
                 head, slash, _ = include.path.partition("/")
-                if slash and not self._plain(head) and not self.workspace.provides_header(include.path):
+                if slash and not self._is_plain(head) and not self.workspace.provides_header(include.path):
                     found.setdefault(include.at.path, []).append(head)
             for imported in package.digest.imports:
                 head = imported.module.split(".")[0]
-                known = head in sys.stdlib_module_names or head in self.workspace.modules or self._plain(head)
+                known = head in sys.stdlib_module_names or head in self.workspace.modules or self._is_plain(head)
                 if head and not known:
                     found.setdefault(imported.at.path, []).append(head)
         return found
 
-    def _plain(self, name: str) -> bool:
+    def _is_plain(self, name: str) -> bool:
         return name in _PLAIN or name.endswith(_INTERFACES) or name in self.workspace.packages
 
-    def _bases(self, one: Running) -> Iterator[str]:
+    def _list_bases(self, one: Running) -> Iterator[str]:
         code, table = self.join.code, self.join.calls.table
         for name in sorted(one.classes):
-            for cls in code.classes.get(tail(name), ()):
-                followed = {tail(base.name) for base in code.bases(cls)}
-                for base in code.base_names(cls) if cls.name == name else ():
-                    known = tail(base) in _BASES or tail(base) in followed or table.kind_of(base)
-                    if base and not known and parts_of(base)[0] not in _OWN:
+            for cls in code.classes.get(get_tail(name), ()):
+                followed = {get_tail(base.name) for base in code.list_bases(cls)}
+                for base in code.list_base_names(cls) if cls.name == name else ():
+                    known = get_tail(base) in _BASES or get_tail(base) in followed or table.find_kind(base)
+                    if base and not known and split_name(base)[0] not in _OWN:
                         yield f"`{base}` is not followed"
 
-    def _given(self, functions: list[Fn]) -> Iterator[str]:
+    def _list_given(self, functions: list[Fn]) -> Iterator[str]:
         """Functions and objects of others that are given the node, and what is loaded by name."""
         code, calls = self.join.code, self.join.calls
         for fn in functions:
             python = fn.source.facts.language == "python"
             for call in fn.facts.calls:
-                last = tail(call.callee)
+                last = get_tail(call.callee)
                 if python and self._is_lost(call.callee, fn):
                     yield f"`{call.callee}` is not followed"
-                use = calls.use_of(fn, call)
+                use = calls.find_use(fn, call)
                 loads = last in _LOADERS or (python and last in _PYTHON_LOADERS)
                 if loads or (use is not None and use.row.does == "load"):
                     yield f"`{last}` loads code by name"
@@ -153,49 +155,49 @@ class Seeing:
                 known = known or (last == "add" and any(argument.kind == "function" for argument in call.arguments))
                 if known or not any(self._is_node(argument, fn) for argument in call.arguments):
                     continue
-                if not code.targets(call.callee, fn) and use is None:
+                if not code.list_targets(call.callee, fn) and use is None:
                     yield f"`{last}` is given the node"
-            for name, arguments, _ in made_in(fn, code):
+            for name, arguments, _ in list_made(fn, code):
                 if not python and self._is_unknown(name, fn):
-                    yield f"`{tail(name)}` is not followed"
+                    yield f"`{get_tail(name)}` is not followed"
                 if any(self._is_node(argument, fn) for argument in arguments):
-                    kind = code.meant_type(name, fn.source, fn.scope).name if not python else name
-                    known = code.class_of(kind, fn.source, fn.scope) if kind else None
-                    own = parts_of(kind or name)[0] in _OWN or tail(name) in _RUNS
-                    table = calls.table.objects_of(kind or name, python) or calls.table.kind_of(kind or name)
+                    kind = code.resolve_written(name, fn.source, fn.scope).name if not python else name
+                    known = code.find_class(kind, fn.source, fn.scope) if kind else None
+                    own = split_name(kind or name)[0] in _OWN or get_tail(name) in _RUNS
+                    table = calls.table.list_objects(kind or name, python) or calls.table.find_kind(kind or name)
                     if known is None and not own and not table:
-                        yield f"`{tail(kind or name)}` is given the node"
+                        yield f"`{get_tail(kind or name)}` is given the node"
 
     def _is_unknown(self, name: str, fn: Fn) -> bool:
         """Whether a class in C++ would be the workspace's own by its namespace, and is not among its classes."""
-        code, (head, *inner) = self.join.code, parts_of(name)
-        if head not in self._namespaces or tail(name) in self._aliased:
+        code, (head, *inner) = self.join.code, split_name(name)
+        if head not in self._namespaces or get_tail(name) in self._aliased:
             return False
         if not self.workspace.interface_names.get(head, set()).isdisjoint(inner):
             return False
-        return code.class_meant(name, fn.source, fn.scope) is None
+        return code.find_class_of_type(name, fn.source, fn.scope) is None
 
     @cached_property
     def _aliased(self) -> set[str]:
         """The names that stand for another type somewhere."""
-        return {tail(name) for aliases in self.join.code.aliases.values() for name in aliases}
+        return {get_tail(name) for aliases in self.join.code.aliases.values() for name in aliases}
 
     def _is_lost(self, callee: str, fn: Fn) -> bool:
         """Whether a call in Python goes to a module of the workspace that has no such function or class there."""
         code = self.join.code
-        meant = code.meant(callee, fn.source)
-        head, *inner = parts_of(meant)
+        meant = code.resolve_name(callee, fn.source)
+        head, *inner = split_name(meant)
         if head not in self.workspace.modules or not inner or head in self.workspace.interface_names:
             return False
-        return not code.targets(callee, fn) and code.class_of(meant, fn.source, fn.scope) is None
+        return not code.list_targets(callee, fn) and code.find_class(meant, fn.source, fn.scope) is None
 
     @cached_property
     def _namespaces(self) -> set[str]:
         """The outermost namespaces of the workspace's own classes."""
         every = (cls for classes in self.join.code.classes.values() for cls in classes)
-        return {parts_of(cls.name)[0] for cls in every if "::" in cls.name} - _OWN
+        return {split_name(cls.name)[0] for cls in every if "::" in cls.name} - _OWN
 
-    def _unreached(self, one: Running) -> Iterator[str]:
+    def _list_dead(self, one: Running) -> Iterator[str]:
         """What the program is built from and, as far as can be told, never runs."""
         for use in self.join.calls.uses:
             path = use.fn.source.path
@@ -204,23 +206,27 @@ class Seeing:
 
     @cached_property
     def _reached(self) -> set[Fn]:
-        return {fn for one in self.join.running() for fn in one.functions}
+        return {fn for one in self.join.list_running() for fn in one.functions}
 
     def _is_node(self, value: FlowExpr, fn: Fn) -> bool:
         calls = self.join.calls
         if value.kind in ("keyword", "list") and value.parts:
             return any(self._is_node(part, fn) for part in value.parts)
         if value.kind == "name" and value.text in ("this", "self", "*this"):
-            return bool(calls.own_kinds(fn) & {"node", "handle"})
+            return bool(calls.find_own_kinds(fn) & {"node", "handle"})
         if value.kind == "other":
-            return value.text == "*this" and bool(calls.own_kinds(fn) & {"node", "handle"})
-        if value.kind == "call" and tail(value.text) in ("shared_from_this", "getNodeHandle", "getPrivateNodeHandle"):
+            return value.text == "*this" and bool(calls.find_own_kinds(fn) & {"node", "handle"})
+        if value.kind == "call" and get_tail(value.text) in (
+            "shared_from_this",
+            "getNodeHandle",
+            "getPrivateNodeHandle",
+        ):
             return True
         if value.kind in ("name", "call"):
-            return bool(calls.kinds_of(self.join.code.type_of(value, fn), fn) & {"node", "handle"})
+            return bool(calls.find_kinds(self.join.code.resolve_type(value, fn), fn) & {"node", "handle"})
         return False
 
-    def _unnamed(self, functions: list[Fn]) -> Iterator[str]:
+    def _list_unnamed(self, functions: list[Fn]) -> Iterator[str]:
         inside = set(functions)
         for site in self.join.sites.endpoints:
             if site.use.fn in inside and any(value.text is None for value in site.names):
@@ -230,22 +236,24 @@ class Seeing:
                 yield "names are made in a wrapper"
                 return
 
-    def _unlisted(self, functions: list[Fn]) -> Iterator[str]:
+    def _list_unlisted(self, functions: list[Fn]) -> Iterator[str]:
         inside = set(functions)
         for fn in functions:
             for call in fn.facts.calls:
-                if tail(call.callee) in _WHOLE or any(_says(argument, _OPTIONS) for argument in call.arguments):
-                    yield f"`{tail(call.callee)}` asks for more than one parameter"
-            for name, _, _ in made_in(fn, self.join.code):
-                if tail(name) in _WHOLE:
-                    yield f"`{tail(name)}` asks for more than one parameter"
+                if get_tail(call.callee) in _WHOLE or any(_says(argument, _OPTIONS) for argument in call.arguments):
+                    yield f"`{get_tail(call.callee)}` asks for more than one parameter"
+            for name, _, _ in list_made(fn, self.join.code):
+                if get_tail(name) in _WHOLE:
+                    yield f"`{get_tail(name)}` asks for more than one parameter"
         for use in self.join.calls.uses:
             if use.fn not in inside:
                 continue
             if use.row.framework in _ASKING:
                 yield f"`{use.row.framework}` asks for parameters of its own"
             if use.row.does == "parameter":
-                values = self.join.values.of(self.join.calls.argument(use, use.row.topic), use.fn, use.call.line)
+                values = self.join.values.evaluate(
+                    self.join.calls.find_argument(use, use.row.topic), use.fn, use.call.line
+                )
                 if not values or any(not value.text for value in values):
                     yield "the name of a parameter is not known"
 

@@ -6,26 +6,26 @@ import hashlib
 from collections.abc import Callable
 
 from ...facts.extract import ExtractedFacts
-from ...facts.kinds import FLOW, kind_of
-from ...source_keys import code_stamp
+from ...facts.kinds import FLOW, find_kind
+from ...source_keys import compute_code_stamp
 from ...tree.paths import Tree
-from ..package import role_of_folder
+from ..package import find_folder_role
 from ..workspace import Workspace
 
 _READ = frozenset(("cpp", "python", "script", "launch_xml", "launch_yaml", "params", "xml", "manifest", "cmake"))
 _MANIFESTS = ("manifest", "manifest_variant")
 
 
-def code_kinds(tree: Tree) -> Callable[[str], str | None]:
+def make_code_selector(tree: Tree) -> Callable[[str], str | None]:
     """The kind of flow facts wanted of a path of a tree; None for what is no code, tests, and what no package owns.
 
     Which folders are packages is not known before files are read: a file is left out when it would be a test of
     whatever manifest lies above it.
     """
-    roots = {entry.path.rpartition("/")[0] for entry in tree.entries() if kind_of(entry.path) in _MANIFESTS}
+    roots = {entry.path.rpartition("/")[0] for entry in tree.list_entries() if find_kind(entry.path) in _MANIFESTS}
     above: dict[str, tuple[int, ...]] = {}
 
-    def starts(folder: str) -> tuple[int, ...]:
+    def list_starts(folder: str) -> tuple[int, ...]:
         """Where paths within each package that may own a folder begin."""
         known = above.get(folder)
         if known is None:
@@ -38,20 +38,20 @@ def code_kinds(tree: Tree) -> Callable[[str], str | None]:
             known = above[folder] = tuple(found)
         return known
 
-    def wanted(path: str) -> str | None:
-        kind = FLOW.get(kind_of(path) or "")
+    def select_kind(path: str) -> str | None:
+        kind = FLOW.get(find_kind(path) or "")
         if kind is None:
             return None
-        inside = starts(path.rpartition("/")[0])
-        return kind if any(role_of_folder(path[start:]) != "test" for start in inside) else None
+        inside = list_starts(path.rpartition("/")[0])
+        return kind if any(find_folder_role(path[start:]) != "test" for start in inside) else None
 
-    return wanted
+    return select_kind
 
 
-def stamp(workspace: Workspace, second: ExtractedFacts | None = None) -> bytes:
+def compute_stamp(workspace: Workspace, second: ExtractedFacts | None = None) -> bytes:
     """Differs whenever something does that message flow, or what launch files start, is joined from. second: the flow
     facts alone, for what is joined of nothing else."""
-    found = hashlib.sha1(workspace.identity + code_stamp().encode())
+    found = hashlib.sha1(workspace.identity + compute_code_stamp().encode())
     gathered = second or workspace.gathered
     for path in sorted(gathered.kinds):
         if second is not None or gathered.kinds[path] in _READ:

@@ -69,43 +69,43 @@ class Frameworks:
         self.kinds: dict[str, list[tuple[str, str]]] = {}
         self.types: dict[str, str] = dict(table.get("types", {}))
         self.generations: dict[str, int] = dict(table.get("generations", {}))
-        for row in map(_row, table.get("call", ())):
+        for row in map(_make_row, table.get("call", ())):
             for name in row.names:
                 self.calls.setdefault(name, []).append(row)
-        for row in map(_row, table.get("object", ())):
+        for row in map(_make_row, table.get("object", ())):
             for name in row.types:
-                self.objects.setdefault(last(name), []).append(row)
+                self.objects.setdefault(get_last_part(name), []).append(row)
         for kind, names in table.get("kinds", {}).items():
             for name in names:
-                self.kinds.setdefault(last(name), []).append((name, kind))
+                self.kinds.setdefault(get_last_part(name), []).append((name, kind))
 
-    def kind_of(self, name: str) -> str:
+    def find_kind(self, name: str) -> str:
         """The kind of a class by its name, as qualified as it is known; empty for none."""
-        for full, kind in self.kinds.get(last(name), ()):
-            if _ends(full, name):
+        for full, kind in self.kinds.get(get_last_part(name), ()):
+            if _is_ending(full, name):
                 return kind
         return ""
 
-    def objects_of(self, name: str, python: bool = False) -> list[FrameworkRow]:
+    def list_objects(self, name: str, python: bool = False) -> list[FrameworkRow]:
         """Rows about objects of a class, by its name as qualified as it is known. python: whether Python makes it."""
         return [
             row
-            for row in self.objects.get(last(name), ())
-            if any(("::" in full) != python and _ends(full, name) for full in row.types)
+            for row in self.objects.get(get_last_part(name), ())
+            if any(("::" in full) != python and _is_ending(full, name) for full in row.types)
         ]
 
 
-def last(name: str) -> str:
+def get_last_part(name: str) -> str:
     """The last part of a qualified name of either language."""
     return name.replace("::", ".").rpartition(".")[2]
 
 
-def _ends(full: str, name: str) -> bool:
+def _is_ending(full: str, name: str) -> bool:
     one, other = full.replace("::", ".").split("."), name.replace("::", ".").strip(".").split(".")
     return one[-len(other) :] == other or other[-len(one) :] == one
 
 
-def _row(raw: dict[str, Any]) -> FrameworkRow:
+def _make_row(raw: dict[str, Any]) -> FrameworkRow:
     spots = (
         "topic", "type", "queue", "qos", "callback", "latch", "period", "default", "variable", "message", "remaps",
     )  # fmt: skip
@@ -114,6 +114,6 @@ def _row(raw: dict[str, Any]) -> FrameworkRow:
 
 
 @cache
-def frameworks() -> Frameworks:
+def load_frameworks() -> Frameworks:
     """The shipped table."""
     return Frameworks(tomllib.loads(TABLE.read_text(encoding="utf-8")))

@@ -8,16 +8,16 @@ from typing import NamedTuple
 
 from msgspec import structs
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowFile, Guard
 from ..launch.result import Launched, Started
 from . import nodes as programs_of
 from .calls import Calls, FrameworkCall
-from .code import CodeFile, FlowCode, Fn, made_in, tail
+from .code import CodeFile, FlowCode, Fn, get_tail, list_made
 from .defined import DefinedInterfaces
-from .endpoints import Site, Sites, Statement, shown
-from .frameworks import Frameworks, frameworks
+from .endpoints import Site, Sites, Statement, unparse
+from .frameworks import Frameworks, load_frameworks
 from .graph import (
     Callback,
     Coverage,
@@ -34,12 +34,12 @@ from .graph import (
     Unresolved,
     Way,
 )
-from .loads import Loaded, loads
-from .names import NameRefused, canonical, ros1_name, ros2_name
+from .loads import Loaded, list_loaded
+from .names import NameRefused, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
-from .qos import qos_of
-from .started import Instance, instances
-from .types import FlowType, parsed
+from .qos import find_qos
+from .started import Instance, make_instance
+from .types import FlowType, parse_flow_type
 from .values import FlowValue, FlowValues
 
 _MOST_WAYS = 16
@@ -86,11 +86,11 @@ class Join:
         self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
         sources = (CodeFile(path, package_of(path), facts) for path, facts in sorted(files.items()))
         self.code = FlowCode(sources, before)
-        self.calls = Calls(self.code, table or frameworks())
+        self.calls = Calls(self.code, table or load_frameworks())
         self.values = FlowValues(self.calls)
         self.sites = Sites(self.code, self.calls, self.values, defined or DefinedInterfaces())
         self.reach = CodeReach(self.sites)
-        self.triggers = self._triggers()
+        self.triggers = self._collect_triggers()
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
         self._asked: dict[int, list[FlowValue]] = {}
@@ -102,28 +102,29 @@ class Join:
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[Fn, frozenset[Fn]], list[Way]] = {}
 
-    def running(self) -> list[Running]:
+    def list_running(self) -> list[Running]:
         """All programs that talk, with their nodes, sorted."""
         return list(self._running)
 
     @cached_property
     def _running(self) -> list[Running]:
         found: list[Running] = []
-        for program in programs_of.programs(self.code, self.built, self._kinds):
+        for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             if program.kind in ("executable", "script"):
-                functions, classes = self.reach.of(program.roots)
+                functions, classes = self.reach.find_reached(program.roots)
                 if not program.roots:
                     functions = {fn for fn in self.code.functions if fn.source.path in program.files}
             else:
                 cls = next(
-                    (c for c in self.code.classes.get(tail(program.plugin), ()) if c.source.path == program.path), None
+                    (c for c in self.code.classes.get(get_tail(program.plugin), ()) if c.source.path == program.path),
+                    None,
                 )
-                functions, classes = self.reach.of(program.roots, [cls] if cls is not None else [])
-            named = [use for use in self.calls.doing("node") if use.fn in functions]
-            found.append(Running(program, self._node(program, named), functions, classes, self.values))
+                functions, classes = self.reach.find_reached(program.roots, [cls] if cls is not None else [])
+            named = [use for use in self.calls.select_uses("node") if use.fn in functions]
+            found.append(Running(program, self._make_node(program, named), functions, classes, self.values))
         return found
 
-    def started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
+    def find_started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
         if self._started is None or self._started[0] is not launch:
             self._started = launch, self._start(launch)
@@ -142,29 +143,29 @@ class Join:
                 reasons = "; ".join((*start.executable.reasons, *start.plugin.reasons))
                 missing.append(Unresolved("started node", reasons or "its executable is not known", *at, written))
                 continue
-            fitting = self._fitting(start)
+            fitting = self._select_fitting(start)
             if not fitting:
                 reason = f"no code of `{start.package.shown}` here is `{what}`"
                 if start.kind != "container":
                     missing.append(Unresolved("started node", reason, *at, what))
                 continue
             one = next((each for each in fitting if each.program.roots), fitting[0])
-            instance = instances(launch, one.node.name.rpartition("/")[2], start)
+            instance = make_instance(launch, one.node.name.rpartition("/")[2], start)
             node = structs.replace(
                 one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
             )  # fmt: skip
             arguments = tuple(argument.value for argument in start.arguments if argument.value is not None)
             known = arguments if len(arguments) == len(start.arguments) else None
-            values = self.values.under(instance.settings, known)
+            values = self.values.apply_launch(instance.settings, known)
             found.append(one._replace(node=node, instance=instance, values=values))
         return found, missing
 
-    def with_loaded(self, running: Iterable[Running]) -> Iterator[Running]:
+    def add_loaded(self, running: Iterable[Running]) -> Iterator[Running]:
         """Nodes, each followed by the nodelets that its program loads into it."""
-        programs = [one for one in self.running() if one.program.plugin]
+        programs = [one for one in self.list_running() if one.program.plugin]
         for one in running:
             yield one
-            for loaded in loads(self.calls, one.functions, one.values, one.node.name):
+            for loaded in list_loaded(self.calls, one.functions, one.values, one.node.name):
                 part = next((p for p in programs if self._is_plugin(p.program, loaded.plugin)), None)
                 if part is not None:
                     yield part._replace(node=one.node, values=one.values, instance=one.instance, loaded=loaded)
@@ -176,7 +177,7 @@ class Join:
             package, slash, _ = name.rpartition("/")
             wanted = name.replace("/", "::")
             same = not slash or program.package == package
-            return program.plugin == wanted or (same and tail(program.plugin) == tail(wanted))
+            return program.plugin == wanted or (same and get_tail(program.plugin) == get_tail(wanted))
         return program.plugin.removeprefix("::") == wanted.removeprefix("::")
 
     @cached_property
@@ -186,7 +187,7 @@ class Join:
             found.setdefault(one.program.package, []).append(one)
         return found
 
-    def _fitting(self, start: Started) -> list[Running]:
+    def _select_fitting(self, start: Started) -> list[Running]:
         """The programs that a launch may mean."""
         package, plugin = start.package.value, start.plugin.value
         # pluginlib knows nodelets of all packages, and a launch file names that of the loader beside them.
@@ -197,39 +198,41 @@ class Join:
         named = ((one, one.program.executable) for one in programs if one.program.executable)
         return [one for one, name in named if start.executable.value in (name, name.removesuffix(".py"))]
 
-    def _kinds(self, cls) -> frozenset[str]:
-        return self.calls.kinds_of(
-            FlowType(cls.name), next(iter(self.code.functions_of_class(cls.name)), _nobody(cls.source))
+    def _find_kinds(self, cls) -> frozenset[str]:
+        return self.calls.find_kinds(
+            FlowType(cls.name), next(iter(self.code.list_class_functions(cls.name)), _make_nobody(cls.source))
         )
 
-    def _node(self, program: StartableProgram, named: list[FrameworkCall]) -> Node:
-        own = [use for use in named if tail(use.fn.facts.owner) == tail(program.plugin)] if program.plugin else []
+    def _make_node(self, program: StartableProgram, named: list[FrameworkCall]) -> Node:
+        own = (
+            [use for use in named if get_tail(use.fn.facts.owner) == get_tail(program.plugin)] if program.plugin else []
+        )
         in_main = [use for use in named if use.fn in program.roots]
         # Of the classes that name nodes, those that are made first where the program begins; helpers' nodes come later.
-        made = [tail(name.partition("<")[0]) for root in program.roots for name, _, _ in made_in(root, self.code)]
+        made = [get_tail(name.partition("<")[0]) for root in program.roots for name, _, _ in list_made(root, self.code)]
         ranks = {name: place for place, name in reversed(list(enumerate(made)))}
 
         def rank(use: FrameworkCall) -> tuple[int, bool]:
-            written = self.calls.argument(use, use.row.topic)
-            return ranks.get(tail(use.fn.facts.owner), len(ranks)), written is None or written.kind != "text"
+            written = self.calls.find_argument(use, use.row.topic)
+            return ranks.get(get_tail(use.fn.facts.owner), len(ranks)), written is None or written.kind != "text"
 
         others = sorted(named, key=rank) if program.kind in ("executable", "script") else []
         name = ""
         for use in [*own, *in_main, *others]:
-            values = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
+            values = self.values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line)
             # `_` stands for a name that options give.
             name = next((value.text for value in values if value.text and value.text != "_"), "")
             if name and "{" not in name:
                 break
-        default = program.executable or _snake(tail(parsed(program.plugin).name))
-        full = canonical("/" + (name or default).lstrip("/"))
+        default = program.executable or _convert_to_snake(get_tail(parse_flow_type(program.plugin).name))
+        full = normalise("/" + (name or default).lstrip("/"))
         language = "python" if program.kind == "script" else "cpp"
         return Node(
             f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,
             program.executable, program.plugin, language, program.path, program.line,
         )  # fmt: skip
 
-    def guards(self, fn: Fn, index: int) -> tuple[GuardAt, ...]:
+    def list_guards(self, fn: Fn, index: int) -> tuple[GuardAt, ...]:
         """The guards at a place of a function, outermost first."""
         found: list[Guard] = []
         rows = fn.facts.guards
@@ -238,7 +241,7 @@ class Join:
             index = rows[index].outer
         return tuple(GuardAt(g.kind, g.text, fn.source.path, g.line, fn.name) for g in reversed(found))
 
-    def _triggers(self) -> dict[Fn, list[Trigger]]:
+    def _collect_triggers(self) -> dict[Fn, list[Trigger]]:
         found: dict[Fn, list[Trigger]] = {}
         for site in self.sites.endpoints:
             names = sorted({value.text for value in site.names if value.text}) or [site.written]
@@ -251,27 +254,27 @@ class Join:
                 found.setdefault(fn, []).append(Trigger("timer", timer.period, use.fn.source.path, use.call.line))
         return found
 
-    def ways(self, fn: Fn, functions: set[Fn] | None = None) -> list[Way]:
+    def list_ways(self, fn: Fn, functions: set[Fn] | None = None) -> list[Way]:
         """The ways that lead to a function from whatever triggers it. functions: those that run, all when None."""
-        leading = self._leads_to(fn)
+        leading = self._find_leading(fn)
         key = (fn, leading if functions is None else leading & functions)
         known = self._ways.get(key)
         if known is None:
-            known = self._ways[key] = self._walked(fn, functions, 0, ())
+            known = self._ways[key] = self._walk_callers(fn, functions, 0, ())
         return known
 
-    @cached_method
-    def _leads_to(self, fn: Fn) -> frozenset[Fn]:
+    @cache_method
+    def _find_leading(self, fn: Fn) -> frozenset[Fn]:
         """The functions from which a function may be reached."""
 
-        def above(one: Fn) -> list[Fn]:
-            around = self.code.enclosing(one)
+        def list_above(one: Fn) -> list[Fn]:
+            around = self.code.find_enclosing(one)
             callers = [caller for caller, _ in self.code.callers.get(one, ())]
             return callers if around is None else [*callers, around]
 
-        return frozenset(walk(above(fn), above))
+        return frozenset(walk(list_above(fn), list_above))
 
-    def _walked(self, fn: Fn, functions: set[Fn] | None, depth: int, seen: tuple[Fn, ...]) -> list[Way]:
+    def _walk_callers(self, fn: Fn, functions: set[Fn] | None, depth: int, seen: tuple[Fn, ...]) -> list[Way]:
         found = [Way(trigger) for trigger in self.triggers.get(fn, ())]
         if fn in seen or depth > _DEEPEST:
             return found
@@ -279,89 +282,91 @@ class Join:
         for caller, call in self.code.callers.get(fn, ()):
             if functions is not None and caller not in functions:
                 continue
-            own = self.guards(caller, call.guard)
-            for way in self._walked(caller, functions, depth + 1, here):
+            own = self.list_guards(caller, call.guard)
+            for way in self._walk_callers(caller, functions, depth + 1, here):
                 found.append(Way(way.trigger, (*way.guards, *own)))
                 if len(found) >= _MOST_WAYS:
                     return found
         if not found:
-            around = self.code.enclosing(fn)
+            around = self.code.find_enclosing(fn)
             if around is not None:
-                return self._walked(around, functions, depth + 1, here)
-            owner = tail(fn.facts.owner)
-            starts = fn.name in ("main", "") or (owner and tail(fn.name) in (owner, "__init__"))
+                return self._walk_callers(around, functions, depth + 1, here)
+            owner = get_tail(fn.facts.owner)
+            starts = fn.name in ("main", "") or (owner and get_tail(fn.name) in (owner, "__init__"))
             kind = "start" if starts else "unknown"
-            found.append(Way(Trigger(kind, tail(fn.name), fn.source.path, fn.facts.line)))
+            found.append(Way(Trigger(kind, get_tail(fn.name), fn.source.path, fn.facts.line)))
         return list(dict.fromkeys(found))
 
-    def graph(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
+    def build(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
         `library` nodes, or to none."""
-        running, missing = (self.running(), []) if launch is None else self.started(launch)
-        owners = _Owners(self, list(self.with_loaded(running)), launch is not None)
+        running, missing = (self.list_running(), []) if launch is None else self.find_started(launch)
+        owners = _Owners(self, list(self.add_loaded(running)), launch is not None)
         count = _Count(list(missing))
-        endpoints = dict.fromkeys(self._all_endpoints(owners, count))
-        publishes = dict.fromkeys(self._all_publishes(owners, count))
-        timers = dict.fromkeys(self._all_timers(owners))
-        parameters = dict.fromkeys(self._all_parameters(owners))
+        endpoints = dict.fromkeys(self._list_endpoints(owners, count))
+        publishes = dict.fromkeys(self._list_publishes(owners, count))
+        timers = dict.fromkeys(self._list_timers(owners))
+        parameters = dict.fromkeys(self._list_parameters(owners))
         coverage = Coverage(
             count.calls, count.resolved, count.by_default, len(self.code.sources), tuple(sorted(unread)),
             tuple(sorted(count.unresolved, key=lambda one: (one.path, one.line, one.what))),
-            tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_place(use)) for use in self.sites.wrapped),
+            tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_get_place(use)) for use in self.sites.wrapped),
         )  # fmt: skip
         return Graph(
-            owners.nodes(), tuple(endpoints), tuple(publishes), tuple(timers), tuple(parameters), coverage, root, rev,
-            self.ros,
+            owners.list_nodes(), tuple(endpoints), tuple(publishes), tuple(timers), tuple(parameters), coverage, root,
+            rev, self.ros,
         )  # fmt: skip
 
-    def _all_endpoints(self, owners: _Owners, count: _Count) -> Iterator[Endpoint]:
+    def _list_endpoints(self, owners: _Owners, count: _Count) -> Iterator[Endpoint]:
         for site in self.sites.endpoints:
-            those = owners.of(site.use)
+            those = owners.list_owners(site.use)
             if not those:
                 continue
             if owners.launched:
-                site = self._site_of(site, those[0])
+                site = self._adapt_site(site, those[0])
             if not site.implied:
-                lacking = self._missing(site)
-                lost = Unresolved(*lacking, *_place(site.use), site.written) if lacking else None
+                lacking = self._find_missing(site)
+                lost = Unresolved(*lacking, *_get_place(site.use), site.written) if lacking else None
                 count.call(lost, (site,))
             for owner in those:
                 owners.use(owner)
-                here = self._site_of(site, owner)
+                here = self._adapt_site(site, owner)
                 for value in here.names:
-                    for type_ in _types(here, owner):
-                        yield self._endpoint(here, value, type_, owner)
+                    for type_ in _select_types(here, owner):
+                        yield self._make_endpoint(here, value, type_, owner)
 
-    def _all_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
+    def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:
-            those = owners.of(statement.use)
+            those = owners.list_owners(statement.use)
             if not those:
                 continue
             if not statement.through:  # else counted where it sends
-                sites = [self._site_of(site, those[0]) if owners.launched else site for site in statement.sites]
+                sites = [self._adapt_site(site, those[0]) if owners.launched else site for site in statement.sites]
                 reason = statement.reason or next((s.names[0].reason for s in sites if s.names[0].text is None), "")
-                receiver = self.calls.receiver_of(statement.use)
-                lost = Unresolved("publish", reason, *_place(statement.use), receiver) if reason else None
+                receiver = self.calls.get_receiver(statement.use)
+                lost = Unresolved("publish", reason, *_get_place(statement.use), receiver) if reason else None
                 count.call(lost, statement.sites)
             for owner in those:
                 owners.use(owner)
-                yield from self._publishes(statement, owner)
+                yield from self._make_publishes(statement, owner)
 
-    def _all_timers(self, owners: _Owners) -> Iterator[Timer]:
+    def _list_timers(self, owners: _Owners) -> Iterator[Timer]:
         for timer in self.sites.timers:
-            for owner in owners.of(timer.use):
-                node = _node_of(owner)
-                yield Timer(node.id if node else "", timer.period, _callback(timer.callbacks), *_place(timer.use))
+            for owner in owners.list_owners(timer.use):
+                node = _get_node(owner)
+                yield Timer(
+                    node.id if node else "", timer.period, _make_callback(timer.callbacks), *_get_place(timer.use)
+                )
 
-    def _all_parameters(self, owners: _Owners) -> Iterator[ParameterUse]:
+    def _list_parameters(self, owners: _Owners) -> Iterator[ParameterUse]:
         for use in self._uses_of_parameters:
-            yield from self._parameters(use, owners.of(use))
+            yield from self._make_parameters(use, owners.list_owners(use))
 
     @cached_property
     def _uses_of_parameters(self) -> list[FrameworkCall]:
-        return [use for use in self.calls.doing("parameter") if not self.sites.wraps(use.fn, "parameter")]
+        return [use for use in self.calls.select_uses("parameter") if not self.sites.wraps(use.fn, "parameter")]
 
-    def library(self, fn: Fn) -> Node | None:
+    def find_library(self, fn: Fn) -> Node | None:
         """The library that a function belongs to, as a node; None outside of packages."""
         package, path = fn.source.package, fn.source.path
         if not package:
@@ -371,19 +376,19 @@ class Join:
         id = f"{package}/{name or path.rpartition('/')[2]}"
         return Node(id, "", package, "library", executable=name, language=fn.source.facts.language, path=path)
 
-    def _missing(self, site: Site) -> tuple[str, str] | None:
+    def _find_missing(self, site: Site) -> tuple[str, str] | None:
         known = [value for value in site.names if value.text is not None]
         if not known:
             return f"{site.role} name", site.names[0].reason if site.names else "no name is given"
         if not site.type and not site.types:
-            name = self.sites.template_parameter(site.use)
+            name = self.sites.find_template_parameter(site.use)
             reason = f"nothing here fixes the parameter `{name}` of the template" if name else ""
             return f"{site.role} type", reason or "the type is not told where it is made"
         if site.reason:
             return f"{site.role} callback", site.reason
         return None
 
-    def _site_of(self, site: Site, owner: Owner) -> Site:
+    def _adapt_site(self, site: Site, owner: Owner) -> Site:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
             return site
@@ -394,36 +399,36 @@ class Join:
                 return found
         self.values.asked.clear()
         # What code that the node does not run passes to its functions is none of its names.
-        names = self.sites.names(site.use, site.prefix, owner.values.run(owner.functions))
+        names = self.sites.list_names(site.use, site.prefix, owner.values.run(owner.functions))
         if all(name.text is None for name in names):
-            names = self.sites.names(site.use, site.prefix, owner.values)
-        type_ = site.type or self.sites.type_of(site.use, owner.values)
+            names = self.sites.list_names(site.use, site.prefix, owner.values)
+        type_ = site.type or self.sites.find_type(site.use, owner.values)
         found = site._replace(names=names, type=type_)
         known.append((owner, dict(self.values.asked), found))
         return found
 
-    def _endpoint(self, site: Site, value: FlowValue, type_: str, owner: Owner) -> Endpoint:
+    def _make_endpoint(self, site: Site, value: FlowValue, type_: str, owner: Owner) -> Endpoint:
         use = site.use
-        node = _node_of(owner)
-        topic, how, reason = self.name(site, value, owner)
+        node = _get_node(owner)
+        topic, how, reason = self.resolve_name(site, value, owner)
         if id(use) not in self._qos:
-            self._qos[id(use)] = qos_of(self.calls, self.values, use)
+            self._qos[id(use)] = find_qos(self.calls, self.values, use)
         qos = self._qos[id(use)]
         return Endpoint(
-            site.role, node.id if node else "", topic, type_, *_place(use), site.written, how, qos,
-            _callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
+            site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
+            _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
             use.row.framework,
         )  # fmt: skip
 
-    def name(self, site: Site, value: FlowValue, owner: Owner) -> tuple[str, How, str]:
+    def resolve_name(self, site: Site, value: FlowValue, owner: Owner) -> tuple[str, How, str]:
         """The full name that a site has in a node, how it is known, and why not."""
-        node = _node_of(owner)
+        node = _get_node(owner)
         instance = owner.instance if isinstance(owner, Running) else None
         if value.text is None:
             return "", "unresolved", value.reason
         text = value.text
         loaded = owner.loaded if isinstance(owner, Running) else None
-        full = node.name if node and node.name else f"/{node.executable or tail(node.plugin)}" if node else "/node"
+        full = node.name if node and node.name else f"/{node.executable or get_tail(node.plugin)}" if node else "/node"
         full = loaded.name if loaded is not None else full
         namespace, _, own = full.rpartition("/")
         generation = self.calls.table.generations.get(site.use.row.framework, self.ros)
@@ -435,68 +440,68 @@ class Join:
                 text = text.replace("{node}", full).replace("{ns}", namespace or "/")
                 if site.prefix and text[:1] not in ("/", "~"):
                     text = f"~{text}" if site.prefix == "~" else f"{site.prefix}/{text}"
-                plain = name = ros1_name(text, full)
+                plain = name = resolve_ros1_name(text, full)
                 if loaded is not None:
-                    plain = name = loaded.remapped(text)
+                    plain = name = loaded.remap_name(text)
                 # What the nodelet's own remappings give is not remapped again.
-                if instance is not None and name == ros1_name(text, full):
-                    name = instance.remapped(name, 1)
+                if instance is not None and name == resolve_ros1_name(text, full):
+                    name = instance.remap_name(name, 1)
             else:
                 if text.startswith("~") and not text.startswith("~/") and len(text) > 1:
                     text = f"~/{text[1:]}"
                 if site.prefix == "~" and text[:1] not in ("/", "~"):
                     text = f"~/{text}"
-                plain = ros2_name(text, own, namespace or "/")
+                plain = resolve_ros2_name(text, own, namespace or "/")
                 kind = "topic" if site.role in ("publisher", "subscriber") else "service"
-                name = plain if instance is None else instance.remapped(text, 2, kind)
+                name = plain if instance is None else instance.remap_name(text, 2, kind)
         except NameRefused as error:
             return "", "unresolved", str(error)
         if name != plain:
             return name, "launch", ""
         return name, "given" if site.implied and value.how == "literal" else value.how, ""
 
-    def _publishes(self, statement: Statement, owner: Owner) -> Iterator[Publish]:
+    def _make_publishes(self, statement: Statement, owner: Owner) -> Iterator[Publish]:
         use = statement.use
-        node = _node_of(owner)
+        node = _get_node(owner)
         functions = owner.functions if isinstance(owner, Running) else None
-        own = self.guards(use.fn, use.call.guard)
-        ways = [Way(way.trigger, (*way.guards, *own)) for way in self.ways(use.fn, functions)]
+        own = self.list_guards(use.fn, use.call.guard)
+        ways = [Way(way.trigger, (*way.guards, *own)) for way in self.list_ways(use.fn, functions)]
         guards = ways[0].guards if len(ways) == 1 else own
         triggers = tuple(dict.fromkeys(way.trigger for way in ways))
         common = {
             "path": use.fn.source.path, "line": use.call.line, "function": use.fn.name,
-            "expression": statement.expression, "variable": self.calls.receiver_of(use), "guards": guards,
+            "expression": statement.expression, "variable": self.calls.get_receiver(use), "guards": guards,
             "triggers": triggers, "ways": len(ways), "by": tuple(ways), "node": node.id if node else "",
             "through": statement.through,
         }  # fmt: skip
         if not statement.sites:
             yield Publish(topic="", type=statement.type, reason=statement.reason, **common)
         for site in statement.sites:
-            here = self._site_of(site, owner)
+            here = self._adapt_site(site, owner)
             for value in here.names:
-                topic, _, reason = self.name(here, value, owner)
-                for type_ in _types(here, owner):
+                topic, _, reason = self.resolve_name(here, value, owner)
+                for type_ in _select_types(here, owner):
                     yield Publish(topic=topic, type=type_, reason=reason, **common)
 
-    def asked(self, use: FrameworkCall) -> list[FlowValue]:
+    def list_parameter_names(self, use: FrameworkCall) -> list[FlowValue]:
         """The names of a parameter that is declared or read; the same in every node."""
         known = self._asked.get(id(use))
         if known is None:
-            known = self.values.of(self.calls.argument(use, use.row.topic), use.fn, use.call.line)
+            known = self.values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line)
             self._asked[id(use)] = known
         return known
 
-    def _parameters(self, use: FrameworkCall, owners: list[Owner]) -> Iterator[ParameterUse]:
+    def _make_parameters(self, use: FrameworkCall, owners: list[Owner]) -> Iterator[ParameterUse]:
         if not owners:
             return
-        values = self.asked(use)
-        default = shown(self.calls.argument(use, use.row.default)) if use.row.default else ""
+        values = self.list_parameter_names(use)
+        default = unparse(self.calls.find_argument(use, use.row.default)) if use.row.default else ""
         kind = "declared" if use.row.declares else "read"
-        nodes = {node.id if node else "": None for node in (_node_of(owner) for owner in owners)}
+        nodes = {node.id if node else "": None for node in (_get_node(owner) for owner in owners)}
         for value in values:
             if value.text:
                 for node in nodes:
-                    yield ParameterUse(node, value.text, kind, *_place(use), default)
+                    yield ParameterUse(node, value.text, kind, *_get_place(use), default)
 
 
 class _Owners:
@@ -511,7 +516,7 @@ class _Owners:
             for number in one.functions:
                 self._by_function.setdefault(number, []).append(one)
 
-    def of(self, use: FrameworkCall) -> list[Owner]:
+    def list_owners(self, use: FrameworkCall) -> list[Owner]:
         """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none."""
         found = self._by_function.get(use.fn, [])
         if self.launched or found:
@@ -519,16 +524,16 @@ class _Owners:
         built = [one for one in self.running if use.fn.source.path in one.program.files]
         if built:
             return [*built]
-        node = self.join.library(use.fn)
+        node = self.join.find_library(use.fn)
         return [self._libraries.setdefault(node.id, node) if node is not None else None]
 
     def use(self, owner: Owner) -> None:
         """Notes that an owner has an entry in the graph."""
-        node = _node_of(owner)
+        node = _get_node(owner)
         if node is not None:
             self._used.add(node.id)
 
-    def nodes(self) -> tuple[Node, ...]:
+    def list_nodes(self) -> tuple[Node, ...]:
         """Those that have an entry, and all that a launch starts; sorted."""
         running = (one.node for one in self.running if self.launched or one.node.id in self._used)
         libraries = (node for node in self._libraries.values() if node.id in self._used)
@@ -552,7 +557,7 @@ class _Count:
             self.by_default += all(value.how == "default" for site in sites for value in site.names)
 
 
-def _types(site: Site, owner: Owner) -> tuple[str, ...]:
+def _select_types(site: Site, owner: Owner) -> tuple[str, ...]:
     """The types that a site has for whoever runs it: several where a template is used with several. Which of several
     names has which of them is not known."""
     if site.type or not site.types:
@@ -564,25 +569,25 @@ def _types(site: Site, owner: Owner) -> tuple[str, ...]:
     return found if len(found) == 1 or len(site.names) < 2 else ("",)
 
 
-def _node_of(owner: Owner) -> Node | None:
+def _get_node(owner: Owner) -> Node | None:
     return owner.node if isinstance(owner, Running) else owner
 
 
-def _place(use: FrameworkCall) -> tuple[str, int]:
+def _get_place(use: FrameworkCall) -> tuple[str, int]:
     return use.fn.source.path, use.call.line
 
 
-def _callback(found: tuple[Fn, ...]) -> Callback | None:
+def _make_callback(found: tuple[Fn, ...]) -> Callback | None:
     return Callback(found[0].name, found[0].source.path, found[0].facts.line) if found else None
 
 
-def _snake(name: str) -> str:
-    from ...targets.surface.fields import snake
+def _convert_to_snake(name: str) -> str:
+    from ...targets.surface.fields import make_snake_case
 
-    return snake(name)
+    return make_snake_case(name)
 
 
-def _nobody(source: CodeFile) -> Fn:
+def _make_nobody(source: CodeFile) -> Fn:
     from ...facts.flow import FlowFunction
 
     return Fn(source, FlowFunction("", "", (), 0, 0))

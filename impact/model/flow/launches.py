@@ -9,18 +9,18 @@ from typing import Any, TypeVar
 import msgspec
 
 from ....edges import processes
-from ...facts.store import remembered
+from ...facts.store import recall
 from ..launch.fill import ChangedFiles
 from ..launch.follow import MOST_ACTIONS, follow
-from ..launch.result import Launched, SettingFile, Started, file_values
-from ..package import role_of_folder
+from ..launch.result import Launched, SettingFile, Started, select_file_values
+from ..package import find_folder_role
 from ..workspace import Workspace
 from .escape_analysis import Seeing, Sight
-from .file_selection import stamp
+from .file_selection import compute_stamp
 from .graph import Graph
 from .join import Join, Running
-from .names import NameRefused, canonical, ros1_name, ros2_name, ros2_rule
-from .started import Instance, InWorkspace, launch_kind
+from .names import NameRefused, normalise, parse_ros2_rule, resolve_ros1_name, resolve_ros2_name
+from .started import Instance, InWorkspace, classify_launch_file
 
 _Row = TypeVar("_Row")
 
@@ -83,38 +83,38 @@ _Followed = tuple[str, Launched]
 """The path of a launch file and what it starts."""
 
 
-def launches(workspace: Workspace, code: Callable[[], Join], jobs: int = 1) -> tuple[Launch, ...]:
+def list_launches(workspace: Workspace, code: Callable[[], Join], jobs: int = 1) -> tuple[Launch, ...]:
     """What the launch files that no other includes start, with the defaults of their arguments. Remembered by the
     content of all that it rests on. code: gives the code of the workspace, joined; not called where nothing is
     started. jobs: processes to use."""
-    store, key = workspace.gathered.store, stamp(workspace)
-    return remembered(store, "launches", key, tuple[Launch, ...], lambda: tuple(_launches(workspace, code, jobs)))
+    store, key = workspace.gathered.store, compute_stamp(workspace)
+    return recall(store, "launches", key, tuple[Launch, ...], lambda: tuple(_find_launches(workspace, code, jobs)))
 
 
-def _launches(workspace: Workspace, code: Callable[[], Join], jobs: int) -> Iterator[Launch]:
-    files = list(_files(workspace))
+def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) -> Iterator[Launch]:
+    files = list(_list_files(workspace))
     if jobs < 2 or len(files) < _ALONE or not processes.may_fork():
         followed = _follow(workspace, files)
         yield from _start(workspace, code(), followed) if followed else ()
         return
     workspace.gathered.store.close()  # another process opens it for itself
-    with processes.Workers(_within_limits, 1, _follow, workspace) as workers:
+    with processes.Workers(_run_within_limits, 1, _follow, workspace) as workers:
         workers.give(files)
         join = code()
-        ((_, followed),) = workers.finished()
+        ((_, followed),) = workers.wait_for_finished()
     if isinstance(followed, processes.Died):
         followed = _follow(workspace, files)
-    _ = join.running(), join.sites.statements  # made once, not in every process
+    _ = join.list_running(), join.sites.statements  # made once, not in every process
     parts = [part for at in range(jobs) if (part := followed[at::jobs])]
     found: dict[str, Launch] = {}
-    for part, made in processes.forked_rows(_within_limits, parts, jobs, _start, workspace, join):
+    for part, made in processes.run_forked_rows(_run_within_limits, parts, jobs, _start, workspace, join):
         for row, launch in zip(part, made, strict=True):
             # What ends another process may end this one.
             found[row[0]] = launch or next(_start(workspace, join, [row]))
     yield from (found[path] for path, _ in followed)
 
 
-def _within_limits(task: Callable[..., Iterable[_Row]], *given: Any) -> list[_Row]:
+def _run_within_limits(task: Callable[..., Iterable[_Row]], *given: Any) -> list[_Row]:
     """What a process of its own does: a task on some launch files, the last of what it is given."""
     processes.begin_part(0, len(given[-1]) * _FILE_BYTES)
     return list(task(*given))
@@ -125,18 +125,18 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
     sources, seeing = InWorkspace(workspace), Seeing(workspace, join)
     sights: dict[str, Sight] = {}
     for path, launch in followed:
-        running, missing = join.started(launch)
-        graph = join.graph(launch=launch)
+        running, missing = join.find_started(launch)
+        graph = join.build(launch=launch)
         starts = []
         for one in running:
             program = f"{one.program.package}/{one.program.executable or one.program.plugin}"
             if program not in sights:
-                sights[program] = seeing.of(one)
+                sights[program] = seeing.find_sight(one)
             starts.append(_start_node(join, launch, sources, one, program, sights[program]))
         here = {id(one.instance.started) for one in running if one.instance is not None}
         others = [started for started in launch.started if id(started) not in here]
         elsewhere = {
-            f"{sources.place(given.at.package, given.at.path)}:{given.at.line}"
+            f"{sources.find_workspace_path(given.at.package, given.at.path)}:{given.at.line}"
             for started in others
             for given in (*started.remaps, *started.settings)
         }
@@ -155,18 +155,18 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
         left = max(1, left - launch.actions)
         found.append((path, launch))
         own, *others = launch.files or (("", ""),)
-        included.update(sources.place(*other) for other in others if other != own)
+        included.update(sources.find_workspace_path(*other) for other in others if other != own)
     return [row for row in found if row[1].started and row[0] not in included]
 
 
-def _files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
+def _list_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
     """(package, path, path within the package) of launch files; those of tests are left out."""
     number = 0
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in sorted(package.digest.files):
             inner = path[start:]
-            if is_launch(inner) and role_of_folder(inner) != "test":
+            if is_launch(inner) and find_folder_role(inner) != "test":
                 number += 1
                 if number > _MOST:
                     return
@@ -176,7 +176,7 @@ def _files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
 def is_launch(path: str) -> bool:
     """Whether a path within a package is that of a launch file, by its name and folder."""
     folder, name = posixpath.split(path.lower())
-    if not launch_kind(path) or name.endswith(".test") or name.startswith("__"):
+    if not classify_launch_file(path) or name.endswith(".test") or name.startswith("__"):
         return False
     stem, _, ending = name.rpartition(".")
     return ending == "launch" or stem.endswith((".launch", "_launch")) or "launch" in folder.split("/")
@@ -187,63 +187,63 @@ def _start_node(
 ) -> LaunchedNode:  # fmt: skip
     instance = one.instance
     assert instance is not None
-    renamed = tuple(_renamed(sources, instance, join.ros))
-    given = tuple(_given(sources, launch, instance.started, instance))
-    names = {name for name in _names(join, one, instance) if name} if renamed and not sight.names else ()
-    asked = _parameters(join, one) if (given or renamed) and not sight.parameters else ()
+    renamed = tuple(_list_given_remappings(sources, instance, join.ros))
+    given = tuple(_list_given(sources, launch, instance.started, instance))
+    names = {name for name in _list_names(join, one, instance) if name} if renamed and not sight.names else ()
+    asked = _collect_parameters(join, one) if (given or renamed) and not sight.parameters else ()
     return LaunchedNode(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
         sight.names, sight.parameters, instance.uncertain,
     )  # fmt: skip
 
 
-def _names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
+def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
     """The full names that a node's code uses, before remapping."""
     bare = one._replace(instance=instance._replace(remaps=()))
     for site in join.sites.endpoints:
         if site.use.fn in one.functions:
             values = site.names
             if not site.implied:
-                values = join.sites.names(site.use, site.prefix, one.values)
+                values = join.sites.list_names(site.use, site.prefix, one.values)
             for value in values:
-                yield join.name(site, value, bare)[0]
+                yield join.resolve_name(site, value, bare)[0]
 
 
-def _parameters(join: Join, one: Running) -> set[str]:
+def _collect_parameters(join: Join, one: Running) -> set[str]:
     found: set[str] = set()
-    for use in join.calls.doing("parameter"):
+    for use in join.calls.select_uses("parameter"):
         if use.fn in one.functions:
-            found.update(value.text for value in join.asked(use) if value.text)
+            found.update(value.text for value in join.list_parameter_names(use) if value.text)
     return found
 
 
-def _renamed(sources: InWorkspace, instance: Instance, ros: int) -> Iterator[GivenRemapping]:
+def _list_given_remappings(sources: InWorkspace, instance: Instance, ros: int) -> Iterator[GivenRemapping]:
     generation = instance.started.generation or ros
     namespace, _, own = instance.name.rpartition("/")
     for remap in instance.remaps:
         written, new = remap.old.value, remap.new.value
-        path = sources.place(remap.at.package, remap.at.path)
+        path = sources.find_workspace_path(remap.at.package, remap.at.path)
         if not written or new is None or remap.conditions or not path or written.startswith("__"):
             continue
         if generation == 1:
-            old = ros1_name(written, instance.name)
+            old = resolve_ros1_name(written, instance.name)
         else:
-            rule = ros2_rule(f"{written}:={new}")
+            rule = parse_ros2_rule(f"{written}:={new}")
             if rule is None or rule.match.startswith("__") or rule.node not in ("", own):
                 continue
             try:
-                old = ros2_name(rule.match, own, namespace or "/")
+                old = resolve_ros2_name(rule.match, own, namespace or "/")
             except NameRefused:
                 continue
         yield GivenRemapping(old, written, path, remap.at.line)
 
 
-def _given(sources: InWorkspace, launch: Launched, start: Started, instance: Instance) -> Iterator[GivenParameter]:
+def _list_given(sources: InWorkspace, launch: Launched, start: Started, instance: Instance) -> Iterator[GivenParameter]:
     """The parameters that a node is given for itself: not those of a file's `/**`, which are for any node."""
     if start.generation == 1:
         below = f"{instance.name}/"
         for name, setting in launch.server.items():
-            place = sources.place(setting.at.package, setting.at.path)
+            place = sources.find_workspace_path(setting.at.package, setting.at.path)
             if name.startswith(below) and place and not setting.conditions:
                 yield GivenParameter(name[len(below) :], place, setting.at.line)
         return
@@ -251,23 +251,23 @@ def _given(sources: InWorkspace, launch: Launched, start: Started, instance: Ins
         if setting.conditions:
             continue
         if isinstance(setting, SettingFile):
-            yield from _in_file(sources, setting, instance.name)
+            yield from _list_file_parameters(sources, setting, instance.name)
             continue
-        place = sources.place(setting.at.package, setting.at.path)
+        place = sources.find_workspace_path(setting.at.package, setting.at.path)
         if place:
             yield GivenParameter(setting.name, place, setting.at.line)
 
 
-def _in_file(sources: InWorkspace, setting: SettingFile, full: str) -> Iterator[GivenParameter]:
+def _list_file_parameters(sources: InWorkspace, setting: SettingFile, full: str) -> Iterator[GivenParameter]:
     head, _, inner = (setting.file.value or "").partition("/")
     found = head.startswith("$(find ")
-    place = sources.place(head.removeprefix("$(find ").rstrip(")"), inner) if found else ""
+    place = sources.find_workspace_path(head.removeprefix("$(find ").rstrip(")"), inner) if found else ""
     if not place:
         return
-    for_all = file_values(setting, "")
-    for name, entry in file_values(setting, full).items():
+    for_all = select_file_values(setting, "")
+    for name, entry in select_file_values(setting, full).items():
         if for_all.get(name) != entry:
-            yield GivenParameter(canonical(name), place, entry.line)
+            yield GivenParameter(normalise(name), place, entry.line)
 
 
-__all__ = ["GivenParameter", "GivenRemapping", "Launch", "LaunchedNode", "is_launch", "launches"]
+__all__ = ["GivenParameter", "GivenRemapping", "Launch", "LaunchedNode", "is_launch", "list_launches"]

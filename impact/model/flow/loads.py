@@ -11,7 +11,7 @@ from typing import NamedTuple
 from ...facts.flow import FlowCall
 from .calls import Calls, FrameworkCall
 from .code import Fn
-from .names import ros1_remapped
+from .names import remap_ros1_name
 from .values import NODE, FlowValues
 
 _DEEPEST = 4
@@ -27,42 +27,42 @@ class Loaded(NamedTuple):
     remaps: tuple[tuple[str, str], ...]
     use: FrameworkCall
 
-    def remapped(self, name: str) -> str:
+    def remap_name(self, name: str) -> str:
         """The full name of a name that the nodelet uses."""
-        return ros1_remapped(name, self.name, self.remaps)
+        return remap_ros1_name(name, self.name, self.remaps)
 
 
-def loads(calls: Calls, functions: set[Fn], values: FlowValues, node: str) -> Iterator[Loaded]:
+def list_loaded(calls: Calls, functions: set[Fn], values: FlowValues, node: str) -> Iterator[Loaded]:
     """What a program loads. functions: those it runs; values: what expressions are worth in it; node: the full
     name of its node."""
-    for use in calls.doing("load"):
+    for use in calls.select_uses("load"):
         if use.fn not in functions:
             continue
-        for way in _ways(calls, use.fn, functions):
-            inside = values.called(way)
-            for name in inside.of(calls.argument(use, use.row.topic), use.fn, use.call.line):
-                for plugin in inside.of(calls.argument(use, use.row.type), use.fn, use.call.line):
+        for way in _list_ways(calls, use.fn, functions):
+            inside = values.limit_to_calls(way)
+            for name in inside.evaluate(calls.find_argument(use, use.row.topic), use.fn, use.call.line):
+                for plugin in inside.evaluate(calls.find_argument(use, use.row.type), use.fn, use.call.line):
                     if name.text and plugin.text:
                         full = name.text.replace(NODE, node)
                         full = full if full.startswith("/") else f"{node.rpartition('/')[0]}/{full}"
-                        yield Loaded(full, plugin.text, tuple(_remaps(calls, use, inside)), use)
+                        yield Loaded(full, plugin.text, tuple(_list_remaps(calls, use, inside)), use)
 
 
-def _ways(calls: Calls, fn: Fn, functions: set[Fn], depth: int = 0) -> Iterator[dict[Fn, FlowCall]]:
+def _list_ways(calls: Calls, fn: Fn, functions: set[Fn], depth: int = 0) -> Iterator[dict[Fn, FlowCall]]:
     """The calls through which a function is reached: for each way, the call by the function called."""
     number = 0
     for caller, call in calls.code.callers.get(fn, ()) if depth < _DEEPEST else ():
         if caller in functions and number < _MOST:
-            for way in _ways(calls, caller, functions, depth + 1):
+            for way in _list_ways(calls, caller, functions, depth + 1):
                 number += 1
                 yield {**way, fn: call}
     if not number:
         yield {}
 
 
-def _remaps(calls: Calls, use: FrameworkCall, values: FlowValues) -> Iterator[tuple[str, str]]:
+def _list_remaps(calls: Calls, use: FrameworkCall, values: FlowValues) -> Iterator[tuple[str, str]]:
     """What the map of remappings holds where it is given away: elements written since it was last emptied."""
-    given = calls.argument(use, use.row.remaps)
+    given = calls.find_argument(use, use.row.remaps)
     if given is None or given.kind != "name":
         return
     emptying = f"{given.text}.clear"
@@ -70,7 +70,7 @@ def _remaps(calls: Calls, use: FrameworkCall, values: FlowValues) -> Iterator[tu
     emptied = max(before, default=0)
     for each in use.fn.facts.assignments:
         if each.target == f"{given.text}.[]" and each.key is not None and emptied < each.line < use.call.line:
-            for old in values.of(each.key, use.fn, each.line)[:1]:
-                for new in values.of(each.value, use.fn, each.line)[:1]:
+            for old in values.evaluate(each.key, use.fn, each.line)[:1]:
+                for new in values.evaluate(each.value, use.fn, each.line)[:1]:
                     if old.text and new.text:
                         yield old.text, new.text

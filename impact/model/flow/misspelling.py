@@ -35,23 +35,23 @@ def _is_slip_of_part(one: str, other: str) -> bool:
     plain = one.replace("_", "").lower(), other.replace("_", "").lower()
     if plain[0] == plain[1]:
         return True
-    if min(len(one), len(other)) < _SHORTEST or any(one.replace(x, y) == other for x, y in (*_SIDES, *_turned())):
+    if min(len(one), len(other)) < _SHORTEST or any(one.replace(x, y) == other for x, y in (*_SIDES, *_swap_sides())):
         return False
     if not is_slip(one, other):
         return False
     short, long = sorted((one, other), key=len)
     place = next((i for i, (x, y) in enumerate(zip(short, long, strict=False)) if x != y), len(short))
     if len(short) < len(long):
-        return not _alone(long, place)
+        return not _is_alone(long, place)
     is_swap = one[place + 1 :] != other[place + 1 :]
-    return is_swap or not (_alone(one, place) and _alone(other, place))
+    return is_swap or not (_is_alone(one, place) and _is_alone(other, place))
 
 
-def _turned():
+def _swap_sides():
     return ((y, x) for x, y in _SIDES)
 
 
-def _alone(name: str, place: int) -> bool:
+def _is_alone(name: str, place: int) -> bool:
     """Whether a letter stands alone, as in `arm_l` and `arm_r`, or ends the name, as in `pose_x`."""
     before = place == 0 or not name[place - 1].isalpha()
     after = place == len(name) - 1 or not name[place + 1].isalpha()
@@ -73,23 +73,23 @@ class NearNames(Generic[T]):
         for number, (name, _) in enumerate(self._named):
             if len(name) > _LONGEST:
                 continue
-            for trace in _traces_of(name):
+            for trace in _compute_traces(name):
                 self._traces.setdefault(trace, []).append(number)
             if namespaces:
                 self._whole.setdefault(name, []).append(number)
-                for end in _ends_of(name):
+                for end in _list_ends(name):
                     self._ends.setdefault(end, []).append(number)
 
-    def near(self, name: str) -> Iterator[T]:
+    def find_near(self, name: str) -> Iterator[T]:
         """The things of nearly this name, in their order; at most a thousand are looked at."""
         if len(name) > _LONGEST:
             return
         found: set[int] = set()
-        for trace in _traces_of(name):
+        for trace in _compute_traces(name):
             found.update(self._traces.get(trace, ())[:_MOST_ALIKE])
         if self._namespaces:
             found.update(self._ends.get(name, ())[:_MOST_ALIKE])
-            for end in _ends_of(name):
+            for end in _list_ends(name):
                 found.update(self._whole.get(end, ())[:_MOST_ALIKE])
         for number in sorted(found)[:_MOST_ALIKE]:
             other, thing = self._named[number]
@@ -101,14 +101,14 @@ _LONGEST = 200
 _MOST_ALIKE = 1000
 
 
-def _traces_of(name: str) -> set[str]:
+def _compute_traces(name: str) -> set[str]:
     """Texts of which two names have one in common when one is a slip of the other: the name without a letter."""
     plain = name.strip("/")
     traces = {plain[:at] + plain[at + 1 :] for at in range(len(plain))}
     return {*traces, plain, plain.replace("_", "").lower()}
 
 
-def _ends_of(name: str) -> Iterator[str]:
+def _list_ends(name: str) -> Iterator[str]:
     return (name[at:] for at in range(1, len(name)) if len(name) - at >= _SHORTEST - 1)
 
 

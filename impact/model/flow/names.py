@@ -16,45 +16,45 @@ class NameRefused(ValueError):
     """A name that ROS would not take; the message says why."""
 
 
-def canonical(name: str) -> str:
+def normalise(name: str) -> str:
     """The name without doubled and trailing slashes: `//a//b/` gives `/a/b`. `/` and the empty name stay."""
     if not name or name == "/":
         return name
     return ("/" if name[0] == "/" else "") + "/".join(part for part in name.split("/") if part)
 
 
-def joined(namespace: str, name: str) -> str:
+def join_name(namespace: str, name: str) -> str:
     """A name put into a namespace, unless it is global (`/a`) or private (`~a`) and so knows its own."""
     if name[:1] in ("/", "~") or not namespace:
-        return canonical(name)
+        return normalise(name)
     if not name:
-        return canonical(namespace)
-    return canonical(f"{namespace}/{name}")
+        return normalise(namespace)
+    return normalise(f"{namespace}/{name}")
 
 
-def namespace_of(name: str) -> str:
+def get_namespace(name: str) -> str:
     """The namespace a full name stands in: `/a/b` gives `/a`, `/a` gives `/`."""
-    return canonical(name).rpartition("/")[0] or "/"
+    return normalise(name).rpartition("/")[0] or "/"
 
 
-def ros1_name(name: str, node: str) -> str:
+def resolve_ros1_name(name: str, node: str) -> str:
     """The full name that a ROS 1 node uses for a name before remapping. node: its own full name (`/robot/amcl`).
 
     Global names stay, relative ones go into the node's namespace, private ones (`~x`) below the node; the empty name is
     the namespace itself.
     """
     if not name:
-        return namespace_of(node)
+        return get_namespace(node)
     if name[0] == "~":
-        return canonical(f"{node}/{name[1:]}")
-    return joined(namespace_of(node), name)
+        return normalise(f"{node}/{name[1:]}")
+    return join_name(get_namespace(node), name)
 
 
-def ros1_remapped(name: str, node: str, remaps: Iterable[tuple[str, str]]) -> str:
+def remap_ros1_name(name: str, node: str, remaps: Iterable[tuple[str, str]]) -> str:
     """The full name after a ROS 1 node's remappings: pairs of from and to as written, both resolved as the node's own
     names are. Of several for one name the last holds; what a remapping gives is not remapped again."""
-    table = {ros1_name(old, node): ros1_name(new, node) for old, new in remaps}
-    plain = ros1_name(name, node)
+    table = {resolve_ros1_name(old, node): resolve_ros1_name(new, node) for old, new in remaps}
+    plain = resolve_ros1_name(name, node)
     return table.get(plain, plain)
 
 
@@ -74,7 +74,7 @@ _RULE = re.compile(
 _KINDS = {"rostopic": "topic", "rosservice": "service"}
 
 
-def ros2_rule(text: str) -> RemappingRule | None:
+def parse_ros2_rule(text: str) -> RemappingRule | None:
     """The remapping rule that `text` writes (`scan:=/lidar/scan`, `talker:__ns:=/a`), None when it writes none."""
     m = _RULE.match(text.strip())
     if m is None:
@@ -88,7 +88,7 @@ _LEGAL = re.compile(r"/?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*\Z")
 
 
 @lru_cache(maxsize=10_000)
-def ros2_name(name: str, node: str, namespace: str) -> str:
+def resolve_ros2_name(name: str, node: str, namespace: str) -> str:
     """The full name that a ROS 2 node uses for a topic or service before remapping. node: its name without namespace.
 
     `~` is the node, `~/x` below it, `{node}`, `{ns}` and `{namespace}` are filled in, relative names go into the
@@ -96,7 +96,7 @@ def ros2_name(name: str, node: str, namespace: str) -> str:
     """
     values = {"node": node, "ns": namespace.rstrip("/"), "namespace": namespace.rstrip("/")}
 
-    def value(m: re.Match[str]) -> str:
+    def substitute_value(m: re.Match[str]) -> str:
         if m[1] not in values:
             raise NameRefused(f"`{name}` asks for the unknown `{{{m[1]}}}`")
         return values[m[1]]
@@ -110,7 +110,7 @@ def ros2_name(name: str, node: str, namespace: str) -> str:
         full = own + name[1:]
     else:
         full = name
-    full = _SUBSTITUTION.sub(value, full)
+    full = _SUBSTITUTION.sub(substitute_value, full)
     if full[:1] != "/":
         full = f"{namespace.rstrip('/')}/{full}"
     if not _LEGAL.match(full):
@@ -118,21 +118,21 @@ def ros2_name(name: str, node: str, namespace: str) -> str:
     return full
 
 
-def ros2_remapped(name: str, node: str, namespace: str, rules: Iterable[RemappingRule], kind: str = "topic") -> str:
+def remap_ros2_name(name: str, node: str, namespace: str, rules: Iterable[RemappingRule], kind: str = "topic") -> str:
     """The full name after remapping: the first rule that matches holds, and none is applied to what it gives.
 
     node and namespace: as they are once `__node` and `__ns` are applied. kind: `topic` or `service`.
     Raises NameRefused where the name, or the replacement of the rule that matches, is none; rules that match no legal
     name never match.
     """
-    full = ros2_name(name, node, namespace)
+    full = resolve_ros2_name(name, node, namespace)
     for rule in rules:
         if rule.match.startswith("__") or rule.node not in ("", node) or rule.kind not in ("", kind):
             continue
         try:
-            matches = ros2_name(rule.match, node, namespace) == full
+            matches = resolve_ros2_name(rule.match, node, namespace) == full
         except NameRefused:
             continue
         if matches:
-            return ros2_name(rule.replacement, node, namespace)
+            return resolve_ros2_name(rule.replacement, node, namespace)
     return full

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowExpr
-from .code import Cls, CodeFile, FlowCode, Fn, made_in, tail
+from .code import Cls, CodeFile, FlowCode, Fn, get_tail, list_made
 from .endpoints import Sites
-from .types import parsed
+from .types import parse_flow_type
 
 _Thing = TypeVar("_Thing")
 
@@ -56,15 +56,15 @@ class CodeReach:
         self._loaded: dict[str, str] = {}
         for source in self.code.sources:
             for name in source.facts.exports:
-                cls = self.code.class_of(name.removeprefix("::"), source)
+                cls = self.code.find_class(name.removeprefix("::"), source)
                 if cls is not None:
-                    self._loaded.update((fn.facts.owner, cls.name) for fn in self.code.functions_of(cls))
+                    self._loaded.update((fn.facts.owner, cls.name) for fn in self.code.list_functions(cls))
         self._lambdas: dict[tuple[str, str], list[Fn]] = {}
         for fn in self.code.functions:
             if fn.is_lambda:
                 self._lambdas.setdefault((fn.source.path, fn.scope), []).append(fn)
 
-    def of(self, roots: Iterable[Fn], classes: Iterable[Cls] = ()) -> tuple[set[Fn], set[str]]:
+    def find_reached(self, roots: Iterable[Fn], classes: Iterable[Cls] = ()) -> tuple[set[Fn], set[str]]:
         """Functions and classes (by name) reached from some functions, and from objects of some classes."""
         functions: set[Fn] = set()
         names: set[str] = set()
@@ -74,12 +74,12 @@ class CodeReach:
         while queue or made:
             while made:
                 cls = made.pop()
-                for one in self.code.bases(cls):
+                for one in self.code.list_bases(cls):
                     if one.name in names:
                         continue
                     names.add(one.name)
-                    queue.extend(self.code.functions_of(one))
-                    made.extend(self.held(one))
+                    queue.extend(self.code.list_functions(one))
+                    made.extend(self.list_held(one))
             if not queue:
                 break
             fn = queue.pop()
@@ -89,46 +89,46 @@ class CodeReach:
             if loaded is not None and loaded not in names and fn not in begun:
                 continue  # one of many that may be loaded at run time: a node of its own
             functions.add(fn)
-            further, objects = self.edges(fn)
+            further, objects = self.find_edges(fn)
             queue += [one for one in further if one not in functions]
             if objects:
                 made += [cls for cls in objects if cls.name not in names]
         return functions, names
 
-    @cached_method
-    def held(self, cls: Cls) -> list[Cls]:
+    @cache_method
+    def list_held(self, cls: Cls) -> list[Cls]:
         """Classes of the members that objects of a class hold."""
         # What is pointed to is made elsewhere, or by this class with code that is followed.
         types = (member.type for member in cls.facts.members if member.type and not _points(member.type))
-        found = (self.code.class_meant(type_, cls.source, cls.name) for type_ in types)
+        found = (self.code.find_class_of_type(type_, cls.source, cls.name) for type_ in types)
         return [inner for inner in found if inner is not None]
 
-    @cached_method
-    def edges(self, fn: Fn) -> tuple[Sequence[Fn], Sequence[Cls]]:
+    @cache_method
+    def find_edges(self, fn: Fn) -> tuple[Sequence[Fn], Sequence[Cls]]:
         """Functions that a function may lead to, and classes of objects that it makes."""
         code = self.code
         further = list(self._lambdas.get((fn.source.path, fn.name), ()))
         for call in fn.facts.calls:
-            further.extend(code.targets(call.callee, fn))
+            further.extend(code.list_targets(call.callee, fn))
             for argument in call.arguments:
                 if argument.kind in _HANDING:
-                    further.extend(self._handed(argument, fn))
-        types = [name for name, _, _ in made_in(fn, code)]
+                    further.extend(self._list_handed(argument, fn))
+        types = [name for name, _, _ in list_made(fn, code)]
         types += [each.type for each in fn.facts.assignments if each.type and not _points(each.type)]
-        found = (code.class_meant(type_, fn.source, fn.scope) for type_ in types)
+        found = (code.find_class_of_type(type_, fn.source, fn.scope) for type_ in types)
         # What comes last is looked at first, so the last of those that are named twice is the one to keep.
-        return _last_of_each(further), _last_of_each(cls for cls in found if cls is not None)
+        return _keep_last_of_each(further), _keep_last_of_each(cls for cls in found if cls is not None)
 
-    def _handed(self, value: FlowExpr, fn: Fn) -> list[Fn]:
+    def _list_handed(self, value: FlowExpr, fn: Fn) -> list[Fn]:
         """Functions outside of classes that an argument hands on; methods are reached through their class."""
         if value.kind == "bind" and value.parts:
             value = value.parts[0]
-        if value.kind in ("function", "name") and "." not in value.text and tail(value.text) in self.code.by_tail:
-            return [one for one in self.code.targets(value.text, fn) if not one.facts.owner]
+        if value.kind in ("function", "name") and "." not in value.text and get_tail(value.text) in self.code.by_tail:
+            return [one for one in self.code.list_targets(value.text, fn) if not one.facts.owner]
         return []
 
 
-def _last_of_each(found: Iterable[_Thing]) -> tuple[_Thing, ...]:
+def _keep_last_of_each(found: Iterable[_Thing]) -> tuple[_Thing, ...]:
     """Things once each, where they stand for the last time."""
     return tuple(reversed(dict.fromkeys(reversed(list(found)))))
 
@@ -138,7 +138,7 @@ def _points(type_: str) -> bool:
     return "*" in type_ or "&" in type_ or "ptr" in type_.lower()
 
 
-def programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> Iterator[StartableProgram]:
+def list_programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> Iterator[StartableProgram]:
     """Everything that can be started. kinds_of: a class's kinds by the table of frameworks."""
     by_path: dict[str, list[Fn]] = {}
     for fn in code.functions:
@@ -151,7 +151,7 @@ def programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> Iterato
     for package in built:
         for name, sources in package.executables.items():
             mains = [fn for path in sources for fn in by_path.get(path, ()) if fn.name == "main"]
-            files = frozenset(_linked(name, package, sources))
+            files = frozenset(_list_linked_sources(name, package, sources))
             main = mains[0] if mains else None
             place = (main.source.path, main.facts.line) if main else (sources[0] if sources else "", 0)
             yield StartableProgram(package.package, "executable", name, "", tuple(mains), files, *place)
@@ -160,11 +160,11 @@ def programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> Iterato
         registered = {name for name, _ in loaded}
         loaded += [(name, "") for name in components if name not in registered]
         for name, path in loaded:
-            cls = _class(code, name, package.package, by_source.get(path))
+            cls = _find_class(code, name, package.package, by_source.get(path))
             if cls is None and not path:
                 continue  # registered by the build, of another package's code
-            kind = _loaded_as(cls, code, kinds_of) if cls is not None else "plugin"
-            roots = tuple(code.functions_of(cls)) if cls is not None else ()
+            kind = _classify_loading(cls, code, kinds_of) if cls is not None else "plugin"
+            roots = tuple(code.list_functions(cls)) if cls is not None else ()
             place = (cls.source.path, cls.facts.line) if cls is not None else (path, 0)
             for executable in components.get(name) or ("",):
                 yield StartableProgram(
@@ -176,37 +176,37 @@ def programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> Iterato
             roots = [fn for fn in fns if fn.name in ("", function or "main")]
             if function and fns and function not in {fn.name for fn in fns}:
                 # The package has the function from one of its modules.
-                meant = code.meant(function, fns[0].source)
-                roots += code.imported(meant if meant != function else f".{function}", fns[0].source)
+                meant = code.resolve_name(function, fns[0].source)
+                roots += code.list_imported(meant if meant != function else f".{function}", fns[0].source)
             if roots:
                 yield StartableProgram(
                     package.package, "script", name, "", tuple(roots), frozenset((path,)), path, roots[0].facts.line
                 )
 
 
-def _linked(name: str, package: BuiltPackage, sources: Iterable[str]) -> Iterator[str]:
+def _list_linked_sources(name: str, package: BuiltPackage, sources: Iterable[str]) -> Iterator[str]:
     yield from sources
     for one in walk([name], lambda one: package.links.get(one, ())):
         if one != name:
             yield from package.libraries.get(one, ())
 
 
-def _class(code: FlowCode, name: str, package: str, source: CodeFile | None) -> Cls | None:
+def _find_class(code: FlowCode, name: str, package: str, source: CodeFile | None) -> Cls | None:
     """A class by the name that it is registered under in a file, or by the build."""
-    wanted = parsed(name).name.removeprefix("::").split("::")
+    wanted = parse_flow_type(name).name.removeprefix("::").split("::")
     found = [
         cls
         for cls in code.classes.get(wanted[-1], ())
         if cls.source.package == package and cls.name.split("::")[-len(wanted) :] == wanted
     ]
     if not found and source is not None:
-        meant = code.class_of(name.removeprefix("::"), source)
+        meant = code.find_class(name.removeprefix("::"), source)
         found = [meant] if meant is not None else []
     return found[0] if found else None
 
 
-def _loaded_as(cls: Cls, code: FlowCode, kinds_of) -> str:
-    names = [tail(name) for name in code.base_names(cls)]
+def _classify_loading(cls: Cls, code: FlowCode, kinds_of) -> str:
+    names = [get_tail(name) for name in code.list_base_names(cls)]
     if "Nodelet" in names or any(name.endswith("Nodelet") for name in names):
         return "nodelet"
     if "node" in kinds_of(cls):

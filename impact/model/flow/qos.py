@@ -6,7 +6,7 @@ import re
 
 from ...facts.flow import FlowExpr
 from .calls import Calls, FrameworkCall
-from .code import Fn, is_number, tail
+from .code import Fn, get_tail, is_number
 from .graph import Qos
 from .values import FlowValues
 
@@ -53,145 +53,145 @@ _UNITS = {
 }  # fmt: skip
 
 
-def qos_of(calls: Calls, values: FlowValues, use: FrameworkCall) -> Qos | None:
+def find_qos(calls: Calls, values: FlowValues, use: FrameworkCall) -> Qos | None:
     """The quality of service that a use asks for; None where its framework has none or it gives none.
 
     A queue of ROS 1 is its depth. What is not told is empty, so that nothing is judged by it.
     """
-    from .endpoints import shown
+    from .endpoints import unparse
 
     if use.row.framework in ("roscpp", "rospy", "image_transport") and use.row.queue and not use.row.qos:
-        value = calls.argument(use, use.row.queue)
-        latch = calls.argument(use, use.row.latch) if use.row.latch else None
-        depth = _number(value, use.fn, values)
+        value = calls.find_argument(use, use.row.queue)
+        latch = calls.find_argument(use, use.row.latch) if use.row.latch else None
+        depth = _evaluate_number(value, use.fn, values)
         latched = "transient_local" if latch is not None and latch.text in ("true", "True") else ""
-        return Qos(durability=latched, depth=depth, written=shown(value)) if value is not None or latched else None
-    value = calls.argument(use, use.row.qos) if use.row.qos else None
+        return Qos(durability=latched, depth=depth, written=unparse(value)) if value is not None or latched else None
+    value = calls.find_argument(use, use.row.qos) if use.row.qos else None
     if value is None:
         return None
-    found = _of(value, use.fn, calls, values, 0)
-    return Qos(**{**_fields(found), "written": shown(value)})
+    found = _evaluate(value, use.fn, calls, values, 0)
+    return Qos(**{**_get_fields(found), "written": unparse(value)})
 
 
-def _fields(qos: Qos) -> dict:
+def _get_fields(qos: Qos) -> dict:
     return {name: getattr(qos, name) for name in qos.__struct_fields__}
 
 
-def _number(value: FlowExpr | None, fn: Fn, values: FlowValues) -> int:
+def _evaluate_number(value: FlowExpr | None, fn: Fn, values: FlowValues) -> int:
     if value is None:
         return -1
-    text = values.of(value, fn)[0].text
+    text = values.evaluate(value, fn)[0].text
     return int(text) if text and is_number(text) else -1
 
 
-def _of(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> Qos:
+def _evaluate(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> Qos:
     if depth > 6:
         return Qos()
     if value.kind == "number":
         return Qos("reliable", "volatile", "keep_last", int(value.text)) if is_number(value.text) else Qos()
     if value.kind in ("call", "make"):
-        return _built(value, fn, calls, values, depth)
+        return _evaluate_built(value, fn, calls, values, depth)
     if value.kind == "name":
-        known = _PROFILES.get(tail(value.text.removesuffix(".value")))
+        known = _PROFILES.get(get_tail(value.text.removesuffix(".value")))
         if known is not None:
             return known
-        variable = calls.code.identity(value.text, fn)
+        variable = calls.code.identify(value.text, fn)
         found = [
-            (_of(each.value, writer, calls, values, depth + 1), writer)
-            for writer, each in calls.code.writes(variable)
+            (_evaluate(each.value, writer, calls, values, depth + 1), writer)
+            for writer, each in calls.code.list_writes(variable)
             if each.operator == "="
         ]
         found += [
-            (_of(given, holder, calls, values, depth + 1), holder)
-            for given, holder in calls.code.declared_values(variable, fn)
+            (_evaluate(given, holder, calls, values, depth + 1), holder)
+            for given, holder in calls.code.list_declared_values(variable, fn)
         ]
         if found:
-            return _set_later(_common([qos for qos, _ in found]), value.text, found[0][1], values)
-        text = values.of(value, fn)[0].text
+            return _set_later(_merge_common([qos for qos, _ in found]), value.text, found[0][1], values)
+        text = values.evaluate(value, fn)[0].text
         if text and is_number(text):
             return Qos("reliable", "volatile", "keep_last", int(text))
     if value.kind == "list" and value.parts:
-        return _of(value.parts[0], fn, calls, values, depth + 1)
+        return _evaluate(value.parts[0], fn, calls, values, depth + 1)
     return Qos()
 
 
-def _common(found: list[Qos]) -> Qos:
+def _merge_common(found: list[Qos]) -> Qos:
     """What several qualities agree on: code may choose any of them."""
-    first = _fields(found[0])
-    nothing = _fields(Qos())
+    first = _get_fields(found[0])
+    nothing = _get_fields(Qos())
     for other in found[1:]:
-        fields = _fields(other)
+        fields = _get_fields(other)
         first = {name: value if fields[name] == value else nothing[name] for name, value in first.items()}
     return Qos(**first)
 
 
-def _built(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> Qos:
+def _evaluate_built(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> Qos:
     """Profiles with settings behind them: `rclcpp::QoS(1).transient_local().reliable()`, `QoSProfile(depth=1, ...)`."""
-    links = _links(value, fn)
+    links = _split_chain(value, fn)
     names = [name for name, _ in links]
     base = next((_PROFILES[name] for name in names if name in _PROFILES), None)
-    fields = _fields(base) if base is not None else _fields(Qos())
+    fields = _get_fields(base) if base is not None else _get_fields(Qos())
     if names[-1] == "from_rmw" and value.parts:
-        return _of(value.parts[0], fn, calls, values, depth + 1)
+        return _evaluate(value.parts[0], fn, calls, values, depth + 1)
     if base is None and value.kind == "call":
         variable = value.text.split(".")[0]
         found = [
-            _of(each.value, writer, calls, values, depth + 1)
-            for writer, each in calls.code.writes(calls.code.identity(variable, fn))
+            _evaluate(each.value, writer, calls, values, depth + 1)
+            for writer, each in calls.code.list_writes(calls.code.identify(variable, fn))
         ]
         if not found and len(links) == 1:
             found = [
-                _of(each.value, target, calls, values, depth + 1)
-                for target in calls.code.targets(value.text, fn)
+                _evaluate(each.value, target, calls, values, depth + 1)
+                for target in calls.code.list_targets(value.text, fn)
                 for each in target.facts.assignments
                 if each.operator == "return"
             ]
-        fields = _fields(_common(found)) if found else fields
+        fields = _get_fields(_merge_common(found)) if found else fields
     positional = [part for part in links[0][1] or () if part.kind != "keyword"]
     if positional and names[0] in ("QoS", "KeepLast", "keep_last", "QoSProfile", "SensorDataQoS"):
-        _made(positional[0], fields, fn, calls, values, depth)
+        _apply_constructor(positional[0], fields, fn, calls, values, depth)
     for place, (name, given) in enumerate(links):
         if name in _SETTINGS:
             field, setting = _SETTINGS[name]
             fields[field] = setting
             if place and name == "keep_last":
-                fields["depth"] = _number(given[0], fn, values) if given else -1
+                fields["depth"] = _evaluate_number(given[0], fn, values) if given else -1
         elif place and name in _TAKING:
             _set(_TAKING[name], given[0] if given else None, fields, fn, values)
     for part in value.parts:
         if part.kind == "keyword" and part.parts:
             if part.text == "depth":
-                fields["depth"] = _number(part.parts[0], fn, values)
+                fields["depth"] = _evaluate_number(part.parts[0], fn, values)
             elif part.text in _TAKING:
                 _set(_TAKING[part.text], part.parts[0], fields, fn, values)
     fields["written"] = ""
     return Qos(**fields)
 
 
-def _made(first: FlowExpr, fields: dict, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> None:
+def _apply_constructor(first: FlowExpr, fields: dict, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> None:
     """What a profile's constructor is given: a depth, a history, or another profile."""
-    if first.kind in ("call", "make") and tail(first.text) in ("KeepLast", "KeepAll"):
-        fields["history"] = "keep_all" if tail(first.text) == "KeepAll" else "keep_last"
-        fields["depth"] = _number(first.parts[0], fn, values) if first.parts else -1
+    if first.kind in ("call", "make") and get_tail(first.text) in ("KeepLast", "KeepAll"):
+        fields["history"] = "keep_all" if get_tail(first.text) == "KeepAll" else "keep_last"
+        fields["depth"] = _evaluate_number(first.parts[0], fn, values) if first.parts else -1
         return
-    other = _of(first, fn, calls, values, depth + 1) if first.kind != "number" else Qos()
+    other = _evaluate(first, fn, calls, values, depth + 1) if first.kind != "number" else Qos()
     if other != Qos():
-        fields.update(_fields(other))
+        fields.update(_get_fields(other))
     elif first.kind in ("call", "make"):
-        fields.update(_fields(Qos()))  # of what is not known
+        fields.update(_get_fields(Qos()))  # of what is not known
     else:
-        fields["depth"] = _number(first, fn, values)
+        fields["depth"] = _evaluate_number(first, fn, values)
 
 
-def _links(value: FlowExpr, fn: Fn) -> list[tuple[str, tuple[FlowExpr, ...] | None]]:
+def _split_chain(value: FlowExpr, fn: Fn) -> list[tuple[str, tuple[FlowExpr, ...] | None]]:
     """The calls of a chain, the first one first, with their arguments; None for those that are not known."""
     if value.receiver is not None:
-        return [*_links(value.receiver, fn), (tail(value.text), value.parts)]
+        return [*_split_chain(value.receiver, fn), (get_tail(value.text), value.parts)]
     names = value.text.split("().")
-    return [(tail(name), _arguments_of(value, names, place, fn)) for place, name in enumerate(names)]
+    return [(get_tail(name), _find_link_arguments(value, names, place, fn)) for place, name in enumerate(names)]
 
 
-def _arguments_of(value: FlowExpr, links: list[str], place: int, fn: Fn) -> tuple[FlowExpr, ...] | None:
+def _find_link_arguments(value: FlowExpr, links: list[str], place: int, fn: Fn) -> tuple[FlowExpr, ...] | None:
     """The arguments of one call of a chain; None where they are not told apart from those of a chain like it."""
     if place == len(links) - 1:
         return value.parts
@@ -203,25 +203,25 @@ def _arguments_of(value: FlowExpr, links: list[str], place: int, fn: Fn) -> tupl
 def _set(field: str, value: FlowExpr | None, fields: dict, fn: Fn, values: FlowValues) -> None:
     """Gives a setting the value of an expression; it is not told where that is not known."""
     if field in ("deadline", "lease"):
-        fields[field] = seconds(value, fn, values) if value is not None else None
+        fields[field] = parse_seconds(value, fn, values) if value is not None else None
         return
-    words = tail(value.text).upper().replace("_", "") if value is not None and value.kind == "name" else ""
+    words = get_tail(value.text).upper().replace("_", "") if value is not None and value.kind == "name" else ""
     fields[field] = next((setting for word, setting in _WORDS[field] if words.endswith(word)), "")
 
 
-def seconds(value: FlowExpr, fn: Fn, values: FlowValues) -> float | None:
+def parse_seconds(value: FlowExpr, fn: Fn, values: FlowValues) -> float | None:
     """A duration of rclcpp, rclpy or std::chrono in seconds; None for what is not written as numbers."""
     if value.kind == "other":
         literal = _LITERAL.fullmatch(value.text)
         return float(literal[1]) * _UNITS[literal[2]] if literal else None
     if value.kind not in ("call", "make"):
         return None
-    name = tail(value.text)
+    name = get_tail(value.text)
     found = []
     for place, part in enumerate(value.parts):
         inner = part.parts[0] if part.kind == "keyword" and part.parts else part
         if inner.kind != "number":
-            return seconds(inner, fn, values) if len(value.parts) == 1 and name in ("Duration", "QoS") else None
+            return parse_seconds(inner, fn, values) if len(value.parts) == 1 and name in ("Duration", "QoS") else None
         word = part.text if part.kind == "keyword" else name if len(value.parts) == 1 else ("s", "ns")[min(place, 1)]
         try:
             found.append(float(inner.text.replace("'", "").rstrip("fFuUlL")) * _UNITS[word])
@@ -233,8 +233,8 @@ def seconds(value: FlowExpr, fn: Fn, values: FlowValues) -> float | None:
 def _set_later(found: Qos, name: str, fn: Fn, values: FlowValues) -> Qos:
     """Settings that follow the making: `qos.best_effort();`, `qos.reliability = ...`. What is set under a condition
     only is not told."""
-    fields = _fields(found)
-    nothing = _fields(Qos())
+    fields = _get_fields(found)
+    nothing = _get_fields(Qos())
     for call in fn.facts.calls:
         if not call.callee.startswith(name + "."):
             continue
@@ -250,7 +250,7 @@ def _set_later(found: Qos, name: str, fn: Fn, values: FlowValues) -> Qos:
         if call.guard >= 0:
             fields[field] = nothing[field]
     for each in fn.facts.assignments:
-        field = _TAKING.get(tail(each.target), "") if each.target.startswith(name + ".") else ""
+        field = _TAKING.get(get_tail(each.target), "") if each.target.startswith(name + ".") else ""
         if field:
             _set(field, each.value, fields, fn, values)
             if each.guard >= 0:

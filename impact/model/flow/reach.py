@@ -48,15 +48,16 @@ class DownstreamSearch:
             if endpoint.role in ("client", "action client"):
                 self._calls.setdefault(endpoint.node, []).append(endpoint)
 
-    def from_sent(self, sent: Iterable[tuple[str, str]], node: str = "") -> list[ReachedNode]:
+    def find_downstream(self, sent: Iterable[tuple[str, str]], node: str = "") -> list[ReachedNode]:
         """Nodes downstream of some topics, services and actions (name, role of who sends), nearest first. node: who
         sends them, which is left out."""
-        first = [step for topic, role in sent for step in self._next(topic, role)]
+        first = [step for topic, role in sent for step in self._list_next(topic, role)]
         return [reached for reached in self._walk(first) if reached.node != node]
 
-    def sent_on(self, node: str, path: str, line: int, stored: bool) -> list[tuple[str, str]]:
-        """What a node may send because of a subscriber, server or timer that is made at a place; as from_sent() takes
-        it. It is what the callback publishes; where that is nothing, and with stored, what timers and loops publish."""
+    def list_sent_on(self, node: str, path: str, line: int, stored: bool) -> list[tuple[str, str]]:
+        """What a node may send because of a subscriber, server or timer that is made at a place, given as to
+        find_downstream(). It is what the callback publishes; where that is nothing, and with stored, what timers and
+        loops publish."""
         own, others = [], []
         for publish in self._publishes.get(node, ()):
             if publish.topic:
@@ -76,18 +77,18 @@ class DownstreamSearch:
             if last.node in found:
                 continue
             found[last.node] = ReachedNode(last.node, steps)
-            for topic, role in self._sent(last.node, last):
-                queue.extend((*steps, step) for step in self._next(topic, role) if step.node not in found)
+            for topic, role in self._list_sent(last.node, last):
+                queue.extend((*steps, step) for step in self._list_next(topic, role) if step.node not in found)
         return list(found.values())
 
-    def _next(self, topic: str, role: str) -> Iterator[Step]:
+    def _list_next(self, topic: str, role: str) -> Iterator[Step]:
         if topic in EVERYWHERE:
             return
         receiver = _SENDS[role]
         for endpoint in self._receivers.get((receiver, topic), ()):
             yield Step(_KINDS[receiver], topic, endpoint.node, endpoint.path, endpoint.line)
 
-    def _sent(self, node: str, came: Step) -> Iterator[tuple[str, str]]:
+    def _list_sent(self, node: str, came: Step) -> Iterator[tuple[str, str]]:
         """What a node sends on: what may be published because of what came in.
 
         A publish statement that a timer or loop triggers may send what a callback has stored, so it counts too; one

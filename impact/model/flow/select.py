@@ -31,7 +31,7 @@ class NothingSelected(UserError, ValueError):
     """No node or name fits; the text says which, and names like it."""
 
 
-def selected(
+def select_graph(
     graph: Graph, *, nodes: Sequence[str] = (), topics: Sequence[str] = (), packages: Sequence[str] = (),
     around: str = "", hops: int = 2, everything: bool = False,
 ) -> Selection:  # fmt: skip
@@ -47,26 +47,26 @@ def selected(
     if packages:
         kept_nodes &= {node.id for node in graph.nodes if _fits(node.package, packages, ("",))}
         if not kept_nodes:
-            raise NothingSelected(_unknown("package with nodes", packages, [node.package for node in graph.nodes]))
+            raise NothingSelected(_explain("package with nodes", packages, [node.package for node in graph.nodes]))
     if nodes:
-        kept_nodes &= _nodes(graph, nodes)
+        kept_nodes &= _select_nodes(graph, nodes)
     if topics:
         fitting = {name for name in names if name and _fits(name, topics, ("", "/"))}
         if not fitting:
-            raise NothingSelected(_unknown("topic, service or action", topics, names))
+            raise NothingSelected(_explain("topic, service or action", topics, names))
         kept_names &= fitting
-        kept_nodes &= _using(graph, fitting)
+        kept_nodes &= _select_users(graph, fitting)
     if around:
-        near_nodes, near_names = _near(graph, around, hops)
+        near_nodes, near_names = _find_near(graph, around, hops)
         kept_nodes &= near_nodes
         kept_names &= near_names
     if asked and not topics and not around:
         # Whom a node talks to belongs to it.
         kept_names = {e.topic for e in graph.endpoints if e.node in kept_nodes and e.topic}
         if nodes:
-            kept_nodes = kept_nodes | _using(graph, {n for n in kept_names if not _fits(n, HIDDEN, ("",))})
+            kept_nodes = kept_nodes | _select_users(graph, {n for n in kept_names if not _fits(n, HIDDEN, ("",))})
     if not kept_nodes and asked:
-        raise NothingSelected(_unknown("node", (*nodes, *packages), [node.id for node in graph.nodes]))
+        raise NothingSelected(_explain("node", (*nodes, *packages), [node.id for node in graph.nodes]))
     hidden = set() if everything or topics else {name for name in kept_names if _fits(name, HIDDEN, ("",))}
     if around:
         hidden -= {name for name in hidden if _fits(name, (around,), ("", "/"))}
@@ -74,10 +74,10 @@ def selected(
     if not asked:
         kept_nodes |= {""}
         kept_names |= {""}
-    return Selection(part_of(graph, kept_nodes, kept_names), len(hidden), asked)
+    return Selection(extract_part(graph, kept_nodes, kept_names), len(hidden), asked)
 
 
-def part_of(graph: Graph, nodes: Collection[str], names: Collection[str]) -> Graph:
+def extract_part(graph: Graph, nodes: Collection[str], names: Collection[str]) -> Graph:
     """What a graph has of some nodes, by their ids, and of some names."""
     return structs.replace(
         graph,
@@ -93,29 +93,31 @@ def _fits(name: str, patterns: Collection[str], prefixes: Sequence[str]) -> bool
     return any(fnmatchcase(name, prefix + pattern) for pattern in patterns for prefix in prefixes)
 
 
-def _called(node: Node) -> tuple[str, ...]:
+def _get_names(node: Node) -> tuple[str, ...]:
     return (node.id, node.name, node.name.lstrip("/"), node.name.rpartition("/")[2], node.executable, node.plugin)
 
 
-def _nodes(graph: Graph, patterns: Sequence[str]) -> set[str]:
-    found = {node.id for node in graph.nodes if any(name and _fits(name, patterns, ("",)) for name in _called(node))}
+def _select_nodes(graph: Graph, patterns: Sequence[str]) -> set[str]:
+    found = {node.id for node in graph.nodes if any(name and _fits(name, patterns, ("",)) for name in _get_names(node))}
     if not found:
-        raise NothingSelected(_unknown("node", patterns, [node.id for node in graph.nodes]))
+        raise NothingSelected(_explain("node", patterns, [node.id for node in graph.nodes]))
     return found
 
 
-def _using(graph: Graph, names: Collection[str]) -> set[str]:
+def _select_users(graph: Graph, names: Collection[str]) -> set[str]:
     return {endpoint.node for endpoint in graph.endpoints if endpoint.topic in names}
 
 
-def _near(graph: Graph, around: str, hops: int) -> tuple[set[str], set[str]]:
+def _find_near(graph: Graph, around: str, hops: int) -> tuple[set[str], set[str]]:
     """Nodes and names within some steps of a node or a name."""
-    begun = {node.id for node in graph.nodes if any(name and _fits(name, (around,), ("",)) for name in _called(node))}
+    begun = {
+        node.id for node in graph.nodes if any(name and _fits(name, (around,), ("",)) for name in _get_names(node))
+    }
     names = {e.topic for e in graph.endpoints if e.topic and _fits(e.topic, (around,), ("", "/"))}
     if not begun and not names:
         known = [node.id for node in graph.nodes] + [e.topic for e in graph.endpoints]
-        raise NothingSelected(_unknown("node or topic", (around,), known))
-    reached = begun | _using(graph, names)
+        raise NothingSelected(_explain("node or topic", (around,), known))
+    reached = begun | _select_users(graph, names)
     of_node: dict[str, set[str]] = {}
     of_name: dict[str, set[str]] = {}
     for endpoint in graph.endpoints:
@@ -131,7 +133,7 @@ def _near(graph: Graph, around: str, hops: int) -> tuple[set[str], set[str]]:
     return reached, names
 
 
-def _unknown(what: str, asked: Sequence[str], known: Collection[str]) -> str:
+def _explain(what: str, asked: Sequence[str], known: Collection[str]) -> str:
     from difflib import get_close_matches
 
     wanted = ", ".join(asked)
@@ -140,16 +142,16 @@ def _unknown(what: str, asked: Sequence[str], known: Collection[str]) -> str:
     return f"`{wanted}`: no {what} of this name{near}"
 
 
-def endpoints_of(graph: Graph) -> dict[tuple[str, str], list[Endpoint]]:
+def group_endpoints(graph: Graph) -> dict[tuple[str, str], list[Endpoint]]:
     """Endpoints by kind (`topic`, `service`, `action`) and name, sorted; those without a name are left out."""
     found: dict[tuple[str, str], list[Endpoint]] = {}
     for endpoint in graph.endpoints:
         if endpoint.topic:
-            found.setdefault((kind_of(endpoint), endpoint.topic), []).append(endpoint)
+            found.setdefault((get_kind(endpoint), endpoint.topic), []).append(endpoint)
     return dict(sorted(found.items()))
 
 
-def kind_of(endpoint: Endpoint) -> str:
+def get_kind(endpoint: Endpoint) -> str:
     """`topic`, `service` or `action`."""
     role = endpoint.role
     return "action" if role.startswith("action") else "topic" if role in ("publisher", "subscriber") else "service"

@@ -10,7 +10,7 @@ from ...facts.launch.parameter_files import ParameterFile
 from ..launch.follow import follow
 from ..launch.result import Launched, Remap, Started
 from ..workspace import Workspace
-from .names import RemappingRule, ros1_remapped, ros2_remapped
+from .names import RemappingRule, remap_ros1_name, remap_ros2_name
 
 
 class InWorkspace:
@@ -23,7 +23,7 @@ class InWorkspace:
     def __init__(self, workspace: Workspace):
         self.workspace = workspace
 
-    def place(self, package: str, path: str) -> str:
+    def find_workspace_path(self, package: str, path: str) -> str:
         """The workspace path of an installed file, empty for what is not there."""
         owner = self.workspace.packages.get(package)
         if owner is None:
@@ -41,22 +41,22 @@ class InWorkspace:
         found = [file for file in owner.files if file.endswith(f"/{path}")]
         return found[0] if len(found) == 1 else ""
 
-    def launch(self, package: str, path: str) -> LaunchFile | None:
+    def find_launch_file(self, package: str, path: str) -> LaunchFile | None:
         """The facts of a launch file; None for what is not there or is no launch file by its name."""
-        place = self.place(package, path)
-        kind = launch_kind(place)
-        return self._facts(place, f"flow_{kind}") if place and kind else None
+        place = self.find_workspace_path(package, path)
+        kind = classify_launch_file(place)
+        return self._get_facts(place, f"flow_{kind}") if place and kind else None
 
-    def parameters(self, package: str, path: str) -> ParameterFile | None:
+    def find_parameter_file(self, package: str, path: str) -> ParameterFile | None:
         """The facts of a parameter file; None for what is not there."""
-        place = self.place(package, path)
-        return self._facts(place, "flow_parameters") if place else None
+        place = self.find_workspace_path(package, path)
+        return self._get_facts(place, "flow_parameters") if place else None
 
-    def _facts(self, place: str, kind: str) -> Any:
+    def _get_facts(self, place: str, kind: str) -> Any:
         return self.workspace.gathered.look((place,), kind).get(place)
 
 
-def launch_kind(path: str) -> str:
+def classify_launch_file(path: str) -> str:
     """The kind of launch file by a path's name, empty for none."""
     name = path.rpartition("/")[2].lower()
     if name.endswith(".py"):
@@ -66,9 +66,9 @@ def launch_kind(path: str) -> str:
     return "launch_xml" if name.endswith((".launch", ".xml", ".test")) else ""
 
 
-def launched(workspace: Workspace, path: str, arguments: Mapping[str, str]) -> Launched:
+def follow_workspace_launch(workspace: Workspace, path: str, arguments: Mapping[str, str]) -> Launched:
     """All that a launch file of the workspace starts. path: relative to the workspace's root."""
-    owner = workspace.discovered.owner(path)
+    owner = workspace.discovered.find_owner(path)
     package, inner = "", path
     for name, each in workspace.packages.items():
         if owner is not None and each.path == owner.path:
@@ -86,25 +86,25 @@ class Instance(NamedTuple):
     remaps: tuple[Remap, ...]
     uncertain: tuple[str, ...]
 
-    def remapped(self, name: str, ros: int, kind: str = "topic") -> str:
+    def remap_name(self, name: str, ros: int, kind: str = "topic") -> str:
         """A name as the code has it, after the remappings of this start; full."""
         pairs = [(r.old.value, r.new.value) for r in self.remaps if r.old.value is not None and r.new.value is not None]
         if ros == 1:
-            return ros1_remapped(name, self.name, pairs)
+            return remap_ros1_name(name, self.name, pairs)
         namespace, _, own = self.name.rpartition("/")
         rules = []
         for old, new in pairs:
             node, colon, match = old.partition(":")
             rules.append(RemappingRule(match if colon else old, new, node if colon else ""))
-        return ros2_remapped(name, own, namespace or "/", rules, kind)
+        return remap_ros2_name(name, own, namespace or "/", rules, kind)
 
 
-def instances(all_started: Launched, own_name: str, started: Started) -> Instance:
+def make_instance(all_started: Launched, own_name: str, started: Started) -> Instance:
     """A start of a node whose code calls itself own_name (without a namespace)."""
     name = started.name.value or own_name
     namespace = started.namespace.value or "/"
     full = f"{namespace.rstrip('/')}/{name}"
-    values = {key: setting.text.value for key, setting in all_started.values(started, full).items()}
+    values = {key: setting.text.value for key, setting in all_started.collect_parameters(started, full).items()}
     settings = {key: value for key, value in values.items() if value is not None}
     uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
     return Instance(started, full, settings, started.remaps, uncertain)

@@ -11,8 +11,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ...facts.cpp.names import split_at_commas
-from .code import Cls, CodeFile, FlowCode, Fn, made_in, tail
-from .types import parsed
+from .code import Cls, CodeFile, FlowCode, Fn, get_tail, list_made
+from .types import parse_flow_type
 
 _DEEPEST = 4
 
@@ -36,29 +36,29 @@ class Templates:
 
     def has(self, name: str, fn: Fn) -> bool:
         """Whether a name is, in a function, the parameter of a template around it."""
-        return name.isidentifier() and self._place(name, fn) is not None
+        return name.isidentifier() and self._find_parameter(name, fn) is not None
 
-    def given(self, name: str, fn: Fn, depth: int = 0) -> Iterator[TemplateArgument]:
+    def list_given(self, name: str, fn: Fn, depth: int = 0) -> Iterator[TemplateArgument]:
         """What is given for the parameter of a template that a name is in a function."""
-        place = self._place(name, fn)
+        place = self._find_parameter(name, fn)
         if place is None or depth > _DEEPEST:
             return
         holder, number = place
-        found = self._of_callers(holder, number) if isinstance(holder, Fn) else self._of_class(holder, number)
+        found = self._read_callers(holder, number) if isinstance(holder, Fn) else self._read_class(holder, number)
         for one, around in found:
-            inner = parsed(one.text).name
+            inner = parse_flow_type(one.text).name
             if around is not None and self.has(inner, around):
-                yield from self.given(inner, around, depth + 1)
-            elif around is None and (cls := self._class(one)) is not None and inner in cls.facts.types:
-                for outer, _ in self._of_class(cls, cls.facts.types.index(inner), depth + 1):
+                yield from self.list_given(inner, around, depth + 1)
+            elif around is None and (cls := self._find_class(one)) is not None and inner in cls.facts.types:
+                for outer, _ in self._read_class(cls, cls.facts.types.index(inner), depth + 1):
                     yield outer
             else:
                 yield one
 
-    def _place(self, name: str, fn: Fn) -> tuple[Cls | Fn, int] | None:
+    def _find_parameter(self, name: str, fn: Fn) -> tuple[Cls | Fn, int] | None:
         """The template whose parameter a name is, and the number of the parameter."""
-        for one in self.code.chain(fn):
-            owner = self.code.owner_of(one)
+        for one in self.code.list_enclosing_chain(fn):
+            owner = self.code.find_owner(one)
             types = owner.facts.types if owner is not None else ()
             if owner is not None and name in types:
                 return owner, types.index(name)
@@ -69,35 +69,35 @@ class Templates:
                 return (owner, number) if outside and owner is not None else (one, number)
         return None
 
-    def _of_callers(self, fn: Fn, number: int) -> Iterator[tuple[TemplateArgument, Fn | None]]:
+    def _read_callers(self, fn: Fn, number: int) -> Iterator[tuple[TemplateArgument, Fn | None]]:
         for caller, call in self.code.callers.get(fn, ()):
             types = split_at_commas(call.types) if call.types else []
             if number < len(types):
                 yield TemplateArgument(types[number], caller.source, caller.scope, "", caller), caller
 
-    def _of_class(self, cls: Cls, number: int, depth: int = 0) -> Iterator[tuple[TemplateArgument, Fn | None]]:
-        for arguments, given, around in self._instances.get(tail(cls.name), ()) if depth <= _DEEPEST else ():
-            if number < len(arguments) and self.code.class_of(given.text, given.source, given.scope) is cls:
+    def _read_class(self, cls: Cls, number: int, depth: int = 0) -> Iterator[tuple[TemplateArgument, Fn | None]]:
+        for arguments, given, around in self._instances.get(get_tail(cls.name), ()) if depth <= _DEEPEST else ():
+            if number < len(arguments) and self.code.find_class(given.text, given.source, given.scope) is cls:
                 yield given._replace(text=arguments[number]), around
 
-    def _class(self, given: TemplateArgument) -> Cls | None:
-        return self.code.class_of(given.cls, given.source) if given.cls else None
+    def _find_class(self, given: TemplateArgument) -> Cls | None:
+        return self.code.find_class(given.cls, given.source) if given.cls else None
 
     @cached_property
     def _instances(self) -> dict[str, list[tuple[tuple[str, ...], TemplateArgument, Fn | None]]]:
         """Uses of class templates by the last part of their name: arguments, the name with who uses it, and the
         function it stands in."""
         found: dict[str, list[tuple[tuple[str, ...], TemplateArgument, Fn | None]]] = {}
-        templates = {tail(c.name) for classes in self.code.classes.values() for c in classes if c.facts.types}
+        templates = {get_tail(c.name) for classes in self.code.classes.values() for c in classes if c.facts.types}
         if not templates:
             return found
 
         def note(text: str, source: CodeFile, scope: str, cls: str = "", fn: Fn | None = None) -> None:
             if "<" in text:
-                kind = parsed(text)
-                if kind.arguments and tail(kind.name) in templates:
+                kind = parse_flow_type(text)
+                if kind.arguments and get_tail(kind.name) in templates:
                     given = TemplateArgument(kind.name, source, scope, cls, fn)
-                    found.setdefault(tail(kind.name), []).append((kind.arguments, given, fn))
+                    found.setdefault(get_tail(kind.name), []).append((kind.arguments, given, fn))
 
         for source in self.code.sources:
             if source.facts.language != "cpp":
@@ -111,7 +111,7 @@ class Templates:
                 note(alias.target, source, alias.scope)
         for fn in self.code.functions:
             if fn.source.facts.language == "cpp":
-                for name, _, _ in made_in(fn, self.code):
+                for name, _, _ in list_made(fn, self.code):
                     note(name, fn.source, fn.scope, fn.facts.owner, fn)
                 for each in fn.facts.assignments:
                     note(each.type, fn.source, fn.scope, fn.facts.owner, fn)

@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import NamedTuple
 
-from ...facts.cpp.names import closing_angle, split_at_commas
+from ...facts.cpp.names import find_closing_angle, split_at_commas
 
 _QUALIFIERS = re.compile(
     r"\b(?:const|constexpr|static|mutable|volatile|inline|extern|typename|struct|class|explicit|virtual|thread_local)\b"
@@ -37,7 +37,7 @@ UNKNOWN = FlowType("")
 
 
 @lru_cache(maxsize=20_000)
-def parsed(text: str) -> FlowType:
+def parse_flow_type(text: str) -> FlowType:
     """What a type is of once qualifiers, references, smart pointers, `::SharedPtr` and containers are taken off.
 
     text: in C++ or Python. Gives UNKNOWN for `auto` and what is no type.
@@ -46,7 +46,7 @@ def parsed(text: str) -> FlowType:
     text = _SPACE.sub(" ", text).removeprefix("::")
     if not text or text in ("auto", "void", "decltype(auto)"):
         return UNKNOWN
-    head, arguments, rest = _template(text)
+    head, arguments, rest = _split_template(text)
     parts = rest.split("::") if rest else []
     if parts and parts[-1].strip() in _INNER:
         rest = "::".join(parts[:-1])
@@ -56,13 +56,13 @@ def parsed(text: str) -> FlowType:
     bare = name.rpartition("::")[2].rpartition(".")[2]
     if arguments and not rest.strip(":"):
         if bare in _POINTERS:
-            return parsed(arguments[0])
+            return parse_flow_type(arguments[0])
         if bare in _CONTAINERS:
-            return parsed(arguments[-1] if bare in ("map", "unordered_map", "pair", "Dict") else arguments[0])
+            return parse_flow_type(arguments[-1] if bare in ("map", "unordered_map", "pair", "Dict") else arguments[0])
     return FlowType(name.replace(" ", ""), arguments)
 
 
-def _template(text: str) -> tuple[str, tuple[str, ...], str]:
+def _split_template(text: str) -> tuple[str, tuple[str, ...], str]:
     """`a::b<c, d>::e` as `a::b`, (`c`, `d`), `::e`."""
     start = text.find("<")
     if start < 0:
@@ -70,7 +70,7 @@ def _template(text: str) -> tuple[str, tuple[str, ...], str]:
         if bracket > 0 and text.endswith("]"):
             return text[:bracket].strip(), tuple(split_at_commas(text[bracket + 1 : -1])), ""
         return text, (), ""
-    at = closing_angle(text, start)
+    at = find_closing_angle(text, start)
     at = len(text) if at < 0 else at
     return text[:start].strip(), tuple(split_at_commas(text[start + 1 : at])), text[at + 1 :].strip()
 
@@ -78,7 +78,7 @@ def _template(text: str) -> tuple[str, tuple[str, ...], str]:
 _HEADER = re.compile(r"(\w+)/(?:(?:msg|srv|action)/)?(\w+)\.h(?:pp)?\Z")
 
 
-def interface_of_header(header: str) -> str:
+def find_header_interface(header: str) -> str:
     """`package/Name` of the interface that a generated header is of: `sensor_msgs/Image.h`,
     `sensor_msgs/msg/camera_info.hpp`; empty for a path of another shape."""
     found = _HEADER.match(header)
@@ -94,7 +94,7 @@ _SUFFIXES = re.compile(r"(?:_<.*>|<.*>)\Z")
 _KINDS = {"msg": "", "srv": "", "action": ""}
 
 
-def interface_of(name: str, packages=None) -> str:
+def find_interface(name: str, packages=None) -> str:
     """`package/Name` of a message, service or action type, by its qualified name in C++ or Python; empty when the name
     does not tell a package.
 
@@ -102,14 +102,14 @@ def interface_of(name: str, packages=None) -> str:
     `::Request`, `::Goal` and `sensor_msgs::ImageConstPtr` are taken off. packages: whether something is a package; all
     that looks like one when left out.
     """
-    kind = parsed(name)
+    kind = parse_flow_type(name)
     parts = [part for part in _SUFFIXES.sub("", kind.name).replace("::", ".").split(".") if part]
     if len(parts) > 3 and parts[-2] == "Impl":
         # What an action sends by itself: https://design.ros2.org/articles/actions.html, "Topics".
         if parts[-1] == "GoalStatusMessage":
             return "action_msgs/GoalStatusArray"
         if parts[-1] == "FeedbackMessage":
-            action = interface_of("::".join(parts[:-2]), packages)
+            action = find_interface("::".join(parts[:-2]), packages)
             return action and f"{action}_FeedbackMessage"
     if parts and parts[-1] in ("Request", "Response", "Goal", "Result", "Feedback", "Impl", *_INNER) and len(parts) > 2:
         parts = parts[:-1]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from ...facts.flow import FlowCall, FlowExpr
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
-from .code import Fn, Variable, parameter_of, parts_of, tail
+from .code import Fn, Variable, find_parameter, get_tail, split_name
 from .graph import How
 
 NODE, NAMESPACE = "{node}", "{ns}"
@@ -71,35 +71,35 @@ class FlowValues:
         # Settings that were asked for, by name, with what they are.
         self.asked: dict[str, str | None] = {}
 
-    def under(self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None) -> FlowValues:
+    def apply_launch(self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None) -> FlowValues:
         """The same code where a launch sets parameters and gives arguments."""
-        return self._other(settings, arguments, self.way, self.within)
+        return self._make_copy(settings, arguments, self.way, self.within)
 
     def run(self, functions: Collection[Fn]) -> FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
-        return self._other(self.settings, self.arguments, self.way, functions)
+        return self._make_copy(self.settings, self.arguments, self.way, functions)
 
-    def called(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
+    def limit_to_calls(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
         """The same code as far as it is reached through some calls, by the function called."""
-        return self._other(self.settings, self.arguments, way, self.within) if way else self
+        return self._make_copy(self.settings, self.arguments, way, self.within) if way else self
 
-    def _other(self, *given) -> FlowValues:
+    def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
         for name in ("filled", "declared", "bases_made", "command_line"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other.asked = self._budget, self.asked
         return other
 
-    def of(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
+    def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
         """What an expression may be worth, each once; unknown ones last. line: of the statement it stands in."""
         most = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
         self._left = most
-        found = list(dict.fromkeys(self._of(value, fn, line, ())))
+        found = list(dict.fromkeys(self._evaluate(value, fn, line, ())))
         self._budget[0] -= most - max(self._left, 0)
         known = [one for one in found if one.text is not None]
         return known or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
 
-    def _of(self, value: FlowExpr | None, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+    def _evaluate(self, value: FlowExpr | None, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value is None:
             yield FlowValue(None, "unresolved", "no value is given")
             return
@@ -111,26 +111,26 @@ class FlowValues:
         if kind in ("text", "number"):
             yield FlowValue(value.text)
         elif kind == "name":
-            yield from self._name(value.text, fn, line, seen)
+            yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
-            yield from self._joined(value, fn, line, seen)
+            yield from self._evaluate_join(value, fn, line, seen)
         elif kind == "choice" and len(value.parts) == 3:
-            yield from self._of(value.parts[1], fn, line, seen)
-            yield from self._of(value.parts[2], fn, line, seen)
+            yield from self._evaluate(value.parts[1], fn, line, seen)
+            yield from self._evaluate(value.parts[2], fn, line, seen)
         elif kind == "call":
             yield from self._call(value, fn, line, seen)
         elif kind in ("make", "keyword", "list") and len(value.parts) == 1:
-            yield from self._of(value.parts[0], fn, line, seen)
+            yield from self._evaluate(value.parts[0], fn, line, seen)
         elif kind == "make" and not value.parts:
             return  # made empty, and written later
         elif kind == "index" and value.parts:
-            yield from self._element(value, fn, line, seen)
+            yield from self._evaluate_element(value, fn, line, seen)
         else:
             what = value.text or kind
             yield FlowValue(None, "unresolved", f"`{what[:60]}` is not followed")
 
-    def _joined(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
-        pieces = [_first(self._of(part, fn, line, seen)) for part in value.parts]
+    def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
         for row in islice(product(*pieces), _MOST):
             unknown = next((one for one in row if one.text is None), None)
             if unknown is not None:
@@ -150,166 +150,166 @@ class FlowValues:
         """What of the code is the command line."""
         return CommandLine(self.code)
 
-    def _element(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+    def _evaluate_element(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         container, index = value.parts[0], value.parts[-1]
-        places = self.command_line.places(container, index, fn) if len(value.parts) == 2 else None
+        places = self.command_line.find_places(container, index, fn) if len(value.parts) == 2 else None
         if places is not None:
             if self.arguments is None:
                 yield FlowValue(None, "unresolved", "an argument of the command line")
             else:
                 for place in range(max(places.start, 1), min(places.stop, len(self.arguments) + 1)):
                     yield FlowValue(self.arguments[place - 1], "given")
-        elif container.kind == "call" and tail(container.text) in _TELLS_TOPIC and container.parts:
-            yield from self._of(container.parts[0], fn, line, seen)
+        elif container.kind == "call" and get_tail(container.text) in _TELLS_TOPIC and container.parts:
+            yield from self._evaluate(container.parts[0], fn, line, seen)
         else:
-            yield from self._elements(container, fn, line, seen)
+            yield from self._evaluate_elements(container, fn, line, seen)
 
-    def rows(self, value: FlowExpr, fn: Fn, depth: int = 0) -> list[FlowExpr]:
+    def list_rows(self, value: FlowExpr, fn: Fn, depth: int = 0) -> list[FlowExpr]:
         """The lists that a list of lists holds where it is written; empty where it is none, or not written once."""
         if value.kind == "list":
             return list(value.parts) if value.parts and all(part.kind == "list" for part in value.parts) else []
         if value.kind == "name" and depth < 4:
-            written = self.code.writes(self.code.identity(value.text, fn))
+            written = self.code.list_writes(self.code.identify(value.text, fn))
             if len(written) == 1:
-                return self.rows(written[0][1].value, written[0][0], depth + 1)
+                return self.list_rows(written[0][1].value, written[0][0], depth + 1)
         return []
 
-    def _elements(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+    def _evaluate_elements(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value.kind == "list":
             for part in value.parts:
-                yield from self._of(part, fn, line, seen)
+                yield from self._evaluate(part, fn, line, seen)
             return
         if value.kind == "name":
-            variable = self.code.identity(value.text, fn)
-            for writer, each in self.code.writes(variable):
+            variable = self.code.identify(value.text, fn)
+            for writer, each in self.code.list_writes(variable):
                 if each.value.kind == "list":
-                    yield from self._elements(each.value, writer, each.line, (*seen, variable))
+                    yield from self._evaluate_elements(each.value, writer, each.line, (*seen, variable))
                     return
             puts = {f"{value.text}.{put}" for put in _PUT}
             pushed = [call for call in fn.facts.calls if call.callee in puts]
             if pushed and variable not in seen:
                 for call in pushed:
                     for argument in call.arguments[:1]:
-                        yield from self._of(argument, fn, call.line, (*seen, variable))
+                        yield from self._evaluate(argument, fn, call.line, (*seen, variable))
                 return
         yield FlowValue(None, "unresolved", f"an element of `{value.text or value.kind}`")
 
-    def _name(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
-        parts = parts_of(path)
+    def _evaluate_name(self, path: str, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        parts = split_name(path)
         if "." in path and parts[-1] in _SAME:
-            yield from self._name(path.rpartition(".")[0], fn, line, seen)
+            yield from self._evaluate_name(path.rpartition(".")[0], fn, line, seen)
             return
         if path.endswith("()"):
-            yield from self._inner(path.removesuffix("()"), fn, line, seen)
+            yield from self._evaluate_inner(path.removesuffix("()"), fn, line, seen)
             return
-        variable = self.code.identity(path, fn)
+        variable = self.code.identify(path, fn)
         if variable in seen:
             return
-        for text, how in self.command_line.parsed(path, fn, self.arguments) if "." in path else ():
+        for text, how in self.command_line.list_parsed_texts(path, fn, self.arguments) if "." in path else ():
             yield FlowValue(text, "given" if how == "given" else "default")
             return
-        found = list(self.of_variable(variable, fn, (*seen, variable)))
+        found = list(self.evaluate_variable(variable, fn, (*seen, variable)))
         if found:
             yield from found
         else:
             yield FlowValue(None, "unresolved", f"nothing tells what `{path}` is")
 
-    def of_variable(self, variable: Variable, fn: Fn, seen: tuple = ()) -> Iterator[FlowValue]:
+    def evaluate_variable(self, variable: Variable, fn: Fn, seen: tuple = ()) -> Iterator[FlowValue]:
         """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed."""
         if variable.kind == "member":
-            for cls in self.code.classes.get(tail(variable.owner), ()):
+            for cls in self.code.classes.get(get_tail(variable.owner), ()):
                 for member in cls.facts.members:
                     if cls.name == variable.owner and member.name == variable.name and member.value is not None:
-                        holder = next(iter(self.code.functions_of_class(cls.name)), fn)
+                        holder = next(iter(self.code.list_class_functions(cls.name)), fn)
                         if holder.source.path == cls.source.path or member.value.kind == "text":
-                            yield from self._of(member.value, holder, member.line, seen)
+                            yield from self._evaluate(member.value, holder, member.line, seen)
         elif variable.kind == "global":
-            yield from self._constant(variable, fn, seen)
-        for writer, each in self.code.writes(variable):
-            if self.arguments is not None and self.command_line.excluded(writer, each.guard, len(self.arguments) + 1):
+            yield from self._evaluate_constant(variable, fn, seen)
+        for writer, each in self.code.list_writes(variable):
+            if self.arguments is not None and self.command_line.excludes(writer, each.guard, len(self.arguments) + 1):
                 continue
             if each.operator == "=":
                 if variable.kind == "member" and each.value.kind == "list" and len(each.value.parts) > 1:
                     continue
-                yield from self._of(each.value, writer, each.line, seen)
+                yield from self._evaluate(each.value, writer, each.line, seen)
             elif each.operator == "for":
-                yield from self._elements(each.value, writer, each.line, seen)
+                yield from self._evaluate_elements(each.value, writer, each.line, seen)
             elif each.operator == "+=":
                 yield FlowValue(None, "unresolved", f"`{variable.name}` is put together in steps")
         for use in self.filled.get(variable, ()):
-            yield from self._parameter(use, seen)
-        if not self.code.writes(variable) or variable.kind == "local":
-            yield from self._by_reference(variable, seen)
+            yield from self._evaluate_parameter(use, seen)
+        if not self.code.list_writes(variable) or variable.kind == "local":
+            yield from self._evaluate_references(variable, seen)
         if variable.kind == "local":
-            for one in self.code.chain(fn):
-                place = parameter_of(one, variable.name)
+            for one in self.code.list_enclosing_chain(fn):
+                place = find_parameter(one, variable.name)
                 if place is not None:
-                    yield from self._passed(one, place[0], place[1].name, seen)
+                    yield from self._evaluate_passed(one, place[0], place[1].name, seen)
                     if place[1].default is not None:
-                        yield from self._of(place[1].default, one, one.facts.line, seen)
+                        yield from self._evaluate(place[1].default, one, one.facts.line, seen)
                     break
 
-    def _by_reference(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
+    def _evaluate_references(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
         """What functions write into a variable that is passed to them by reference."""
         if len(seen) > _FAR:
             return  # from hand to hand: a walk over everything that is passed on would not end in time
-        for caller, call, place in self.code.passed(variable):
-            for target in self.code.targets(call.callee, caller):
+        for caller, call, place in self.code.list_passed(variable):
+            for target in self.code.list_targets(call.callee, caller):
                 parameters = target.facts.parameters
                 if place < len(parameters) and "&" in parameters[place].type and "const" not in parameters[place].type:
-                    inner = self.code.identity(parameters[place].name, target)
+                    inner = self.code.identify(parameters[place].name, target)
                     if inner not in seen:
-                        yield from self.written(inner, (*seen, inner))
+                        yield from self.evaluate_writes(inner, (*seen, inner))
 
-    def written(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
+    def evaluate_writes(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
         """What is written into a variable, where it stands, or fills it from a parameter."""
-        for writer, each in self.code.writes(variable):
+        for writer, each in self.code.list_writes(variable):
             if each.operator == "=":
-                yield from self._of(each.value, writer, each.line, seen)
+                yield from self._evaluate(each.value, writer, each.line, seen)
         for use in self.filled.get(variable, ()):
-            yield from self._parameter(use, seen)
-        yield from self._by_reference(variable, seen)
+            yield from self._evaluate_parameter(use, seen)
+        yield from self._evaluate_references(variable, seen)
 
-    def _constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
+    def _evaluate_constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         name = variable.name
-        found = self.code.constants(name, fn.source)
+        found = self.code.list_constants(name, fn.source)
         for constant, source in found:
             if constant.value is not None:
-                yield from self._of(constant.value, self.code.first_in(source, fn), constant.line, seen)
+                yield from self._evaluate(constant.value, self.code.find_first(source, fn), constant.line, seen)
         if found:
             return
         if "::" in name or "." in name:
             cls, _, member = name.replace(".", "::").rpartition("::")
-            found_class = self.code.class_of(cls, fn.source, fn.scope)
+            found_class = self.code.find_class(cls, fn.source, fn.scope)
             if found_class is not None:
-                yield from self.of_variable(Variable("member", found_class.name, member), fn, seen)
+                yield from self.evaluate_variable(Variable("member", found_class.name, member), fn, seen)
 
-    def _passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[FlowValue]:
+    def _evaluate_passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[FlowValue]:
         """What callers pass for a parameter."""
         number = 0
         only = self.way.get(fn)
         for caller, call in self.code.callers.get(fn, ()):
             if (only is not None and call is not only) or not self._runs(caller):
                 continue
-            argument = _argument(call.arguments, place, name)
+            argument = _find_argument(call.arguments, place, name)
             if argument is not None:
                 number += 1
-                yield from self._of(argument, caller, call.line, seen)
-        owner = self.code.owner_of(fn)
-        is_constructor = owner is not None and tail(fn.name) in (tail(owner.name), "__init__")
+                yield from self._evaluate(argument, caller, call.line, seen)
+        owner = self.code.find_owner(fn)
+        is_constructor = owner is not None and get_tail(fn.name) in (get_tail(owner.name), "__init__")
         if is_constructor and owner is not None:
             for maker in (owner, *self.code.derived.get(owner.name, ())):
                 for caller, arguments, line in self.code.constructions.get(maker.name, ()):
-                    argument = _argument(arguments, place, name)
-                    direct = maker is owner or tail(fn.name) == "__init__"
+                    argument = _find_argument(arguments, place, name)
+                    direct = maker is owner or get_tail(fn.name) == "__init__"
                     if argument is not None and direct and self._runs(caller):
                         number += 1
-                        yield from self._of(argument, caller, line, seen)
+                        yield from self._evaluate(argument, caller, line, seen)
             for caller, arguments, line in self.bases_made.get(owner.name, ()):
-                argument = _argument(arguments, place, name)
+                argument = _find_argument(arguments, place, name)
                 if argument is not None and self._runs(caller):
                     number += 1
-                    yield from self._of(argument, caller, line, seen)
+                    yield from self._evaluate(argument, caller, line, seen)
         if not number:
             yield FlowValue(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
 
@@ -321,22 +321,22 @@ class FlowValues:
         """Constructors that initialise a base class of the code: name of the base to function, arguments and line."""
         found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
         for fn in self.code.functions:
-            owner = self.code.owner_of(fn) if fn.facts.owner else None
+            owner = self.code.find_owner(fn) if fn.facts.owner else None
             if owner is None:
                 continue
             for call in fn.facts.calls:
                 if call.callee == "super().__init__":
-                    for base in self.code.bases(owner)[1:2]:
+                    for base in self.code.list_bases(owner)[1:2]:
                         found.setdefault(base.name, []).append((fn, call.arguments, call.line))
             for each in fn.facts.assignments:
-                made = self.code.base_made(fn, each)
-                cls = self.code.class_of(made[0], fn.source, fn.scope) if made is not None else None
+                made = self.code.find_base_made(fn, each)
+                cls = self.code.find_class(made[0], fn.source, fn.scope) if made is not None else None
                 if made is not None and cls is not None:
                     found.setdefault(cls.name, []).append((fn, made[1], each.line))
         return found
 
     def _call(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
-        last = tail(value.text)
+        last = get_tail(value.text)
         head = value.text.rpartition(".")[0] if "." in value.text else ""
         if last in _NODE_NAME and not value.parts:
             yield FlowValue(NODE)
@@ -346,27 +346,27 @@ class FlowValues:
             return
         if last in _SAME and head:
             if value.receiver is not None and value.receiver.kind == "call":
-                yield from self._of(value.receiver, fn, line, seen)
+                yield from self._evaluate(value.receiver, fn, line, seen)
             elif head.endswith("()"):
-                yield from self._inner(head.removesuffix("()"), fn, line, seen)
+                yield from self._evaluate_inner(head.removesuffix("()"), fn, line, seen)
             else:
-                yield from self._name(head, fn, line, seen)
+                yield from self._evaluate_name(head, fn, line, seen)
             return
         # Options of ROS 1 are named by the name they are for.
         if (last in _OF_FIRST or (last.startswith("create") and "Options::" in value.text)) and value.parts:
-            yield from self._of(value.parts[0], fn, line, seen)
+            yield from self._evaluate(value.parts[0], fn, line, seen)
             return
         if last == "getCameraInfoTopic" and len(value.parts) == 1:
-            for one in self._of(value.parts[0], fn, line, seen):
-                yield one if one.text is None else one._replace(text=beside(one.text, "camera_info"))
+            for one in self._evaluate(value.parts[0], fn, line, seen):
+                yield one if one.text is None else one._replace(text=make_sibling(one.text, "camera_info"))
             return
         if last == "append" and len(value.parts) == 2 and "names" in value.text:
             first, second = value.parts
-            yield from self._joined(FlowExpr("join", "", (first, FlowExpr("text", "/"), second)), fn, line, seen)
+            yield from self._evaluate_join(FlowExpr("join", "", (first, FlowExpr("text", "/"), second)), fn, line, seen)
             return
-        yield from self._inner(value.text, fn, line, seen, value.parts)
+        yield from self._evaluate_inner(value.text, fn, line, seen, value.parts)
 
-    def _inner(
+    def _evaluate_inner(
         self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[FlowExpr, ...] | None = None
     ) -> Iterator[FlowValue]:
         """What a call inside an expression gives: a parameter's default, or what a function of the code returns."""
@@ -375,24 +375,27 @@ class FlowValues:
         if arguments is not None:
             near = [call for call in near if call.arguments == arguments] or near
         for call in near[:1]:
-            use = self.calls.use_of(fn, call)
+            use = self.calls.find_use(fn, call)
             if use is not None and use.row.does == "parameter":
-                yield from self._parameter(use, seen)
+                yield from self._evaluate_parameter(use, seen)
                 return
         returned = False
-        for target in self.code.targets(callee, fn):
+        for target in self.code.list_targets(callee, fn):
             if ("returns", target) in seen:
                 continue
             for each in target.facts.assignments:
                 if each.operator == "return":
                     returned = True
-                    yield from self._of(each.value, target, each.line, (*seen, ("returns", target)))
+                    yield from self._evaluate(each.value, target, each.line, (*seen, ("returns", target)))
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
 
-    def _parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
+    def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
         """The default of the parameter that a use declares or reads."""
-        names = [one.text for one in self._of(self.calls.argument(use, use.row.topic), use.fn, use.call.line, seen)]
+        names = [
+            one.text
+            for one in self._evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line, seen)
+        ]
         name = names[0] if names and names[0] is not None else ""
         setting = name.lstrip("~").lstrip("/")
         given = self.settings.get(setting) if name else None
@@ -400,10 +403,10 @@ class FlowValues:
         if given is not None:
             yield FlowValue(given, "launch", "", name)
             return
-        default = self.calls.argument(use, use.row.default) if use.row.default else None
-        target = self.calls.argument(use, use.row.variable) if use.row.variable else None
+        default = self.calls.find_argument(use, use.row.default) if use.row.default else None
+        target = self.calls.find_argument(use, use.row.variable) if use.row.variable else None
         if default is not None and not (default.kind == "name" and default == target):
-            for one in self._of(default, use.fn, use.call.line, seen):
+            for one in self._evaluate(default, use.fn, use.call.line, seen):
                 if one.text is None:
                     yield one
                 else:
@@ -414,7 +417,7 @@ class FlowValues:
         for other in self.declared.get(name, ()) if name and mark not in seen else ():
             if other.call is use.call or other.fn.source.package != use.fn.source.package:
                 continue
-            for one in self._parameter(other, (*seen, mark)):
+            for one in self._evaluate_parameter(other, (*seen, mark)):
                 if one.text is not None:
                     yielded = True
                     yield one
@@ -426,10 +429,10 @@ class FlowValues:
     def declared(self) -> dict[str, list[FrameworkCall]]:
         """Declarations of parameters and reads with a default, by their literal names."""
         found: dict[str, list[FrameworkCall]] = {}
-        for use in self.calls.doing("parameter"):
-            if self.calls.argument(use, use.row.default) is None:
+        for use in self.calls.select_uses("parameter"):
+            if self.calls.find_argument(use, use.row.default) is None:
                 continue
-            name = self.calls.argument(use, use.row.topic)
+            name = self.calls.find_argument(use, use.row.topic)
             if name is not None and name.kind == "text":
                 found.setdefault(name.text, []).append(use)
         return found
@@ -438,21 +441,21 @@ class FlowValues:
     def filled(self) -> dict[Variable, list[FrameworkCall]]:
         """Variables that a call fills with the value of a parameter."""
         found: dict[Variable, list[FrameworkCall]] = {}
-        for use in self.calls.doing("parameter"):
+        for use in self.calls.select_uses("parameter"):
             if use.row.variable:
-                target = self.calls.argument(use, use.row.variable)
+                target = self.calls.find_argument(use, use.row.variable)
                 if target is not None and target.kind == "name" and not use.call.target:
-                    found.setdefault(self.code.identity(target.text, use.fn), []).append(use)
+                    found.setdefault(self.code.identify(target.text, use.fn), []).append(use)
         return found
 
 
-def beside(topic: str, name: str) -> str:
+def make_sibling(topic: str, name: str) -> str:
     """A name in the namespace of a topic (image_transport puts camera_info beside the image)."""
     head, slash, _ = topic.rpartition("/")
     return f"{head}{slash}{name}"
 
 
-def _first(values: Iterator[FlowValue]) -> list[FlowValue]:
+def _take_first(values: Iterator[FlowValue]) -> list[FlowValue]:
     """The first different values. What comes after them is not worked out."""
     found: dict[FlowValue, None] = {}
     for value in values:
@@ -462,7 +465,7 @@ def _first(values: Iterator[FlowValue]) -> list[FlowValue]:
     return list(found)
 
 
-def _argument(arguments: tuple[FlowExpr, ...], place: int, name: str) -> FlowExpr | None:
+def _find_argument(arguments: tuple[FlowExpr, ...], place: int, name: str) -> FlowExpr | None:
     for argument in arguments:
         if argument.kind == "keyword" and argument.text == name and argument.parts:
             return argument.parts[0]

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from ....edges import processes
-from ....edges.memory import kept_with
-from ...facts.extract import ExtractedFacts, gather
+from ....edges.memory import cache_in_derived
+from ...facts.extract import ExtractedFacts, extract_all
 from ...facts.flow import FlowFile
-from ...facts.kinds import kind_of
-from ...facts.store import Store, remembered
+from ...facts.kinds import find_kind
+from ...facts.store import Store, recall
 from ...tree.paths import Tree
-from ..package import Watched, role_of_folder
+from ..package import Watched, find_folder_role
 from ..workspace import Package, Workspace, link
-from .callers import Callers, callers
+from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
-from .file_selection import code_kinds, stamp
+from .file_selection import compute_stamp, make_code_selector
 from .graph import Graph
 
 if TYPE_CHECKING:
@@ -47,12 +47,12 @@ class WorkspaceFlow:
     @cached_property
     def code(self) -> Join:
         """Its code, joined."""
-        return joined(self._workspace)
+        return join_code(self._workspace)
 
     @cached_property
     def graph(self) -> Graph:
         """The message-flow graph of its code, without a launch file."""
-        found = graph_of(self._workspace, self._store)
+        found = make_graph(self._workspace, self._store)
         if "code" in self.__dict__:
             _ = self.callers  # remembered beside the graph, so that they are not what needs the code joined anew
         return found
@@ -60,15 +60,15 @@ class WorkspaceFlow:
     @cached_property
     def callers(self) -> Callers:
         """Who calls whom in its code, and what triggers it."""
-        return remembered(self._store, "callers", _key(self._workspace), Callers, lambda: callers(self.code))
+        return recall(self._store, "callers", _make_key(self._workspace), Callers, lambda: build_callers(self.code))
 
     @cached_property
     def launches(self) -> tuple[Launch, ...]:
         """What its launch files start, see launches()."""
-        from .launches import launches
+        from .launches import list_launches
 
         with processes.meanwhile(self._prepare_graph()):
-            return launches(self._workspace, lambda: self.code, self.jobs)
+            return list_launches(self._workspace, lambda: self.code, self.jobs)
 
     def _prepare_graph(self) -> Iterator[None]:
         """The graph, which most that ask for launches ask for too, made while other processes follow them."""
@@ -78,47 +78,49 @@ class WorkspaceFlow:
             yield
 
 
-@kept_with
-def flow_of(workspace: Workspace) -> WorkspaceFlow:
+@cache_in_derived
+def get_flow(workspace: Workspace) -> WorkspaceFlow:
     """The message flow of a workspace; the same object for as long as the workspace lives."""
     return WorkspaceFlow(workspace)
 
 
-def linked(tree: Tree, store: Store, jobs: int | None = None, progress: Progress | None = None) -> Workspace:
+def link_for_flow(tree: Tree, store: Store, jobs: int | None = None, progress: Progress | None = None) -> Workspace:
     """A workspace as far as message flow needs it: its packages, their builds, and the flow facts of its code.
 
     Rules on dependencies cannot be asked of it: the facts that they need are not read. progress: as gather() has it.
     """
 
-    def of_build(path: str) -> str | None:
-        kind = kind_of(path)
+    def select_build(path: str) -> str | None:
+        kind = find_kind(path)
         return kind if kind in _BUILD else None
 
-    gathered = gather(tree, store, jobs=jobs, progress=progress, kind_of=of_build, second=code_kinds(tree))
+    gathered = extract_all(
+        tree, store, jobs=jobs, progress=progress, kind_of=select_build, second=make_code_selector(tree)
+    )
     return link(tree, gathered, store, None, Watched(), jobs)
 
 
-def facts_of(workspace: Workspace) -> ExtractedFacts:
+def get_facts(workspace: Workspace) -> ExtractedFacts:
     """The flow facts of a workspace: those gathered with it, or else read now."""
     main = workspace.gathered
     if main.second is None:
-        main.second = gather(main.tree, main.store, kind_of=code_kinds(main.tree))
+        main.second = extract_all(main.tree, main.store, kind_of=make_code_selector(main.tree))
     return main.second
 
 
-def code_of(workspace: Workspace) -> dict[str, str]:
+def list_code(workspace: Workspace) -> dict[str, str]:
     """The code of the packages, by path the package it belongs to; tests are left out."""
-    gathered = facts_of(workspace)
+    gathered = get_facts(workspace)
     found: dict[str, str] = {}
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in package.digest.files:
-            if path in gathered.kinds and role_of_folder(path[start:]) != "test":
+            if path in gathered.kinds and find_folder_role(path[start:]) != "test":
                 found[path] = package.name
     return found
 
 
-def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[BuiltPackage]:
+def list_built(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[BuiltPackage]:
     """What the build of each package makes. files: flow facts by path."""
     from .nodes import BuiltPackage
 
@@ -148,16 +150,22 @@ def built_of(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[Bu
             if target.kind == "executable" and (target.sources or target.name not in running)
         }
         yield BuiltPackage(
-            package.name, executables, libraries, components, _scripts(package, files), links, _plugins(package)
+            package.name,
+            executables,
+            libraries,
+            components,
+            _find_scripts(package, files),
+            links,
+            _collect_plugins(package),
         )
 
 
-def _plugins(package: Package) -> dict[str, str]:
+def _collect_plugins(package: Package) -> dict[str, str]:
     """Classes of a package by the names that its plugin descriptions give them."""
     return {plugin.name: plugin.type for _, plugin in package.digest.plugins if plugin.name and plugin.type}
 
 
-def _scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, str]:
+def _find_scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, str]:
     """Python programs of a package: entry points, installed programs, and files that run when they are started."""
     present = set(package.digest.files)
     found: dict[str, str] = {}
@@ -190,20 +198,20 @@ def _runs(file: FlowFile) -> bool:
     return asks or any(call.callee == "rospy.init_node" for function in top for call in function.calls)
 
 
-def joined(workspace: Workspace) -> Join:
+def join_code(workspace: Workspace) -> Join:
     """The code of a workspace, joined."""
     from .join import Join
 
-    gathered = facts_of(workspace)
-    packages = code_of(workspace)
+    gathered = get_facts(workspace)
+    packages = list_code(workspace)
     gathered.preload(packages)
-    facts = {path: gathered.facts(path).facts for path in packages}
+    facts = {path: gathered.get_facts(path).facts for path in packages}
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
     defined = DefinedInterfaces(workspace.interface_names, workspace.ros)
-    return Join(files, packages.__getitem__, built_of(workspace, files), workspace.ros, defined=defined)
+    return Join(files, packages.__getitem__, list_built(workspace, files), workspace.ros, defined=defined)
 
 
-def graph_of(
+def make_graph(
     workspace: Workspace, store: Store | None, root: str = "", rev: str = "", launch: str = "",
     arguments: Mapping[str, str] | None = None,
 ) -> Graph:  # fmt: skip
@@ -213,23 +221,23 @@ def graph_of(
     the launch file's arguments.
     """
     if launch:
-        from .started import launched
+        from .started import follow_workspace_launch
 
-        start = launched(workspace, launch, arguments or {})
-        code = flow_of(workspace).code
-        return code.graph(root, rev, _unread(code), start)
+        start = follow_workspace_launch(workspace, launch, arguments or {})
+        code = get_flow(workspace).code
+        return code.build(root, rev, _list_unread(code), start)
 
     def make() -> Graph:
-        code = flow_of(workspace).code
-        return code.graph(unread=_unread(code))
+        code = get_flow(workspace).code
+        return code.build(unread=_list_unread(code))
 
-    graph = remembered(store, "graph", _key(workspace), Graph, make)
+    graph = recall(store, "graph", _make_key(workspace), Graph, make)
     return msgspec.structs.replace(graph, root=root, rev=rev)
 
 
-def _unread(join: Join) -> list[str]:
+def _list_unread(join: Join) -> list[str]:
     return [source.path for source in join.code.sources if source.facts.unread]
 
 
-def _key(workspace: Workspace) -> bytes:
-    return stamp(workspace, facts_of(workspace))
+def _make_key(workspace: Workspace) -> bytes:
+    return compute_stamp(workspace, get_facts(workspace))

@@ -11,25 +11,25 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from ....edges.dispatch import methods_of
-from ...facts.launch.actions import Action, Value, ValuePart, literal
-from ...facts.launch.flow import substitutions
-from ...facts.launch.parameter_files import ParameterEntry, scalar
+from ....edges.dispatch import collect_methods
+from ...facts.launch.actions import Action, Value, ValuePart, make_literal
+from ...facts.launch.flow import parse_substitutions
+from ...facts.launch.parameter_files import ParameterEntry, parse_scalar
 from .result import LaunchParameter, LaunchSources, Remap, SettingFile, ShareLine, UnresolvedPart
 from .text import (
     CannotTell,
     LaunchText,
+    call_text_method,
     evaluate,
-    every,
-    flag,
-    known,
-    ros1_value,
+    format_flag,
+    join_texts,
+    make_unknown,
+    merge_groups,
+    parse_ros1_value,
+    parse_truth,
+    parse_yaml_value,
     show,
-    text_method,
-    together,
-    truth_of,
-    unknown,
-    yaml_value,
+    wrap,
 )
 
 
@@ -39,13 +39,13 @@ class ActionScope(msgspec.Struct, eq=False):
     arguments: dict[str, LaunchText]
     environment: dict[str, LaunchText]
     open: int
-    namespace: LaunchText = known("")
+    namespace: LaunchText = wrap("")
     remaps: list[Remap] = []
     settings: list[LaunchParameter | SettingFile] = []
     private: list[Action] = []
     constants: set[str] = set()
 
-    def inner(self, open_: int) -> ActionScope:
+    def make_inner(self, open_: int) -> ActionScope:
         """A copy, whose changes do not reach this one."""
         return ActionScope(
             dict(self.arguments), dict(self.environment), open_, self.namespace, list(self.remaps),
@@ -86,29 +86,29 @@ class Filling:
         self.rewrites: dict[str, Rewrite] = {}
         self.unresolved: list[UnresolvedPart] = []
 
-    def at(self, line: int) -> ShareLine:
+    def locate_line(self, line: int) -> ShareLine:
         return ShareLine(self.package, self.path, line)
 
-    def miss(self, line: int, what: str, *reasons: str) -> None:
+    def note_missed(self, line: int, what: str, *reasons: str) -> None:
         """Lists what could not be followed, once."""
-        unresolved = UnresolvedPart(self.at(line), what, reasons)
+        unresolved = UnresolvedPart(self.locate_line(line), what, reasons)
         if unresolved not in self.unresolved[-20:]:
             self.unresolved.append(unresolved)
 
     def note_unknown(self, text: LaunchText, line: int, what: str) -> LaunchText:
         """The text; where it is not known that is listed."""
         if text.value is None:
-            self.miss(line, f"{what} `{text.shown}`", *text.reasons)
+            self.note_missed(line, f"{what} `{text.shown}`", *text.reasons)
         return text
 
-    def substituted(self, entries: tuple[ParameterEntry, ...]) -> tuple[ParameterEntry, ...]:
+    def substitute_entries(self, entries: tuple[ParameterEntry, ...]) -> tuple[ParameterEntry, ...]:
         """Entries whose keys or values may hold substitutions, filled in where that can be done."""
         known = self.changed.filled.get(id(entries))
         if known is None:
             places = [at for at, entry in enumerate(entries) if "$(" in f"{entry.path}{entry.value}"]
             known = self.changed.filled[id(entries)] = entries, places, {"[]": entries}
         _, places, made = known
-        filled = [self._substituted(entries[at]) for at in places]
+        filled = [self._substitute_entry(entries[at]) for at in places]
         # Values that cannot be hashed are told apart by how they are written, and so are 1 and True.
         written = repr(filled)
         if written not in made:
@@ -118,53 +118,53 @@ class Filling:
             made[written] = tuple(changed)
         return made[written]
 
-    def _substituted(self, entry: ParameterEntry) -> ParameterEntry:
-        path = tuple(self.filled(part) if "$(" in part else part for part in entry.path)
-        return ParameterEntry(path, self.filled_value(entry.value), entry.line)
+    def _substitute_entry(self, entry: ParameterEntry) -> ParameterEntry:
+        path = tuple(self.substitute_text(part) if "$(" in part else part for part in entry.path)
+        return ParameterEntry(path, self.substitute_value(entry.value), entry.line)
 
-    def filled(self, text: str) -> str:
-        made = self.text(substitutions(text, self.generation))
+    def substitute_text(self, text: str) -> str:
+        made = self.fill(parse_substitutions(text, self.generation))
         return text if made.value is None else made.value
 
-    def filled_value(self, value: Any) -> Any:
+    def substitute_value(self, value: Any) -> Any:
         if isinstance(value, str) and "$(" in value:
-            return yaml_value(self.filled(value))
+            return parse_yaml_value(self.substitute_text(value))
         if isinstance(value, list):
-            return [self.filled_value(item) for item in value]
+            return [self.substitute_value(item) for item in value]
         if isinstance(value, dict):
-            return {self.filled(key): self.filled_value(item) for key, item in value.items()}
+            return {self.substitute_text(key): self.substitute_value(item) for key, item in value.items()}
         return value
 
-    def entries(self, file: str, line: int) -> tuple[ParameterEntry, ...] | None:
+    def read_entries(self, file: str, line: int) -> tuple[ParameterEntry, ...] | None:
         """The entries of a parameter file, changed as it is before it is read; None where it cannot be had."""
         rewrite = self.rewrites.get(file)
         if rewrite is not None:
             if rewrite.source.value is None:
-                self.miss(line, f"parameters `{rewrite.source.shown}`", *rewrite.source.reasons)
+                self.note_missed(line, f"parameters `{rewrite.source.shown}`", *rewrite.source.reasons)
                 return None
-            entries = self.entries(rewrite.source.value, line)
-            return None if entries is None else self._rewritten(entries, rewrite)
-        place = self.place(file)
+            entries = self.read_entries(rewrite.source.value, line)
+            return None if entries is None else self._rewrite_shared(entries, rewrite)
+        place = self.split_share_path(file)
         if place is None:
-            self.miss(line, f"parameters `{file}`", "the file lies in no package that is named")
+            self.note_missed(line, f"parameters `{file}`", "the file lies in no package that is named")
             return None
-        found = self.sources.parameters(*place)
+        found = self.sources.find_parameter_file(*place)
         if found is None:
-            self.miss(line, f"parameters `{file}`", "the file is not in the workspace")
+            self.note_missed(line, f"parameters `{file}`", "the file is not in the workspace")
             return None
         for problem in found.problems:
-            self.miss(line, f"parameters `{file}`, line {problem.line}", problem.message)
+            self.note_missed(line, f"parameters `{file}`, line {problem.line}", problem.message)
         return found.entries
 
-    def _rewritten(self, entries: tuple[ParameterEntry, ...], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
+    def _rewrite_shared(self, entries: tuple[ParameterEntry, ...], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
         """The same for all nodes that are given one file with one rewrite."""
         key = id(entries), rewrite
         known = self.changed.rewritten.get(key)
         if known is None:
-            known = self.changed.rewritten[key] = entries, _rewritten(entries, rewrite)
+            known = self.changed.rewritten[key] = entries, _rewrite_entries(entries, rewrite)
         return known[1]
 
-    def place(self, path: str) -> tuple[str, str] | None:
+    def split_share_path(self, path: str) -> tuple[str, str] | None:
         """Package and path in it of a file below a package's share folder."""
         m = _PLACE.match(path)
         if m is None:
@@ -172,198 +172,198 @@ class Filling:
         inner = posixpath.normpath(m[2].lstrip("/")) if m[2].strip("/") else ""
         return None if inner.startswith("..") or not inner else (m[1], inner)
 
-    def text(self, value: Value) -> LaunchText:
+    def fill(self, value: Value) -> LaunchText:
         """A value with its substitutions filled in."""
         if len(value) == 1:
-            return self.piece(value[0])
-        return together([self.piece(piece) for piece in value])
+            return self.evaluate_piece(value[0])
+        return join_texts([self.evaluate_piece(piece) for piece in value])
 
-    def piece(self, piece: ValuePart) -> LaunchText:
+    def evaluate_piece(self, piece: ValuePart) -> LaunchText:
         if piece.kind == "text":
-            return known(piece.text)
+            return wrap(piece.text)
         if piece.kind == "other":
-            return unknown(piece.text, "it is only known when it runs")
+            return make_unknown(piece.text, "it is only known when it runs")
         maker = _FILLING.get(piece.kind.replace("-", "_"))
         if maker is None or len(piece.parts) < _PARTS.get(piece.kind, 0):
-            return unknown(piece.kind, f"`{piece.kind}` is not filled in")
+            return make_unknown(piece.kind, f"`{piece.kind}` is not filled in")
         return maker(self, piece)
 
-    def named(self, piece: ValuePart) -> tuple[LaunchText, tuple[Value, ...]]:
+    def evaluate_named(self, piece: ValuePart) -> tuple[LaunchText, tuple[Value, ...]]:
         """A piece's name, and its other parts."""
         if piece.text:
-            return known(piece.text), piece.parts
-        return (self.text(piece.parts[0]), piece.parts[1:]) if piece.parts else (known(""), ())
+            return wrap(piece.text), piece.parts
+        return (self.fill(piece.parts[0]), piece.parts[1:]) if piece.parts else (wrap(""), ())
 
     def fill_arg(self, piece: ValuePart) -> LaunchText:
         """A launch argument or an environment variable."""
-        name, rest = self.named(piece)
+        name, rest = self.evaluate_named(piece)
         if name.value is None:
-            return unknown(name.shown, *name.reasons)
+            return make_unknown(name.shown, *name.reasons)
         is_argument = piece.kind == "arg"
         text = (self.scope.arguments if is_argument else self.scope.environment).get(name.value)
         if text is not None:
-            return text._replace(assumed=every((text.assumed, name.assumed))) if is_argument else text
+            return text._replace(assumed=merge_groups((text.assumed, name.assumed))) if is_argument else text
         shown = name.value if is_argument else f"${name.value}"
         if rest:
-            default = self.text(rest[0])
-            return default._replace(assumed=every((default.assumed, (shown,))))
+            default = self.fill(rest[0])
+            return default._replace(assumed=merge_groups((default.assumed, (shown,))))
         reason = "argument `{}` has no value" if is_argument else "the environment variable `{}` is not known"
-        return unknown(shown, reason.format(name.value))
+        return make_unknown(shown, reason.format(name.value))
 
     fill_env = fill_arg
 
     def fill_find(self, piece: ValuePart) -> LaunchText:
-        name, _ = self.named(piece)
+        name, _ = self.evaluate_named(piece)
         if name.value is None:
-            return unknown(f"$({piece.kind} {name.shown})", *name.reasons)
-        return known(f"$({piece.kind} {name.value})", name.assumed)
+            return make_unknown(f"$({piece.kind} {name.shown})", *name.reasons)
+        return wrap(f"$({piece.kind} {name.value})", name.assumed)
 
     fill_prefix = fill_find
 
     def fill_executable(self, piece: ValuePart) -> LaunchText:
-        name, package = (self.text(part) for part in piece.parts[:2])
-        return together((known("$(prefix "), package, known(")/lib/"), package, known("/"), name))
+        name, package = (self.fill(part) for part in piece.parts[:2])
+        return join_texts((wrap("$(prefix "), package, wrap(")/lib/"), package, wrap("/"), name))
 
     def fill_program(self, piece: ValuePart) -> LaunchText:
-        return self.named(piece)[0]
+        return self.evaluate_named(piece)[0]
 
     def fill_dirname(self, piece: ValuePart) -> LaunchText:
         folder = posixpath.dirname(self.path)
-        return known(f"$(find {self.package})" + (f"/{folder}" if folder else ""))
+        return wrap(f"$(find {self.package})" + (f"/{folder}" if folder else ""))
 
     def fill_filename(self, piece: ValuePart) -> LaunchText:
-        return known(f"$(find {self.package})/{self.path}")
+        return wrap(f"$(find {self.package})/{self.path}")
 
     def fill_anon(self, piece: ValuePart) -> LaunchText:
-        name, _ = self.named(piece)
+        name, _ = self.evaluate_named(piece)
         return LaunchText(None, f"{name.shown}_<anonymous>", ("an anonymous name is made up at every start",))
 
     def fill_command(self, piece: ValuePart) -> LaunchText:
-        return unknown(show((piece,)), f"it is {OF_RUNNING[piece.kind]}")
+        return make_unknown(show((piece,)), f"it is {OF_RUNNING[piece.kind]}")
 
     fill_content = fill_command
 
     def fill_join(self, piece: ValuePart) -> LaunchText:
         texts: list[LaunchText] = []
         for part in piece.parts:
-            text = self.text(part)
+            text = self.fill(part)
             if (text.value is not None and text.value[:1] == "/") or (text.value or "").startswith("$("):
                 texts = []
             texts.append(text)
         if not texts:
-            return known("")
+            return wrap("")
         done = [t._replace(value=t.value.rstrip("/") if t.value is not None else None, shown=t.shown.rstrip("/"))
                 for t in texts[:-1]]  # fmt: skip
-        return together([*done, texts[-1]], "/")
+        return join_texts([*done, texts[-1]], "/")
 
     def fill_in(self, piece: ValuePart) -> LaunchText:
         """`in` and `equals`: whether the first is one of the others."""
-        texts = [self.text(part) for part in (piece.parts[:2] if piece.kind == "equals" else piece.parts)]
-        both = together(texts)
+        texts = [self.fill(part) for part in (piece.parts[:2] if piece.kind == "equals" else piece.parts)]
+        both = join_texts(texts)
         if both.value is None:
             return both._replace(shown=show((piece,)))
-        return known(flag(texts[0].value in [t.value for t in texts[1:]]), both.assumed)
+        return wrap(format_flag(texts[0].value in [t.value for t in texts[1:]]), both.assumed)
 
     fill_equals = fill_in
 
     def fill_not(self, piece: ValuePart) -> LaunchText:
-        text = self.text(piece.parts[0]) if piece.parts else known("")
-        truth = truth_of(text)
+        text = self.fill(piece.parts[0]) if piece.parts else wrap("")
+        truth = parse_truth(text)
         if truth is None:
-            return unknown(show((piece,)), *(text.reasons or (f"`{text.value}` is neither true nor false",)))
-        return known(flag(not truth), text.assumed)
+            return make_unknown(show((piece,)), *(text.reasons or (f"`{text.value}` is neither true nor false",)))
+        return wrap(format_flag(not truth), text.assumed)
 
     def fill_and(self, piece: ValuePart) -> LaunchText:
         """`and` and `or`: what decides them alone is enough."""
         deciding = piece.kind == "or"
-        texts = [self.text(part) for part in piece.parts]
-        truths = [truth_of(text) for text in texts]
+        texts = [self.fill(part) for part in piece.parts]
+        truths = [parse_truth(text) for text in texts]
         for text, truth in zip(texts, truths, strict=True):
             if truth is deciding:
-                return known(flag(deciding), text.assumed)
+                return wrap(format_flag(deciding), text.assumed)
         if None in truths:
-            return unknown(show((piece,)), *every(t.reasons for t in texts))
-        return known(flag(not deciding), every(t.assumed for t in texts))
+            return make_unknown(show((piece,)), *merge_groups(t.reasons for t in texts))
+        return wrap(format_flag(not deciding), merge_groups(t.assumed for t in texts))
 
     fill_or = fill_and
 
     def fill_choose(self, piece: ValuePart) -> LaunchText:
-        asked = self.text(piece.parts[0])
-        truth = truth_of(asked)
+        asked = self.fill(piece.parts[0])
+        truth = parse_truth(asked)
         if truth is None:
-            yes, no = (self.text(part) for part in piece.parts[1:3])
+            yes, no = (self.fill(part) for part in piece.parts[1:3])
             if yes.value is not None and yes.value == no.value:
                 return yes
             reasons = asked.reasons or (f"`{asked.value}` is neither true nor false",)
-            return unknown(f"{yes.shown} or {no.shown}", *reasons)
-        text = self.text(piece.parts[1 if truth else 2])
-        return text._replace(assumed=every((text.assumed, asked.assumed)))
+            return make_unknown(f"{yes.shown} or {no.shown}", *reasons)
+        text = self.fill(piece.parts[1 if truth else 2])
+        return text._replace(assumed=merge_groups((text.assumed, asked.assumed)))
 
     def fill_method(self, piece: ValuePart) -> LaunchText:
-        texts = [self.text(part) for part in piece.parts]
-        both = together(texts)
+        texts = [self.fill(part) for part in piece.parts]
+        both = join_texts(texts)
         if both.value is None:
-            return unknown(show((piece,)), *both.reasons)
+            return make_unknown(show((piece,)), *both.reasons)
         try:
-            result = text_method(texts[0].value or "", piece.text, [t.value for t in texts[1:]])
+            result = call_text_method(texts[0].value or "", piece.text, [t.value for t in texts[1:]])
         except CannotTell as error:
-            return unknown(show((piece,)), str(error))
-        return known(flag(result) if isinstance(result, bool) else str(result), both.assumed)
+            return make_unknown(show((piece,)), str(error))
+        return wrap(format_flag(result) if isinstance(result, bool) else str(result), both.assumed)
 
     def fill_rewritten(self, piece: ValuePart) -> LaunchText:
         """A changed parameter file: its name stands for it until it is read."""
-        texts = [self.text(part) for part in piece.parts]
+        texts = [self.fill(part) for part in piece.parts]
         is_text = piece.kind == "replaced"
         source, rest = texts[0], texts[1:] if is_text else texts[2:]
         pairs = tuple(zip(rest[::2], rest[1::2], strict=False))
-        rewrite = Rewrite(source, known("") if is_text else texts[1], pairs, is_text)
+        rewrite = Rewrite(source, wrap("") if is_text else texts[1], pairs, is_text)
         name = f"$({piece.kind} {source.shown} {len(self.rewrites)})"
         self.rewrites[name] = rewrite
-        return known(name, source.assumed)
+        return wrap(name, source.assumed)
 
     fill_replaced = fill_rewritten
 
     def fill_has_node(self, piece: ValuePart) -> LaunchText:
-        file, node = (self.text(part) for part in piece.parts[:2])
-        both = together((file, node))
-        entries = self.entries(file.value, 0) if both.value is not None and file.value is not None else None
+        file, node = (self.fill(part) for part in piece.parts[:2])
+        both = join_texts((file, node))
+        entries = self.read_entries(file.value, 0) if both.value is not None and file.value is not None else None
         if entries is None:
-            return unknown(show((piece,)), *(both.reasons or ("the file is not in the workspace",)))
-        return known(flag(any(entry.path[:1] == (node.value,) for entry in entries)), both.assumed)
+            return make_unknown(show((piece,)), *(both.reasons or ("the file is not in the workspace",)))
+        return wrap(format_flag(any(entry.path[:1] == (node.value,) for entry in entries)), both.assumed)
 
     def fill_eval(self, piece: ValuePart) -> LaunchText:
-        expression = self.text(piece.parts[0])
+        expression = self.fill(piece.parts[0])
         if expression.value is None:
-            return unknown(f"$(eval {expression.shown})", *expression.reasons, assumed=expression.assumed)
+            return make_unknown(f"$(eval {expression.shown})", *expression.reasons, assumed=expression.assumed)
         used: list[tuple[str, ...]] = [expression.assumed]
 
         def read_value(kind: str, name: str, *default: str) -> str:
-            text = self.fill_arg(ValuePart(kind, name, tuple(map(literal, default))))
+            text = self.fill_arg(ValuePart(kind, name, tuple(map(make_literal, default))))
             if text.value is None:
                 raise CannotTell(*text.reasons)
             used.append(text.assumed)
             return text.value
 
-        def argument(name: str) -> Any:
-            return ros1_value(read_value("arg", name))
+        def read_argument(name: str) -> Any:
+            return parse_ros1_value(read_value("arg", name))
 
         functions: dict[str, Any] = {}
         names: dict[str, Any] = {"pi": math.pi}
         if piece.text == "roslaunch":
             functions = {
-                "arg": argument,
+                "arg": read_argument,
                 "env": partial(read_value, "env"),
                 "optenv": lambda name, default="": read_value("env", name, default),
                 "find": lambda package: f"$(find {package})",
                 "dirname": lambda: self.fill_dirname(piece).value,
             }
             names |= {"true": True, "false": False}
-            names = {name: partial(argument, name) for name in self.scope.arguments} | names
+            names = {name: partial(read_argument, name) for name in self.scope.arguments} | names
         try:
             result = evaluate(expression.value, names, functions)
         except CannotTell as error:
-            return unknown(f"$(eval {expression.value[:80]})", str(error), assumed=every(used))
-        return known(str(result), every(used))
+            return make_unknown(f"$(eval {expression.value[:80]})", str(error), assumed=merge_groups(used))
+        return wrap(str(result), merge_groups(used))
 
 
 OF_RUNNING: dict[str, str] = {
@@ -372,17 +372,17 @@ OF_RUNNING: dict[str, str] = {
 }
 """What is only known when the launch runs, by the piece or attribute that asks for it."""
 _PLACE = re.compile(r"\$\(find ([\w.-]+)\)(/.*|)\Z", re.DOTALL)
-_FILLING = methods_of(Filling, "fill_")
+_FILLING = collect_methods(Filling, "fill_")
 # How many parts a piece needs before it can be filled in.
 _PARTS = {"executable": 2, "equals": 2, "in": 1, "choose": 3, "method": 1, "rewritten": 2, "replaced": 1, "has-node": 2,
           "eval": 1}  # fmt: skip
 
 
-def _rewritten(entries: Sequence[ParameterEntry], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
+def _rewrite_entries(entries: Sequence[ParameterEntry], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
     """Entries as RewrittenYaml or ReplaceString of nav2_common would leave them."""
     if rewrite.is_text:
-        change = _change_of(rewrite.changes)
-        return tuple(_replaced(entry, change) for entry in entries)
+        change = _make_change(rewrite.changes)
+        return tuple(_replace_in_entry(entry, change) for entry in entries)
     changes = {old.value: new for old, new in rewrite.changes if old.value is not None}
     root = (rewrite.root.value,) if rewrite.root.value else ()
     made: list[ParameterEntry] = []
@@ -390,12 +390,12 @@ def _rewritten(entries: Sequence[ParameterEntry], rewrite: Rewrite) -> tuple[Par
         new = changes.get(".".join(entry.path), changes.get(entry.path[-1] if entry.path else ""))
         value = entry.value
         if new is not None:
-            value = scalar(new.value) if new.value else new.shown
+            value = parse_scalar(new.value) if new.value else new.shown
         made.append(ParameterEntry((*root, *entry.path), value, entry.line))
     return tuple(made)
 
 
-def _change_of(changes: tuple[tuple[LaunchText, LaunchText], ...]) -> Callable[[str], str]:
+def _make_change(changes: tuple[tuple[LaunchText, LaunchText], ...]) -> Callable[[str], str]:
     """What makes these changes in a text. The same keys stand in most entries of a file."""
 
     @cache
@@ -408,12 +408,12 @@ def _change_of(changes: tuple[tuple[LaunchText, LaunchText], ...]) -> Callable[[
     return change
 
 
-def _replaced(entry: ParameterEntry, change: Callable[[str], str]) -> ParameterEntry:
+def _replace_in_entry(entry: ParameterEntry, change: Callable[[str], str]) -> ParameterEntry:
     value = entry.value
     if isinstance(value, str):
         # The text is changed before it is read as YAML, so that what comes of it may be a number or a bool.
         changed = change(value)
-        value = value if changed == value else scalar(changed)
+        value = value if changed == value else parse_scalar(changed)
     elif isinstance(value, list):
         value = [change(item) if isinstance(item, str) else item for item in value]
     path = tuple(filter(None, map(change, entry.path)))

@@ -12,11 +12,11 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ....edges.dispatch import methods_of
-from ...facts.launch.actions import Action, ActionCondition, LaunchFile, literal, plain
+from ....edges.dispatch import collect_methods
+from ...facts.launch.actions import Action, ActionCondition, LaunchFile, find_literal, make_literal
 from ...facts.launch.parameter_files import ParameterEntry
 from ...facts.launch.parameter_files import extract as parameters
-from ..flow.names import canonical, ros2_rule
+from ..flow.names import normalise, parse_ros2_rule
 from .fill import OF_RUNNING, ActionScope, ChangedFiles, Filling
 from .result import (
     EMPTY,
@@ -31,7 +31,18 @@ from .result import (
     Started,
     UnresolvedPart,
 )
-from .text import LaunchText, every, known, ros1_value, show, show_condition, truth_of, unknown, within, yaml_value
+from .text import (
+    LaunchText,
+    make_unknown,
+    merge_groups,
+    parse_ros1_value,
+    parse_truth,
+    parse_yaml_value,
+    resolve,
+    show,
+    show_condition,
+    wrap,
+)
 
 DEEPEST = 30
 MOST_ACTIONS = 20_000
@@ -52,10 +63,10 @@ def follow(
     arguments: as given on the command line. environment: variables that are known. generation: of the workspace, for
     files that could be of either. most: how many actions are done. changed: shared by launches of the same sources.
     """
-    given = {name: known(value) for name, value in (arguments or {}).items()}
-    variables = {name: known(value) for name, value in (environment or {}).items()}
+    given = {name: wrap(value) for name, value in (arguments or {}).items()}
+    variables = {name: wrap(value) for name, value in (environment or {}).items()}
     launch = _Launch(sources, given, variables, generation, most, changed or ChangedFiles())
-    launch.top(package, posixpath.normpath(path).lstrip("/"))
+    launch.follow_top(package, posixpath.normpath(path).lstrip("/"))
     return Launched(
         tuple(launch.started),
         launch.server,
@@ -92,23 +103,23 @@ class _Launch(Filling):
         self.skipped: list[Skipped] = []
         self.files: list[tuple[str, str]] = []
 
-    def top(self, package: str, path: str) -> None:
+    def follow_top(self, package: str, path: str) -> None:
         self.package, self.path = package, path
-        file = self.sources.launch(package, path)
+        file = self.sources.find_launch_file(package, path)
         if file is None:
             self.unresolved.append(UnresolvedPart(ShareLine(package, path, 0), path, ("the launch file is not there",)))
             return
         try:
-            self.file(file)
+            self.follow_file(file)
         except RecursionError:
-            self.miss(0, "the rest of the launch", "it is nested too deeply to be followed")
+            self.note_missed(0, "the rest of the launch", "it is nested too deeply to be followed")
 
-    def file(self, file: LaunchFile) -> None:
+    def follow_file(self, file: LaunchFile) -> None:
         self.files.append((self.package, self.path))
         before = self.generation
         self.generation = file.generation or before
         for problem in file.problems:
-            self.miss(problem.line, "the launch file", problem.message)
+            self.note_missed(problem.line, "the launch file", problem.message)
         self.run(file.actions)
         self.generation = before
 
@@ -117,13 +128,13 @@ class _Launch(Filling):
             self.budget -= 1
             if self.budget <= 0:
                 if self.budget == 0:
-                    self.miss(action.line, "the rest of the launch", f"more than {self.most} actions")
+                    self.note_missed(action.line, "the rest of the launch", f"more than {self.most} actions")
                 return
             verdict, open_, assumed, after = self.decide(action.conditions)
             if verdict is False:
                 if action.kind in _STARTING:
                     texts = tuple(show_condition(c) for c in action.conditions)
-                    self.skipped.append(Skipped(action.kind, self.at(action.line), texts, assumed))
+                    self.skipped.append(Skipped(action.kind, self.locate_line(action.line), texts, assumed))
                 continue
             marks = len(self.open), len(self.assumed), len(self.after)
             self.open += open_
@@ -141,140 +152,140 @@ class _Launch(Filling):
         assumed: list[tuple[str, ...]] = []
         for condition in conditions:
             if condition.kind == "after":
-                after.append(self.text(condition.value).shown)
+                after.append(self.fill(condition.value).shown)
                 continue
             if condition.kind == "each":
                 open_.append(show(condition.value))
                 continue
-            text = self.text(condition.value)
-            truth = truth_of(text)
+            text = self.fill(condition.value)
+            truth = parse_truth(text)
             if truth is None:
                 open_.append(show_condition(condition))
                 reasons = text.reasons or (f"`{text.value}` is neither true nor false",)
-                self.miss(condition.line, f"condition `{show_condition(condition)}`", *reasons)
+                self.note_missed(condition.line, f"condition `{show_condition(condition)}`", *reasons)
                 continue
             assumed.append(text.assumed)
             if truth == (condition.kind == "unless"):
-                return False, open_, every(assumed), after
-        return (None if open_ else True), open_, every(assumed), after
+                return False, open_, merge_groups(assumed), after
+        return (None if open_ else True), open_, merge_groups(assumed), after
 
-    def uncertain(self) -> bool:
+    def is_uncertain(self) -> bool:
         """Whether what is set here may not be set at all, as seen by what follows."""
         return len(self.open) > self.scope.open
 
     def set(self, name: str, text: LaunchText) -> None:
         """An argument's new value; one set under an undecided condition is not known afterwards."""
-        if self.uncertain():
+        if self.is_uncertain():
             before = self.scope.arguments.get(name)
             if before is not None and before.value is not None and before.value == text.value:
                 return
             shown = text.shown if before is None else f"{before.shown} or {text.shown}"
-            text = unknown(shown, f"`{name}` is set only if {self.open[-1]}")
+            text = make_unknown(shown, f"`{name}` is set only if {self.open[-1]}")
         self.scope.arguments[name] = text
 
-    def name_of(self, action: Action) -> str | None:
-        return self.note_unknown(self.field(action, "name"), action.line, f"name of {action.kind}").value
+    def read_name(self, action: Action) -> str | None:
+        return self.note_unknown(self.read_field(action, "name"), action.line, f"name of {action.kind}").value
 
     def do_argument(self, action: Action) -> None:
-        name = self.name_of(action)
+        name = self.read_name(action)
         if name is None:
             return
         value, default = action.get("value"), action.get("default")
         if value is not None and self.generation == 1:
             if name in self.scope.arguments and name not in self.scope.constants:
-                self.miss(action.line, f"argument `{name}`", "it is constant and is given another value")
-            self.set(name, self.text(value))
+                self.note_missed(action.line, f"argument `{name}`", "it is constant and is given another value")
+            self.set(name, self.fill(value))
             self.scope.constants.add(name)
         elif name not in self.scope.arguments:
             if default is None:
                 reason = f"argument `{name}` has no default and is not given"
-                self.scope.arguments[name] = unknown(f"{name}", reason)
+                self.scope.arguments[name] = make_unknown(f"{name}", reason)
             else:
-                text = self.text(default)
-                self.set(name, text._replace(assumed=every((text.assumed, (name,)))))
-        self.declared.append(LaunchArgument(name, self.scope.arguments[name], self.at(action.line)))
+                text = self.fill(default)
+                self.set(name, text._replace(assumed=merge_groups((text.assumed, (name,)))))
+        self.declared.append(LaunchArgument(name, self.scope.arguments[name], self.locate_line(action.line)))
 
     def do_let(self, action: Action) -> None:
-        name = self.name_of(action)
+        name = self.read_name(action)
         if name is not None:
-            self.set(name, self.field(action, "value"))
+            self.set(name, self.read_field(action, "value"))
 
     def do_environment(self, action: Action) -> None:
-        name = self.name_of(action)
+        name = self.read_name(action)
         if name is not None:
-            self.scope.environment[name] = self.field(action, "value")
+            self.scope.environment[name] = self.read_field(action, "value")
 
     def do_group(self, action: Action) -> None:
         scoped = action.get("scoped")
-        if self.generation == 2 and scoped is not None and truth_of(self.text(scoped)) is False:
+        if self.generation == 2 and scoped is not None and parse_truth(self.fill(scoped)) is False:
             self.run(action.children)
             return
-        outer, self.scope = self.scope, self.scope.inner(len(self.open))
+        outer, self.scope = self.scope, self.scope.make_inner(len(self.open))
         forwarding = action.get("forwarding")
-        if forwarding is not None and truth_of(self.text(forwarding)) is False:
+        if forwarding is not None and parse_truth(self.fill(forwarding)) is False:
             self.scope = ActionScope({}, {}, len(self.open))
         if action.get("namespace") is not None:
-            self.scope.namespace = self.inside(self.field(action, "namespace"))
+            self.scope.namespace = self.make_inner_namespace(self.read_field(action, "namespace"))
         self.clear(action, self.scope.namespace)
         self.run(action.children)
         self.scope = outer
 
-    def inside(self, namespace: LaunchText) -> LaunchText:
+    def make_inner_namespace(self, namespace: LaunchText) -> LaunchText:
         """A namespace below the one that holds here, absolute."""
         base = self.scope.namespace
         if namespace.value == "":
             return base
-        return within(base if base.value != "" else known("/"), namespace)
+        return resolve(base if base.value != "" else wrap("/"), namespace)
 
     def do_namespace(self, action: Action) -> None:
-        pushed = self.field(action, "namespace")
-        namespace = self.inside(pushed)
-        if self.uncertain() and namespace.value != self.scope.namespace.value:
-            namespace = unknown(
+        pushed = self.read_field(action, "namespace")
+        namespace = self.make_inner_namespace(pushed)
+        if self.is_uncertain() and namespace.value != self.scope.namespace.value:
+            namespace = make_unknown(
                 f"{self.scope.namespace.shown or '/'} or {namespace.shown}", f"pushed only if {self.open[-1]}"
             )
         self.scope.namespace = namespace
 
     def do_remap(self, action: Action) -> None:
-        self.scope.remaps.append(self.remap(action))
+        self.scope.remaps.append(self.make_remap(action))
 
-    def remap(self, action: Action) -> Remap:
-        old = self.note_unknown(self.field(action, "from"), action.line, "remapping from")
-        new = self.note_unknown(self.field(action, "to"), action.line, "remapping to")
-        return Remap(old, new, self.at(action.line), tuple(self.open[self.scope.open :]))
+    def make_remap(self, action: Action) -> Remap:
+        old = self.note_unknown(self.read_field(action, "from"), action.line, "remapping from")
+        new = self.note_unknown(self.read_field(action, "to"), action.line, "remapping to")
+        return Remap(old, new, self.locate_line(action.line), tuple(self.open[self.scope.open :]))
 
     def do_include(self, action: Action) -> None:
-        file = self.note_unknown(self.field(action, "file"), action.line, "include")
+        file = self.note_unknown(self.read_field(action, "file"), action.line, "include")
         if file.value is None:
             return
-        place = self.place(file.value)
+        place = self.split_share_path(file.value)
         if place is None:
-            self.miss(action.line, f"include `{file.shown}`", "it lies in no package that is named")
+            self.note_missed(action.line, f"include `{file.shown}`", "it lies in no package that is named")
             return
-        found = self.sources.launch(*place)
+        found = self.sources.find_launch_file(*place)
         if found is None:
-            self.miss(action.line, f"include `{file.shown}`", "the file is not in the workspace")
+            self.note_missed(action.line, f"include `{file.shown}`", "the file is not in the workspace")
             return
         if len(self.chain) >= DEEPEST or [(a.package, a.path) for a in self.chain].count(place) > 3:
-            self.miss(action.line, f"include `{file.shown}`", "includes go round in a circle or too deep")
+            self.note_missed(action.line, f"include `{file.shown}`", "includes go round in a circle or too deep")
             return
         outer = self.scope, self.package, self.path
         if (found.generation or self.generation) == 1:
-            self.scope = self.scope1(action)
+            self.scope = self.make_ros1_scope(action)
         else:
             # One after the other: the value of one argument may name an argument given before it.
-            for name, text in self.passed(action):
+            for name, text in self.list_passed(action):
                 self.scope.arguments[name] = text
-        self.chain.append(self.at(action.line))
+        self.chain.append(self.locate_line(action.line))
         self.package, self.path = place
         self.assumed += file.assumed
-        self.file(found)
+        self.follow_file(found)
         del self.assumed[len(self.assumed) - len(file.assumed) :]
         self.chain.pop()
         scope, self.package, self.path = outer
         self.scope = scope
 
-    def passed(self, action: Action) -> Iterator[tuple[str, LaunchText]]:
+    def list_passed(self, action: Action) -> Iterator[tuple[str, LaunchText]]:
         """The arguments given to an include, in order, each filled in when it is asked for."""
         for child in action.children:
             if child.kind == "unknown":
@@ -283,32 +294,32 @@ class _Launch(Filling):
             if child.kind != "pass":
                 continue
             verdict, open_, _, _ = self.decide(child.conditions)
-            name = self.name_of(child)
+            name = self.read_name(child)
             if verdict is False or name is None:
                 continue
             value, default = child.get("value"), child.get("default")
-            text = self.text(value if value is not None else default if default is not None else literal(""))
+            text = self.fill(value if value is not None else default if default is not None else make_literal(""))
             if verdict is None:
-                text = unknown(text.shown, f"`{name}` is given only if {open_[-1]}")
+                text = make_unknown(text.shown, f"`{name}` is given only if {open_[-1]}")
             yield name, text
 
-    def scope1(self, action: Action) -> ActionScope:
+    def make_ros1_scope(self, action: Action) -> ActionScope:
         """The scope of a file that roslaunch includes: namespace and remappings are passed on, arguments only as
         given."""
-        scope = self.scope.inner(len(self.open))
+        scope = self.scope.make_inner(len(self.open))
         if action.get("namespace") is not None:
-            scope.namespace = self.inside(self.field(action, "namespace"))
+            scope.namespace = self.make_inner_namespace(self.read_field(action, "namespace"))
         self.clear(action, scope.namespace)
         all_ = action.get("pass-all")
-        scope.arguments = dict(self.scope.arguments) if all_ is not None and truth_of(self.text(all_)) else {}
-        scope.arguments.update(list(self.passed(action)))
+        scope.arguments = dict(self.scope.arguments) if all_ is not None and parse_truth(self.fill(all_)) else {}
+        scope.arguments.update(list(self.list_passed(action)))
         # With pass_all_args, a constant of the included file replaces what is passed without complaint
         scope.constants = set(scope.arguments) if all_ is not None else set()
         return scope
 
     def clear(self, action: Action, namespace: LaunchText) -> None:
         clear = action.get("clear")
-        if clear is not None and namespace.value and truth_of(self.text(clear)):
+        if clear is not None and namespace.value and parse_truth(self.fill(clear)):
             self.forget(namespace.value)
 
     def forget(self, name: str) -> None:
@@ -318,20 +329,20 @@ class _Launch(Filling):
 
     def do_unknown(self, action: Action) -> None:
         text = action.get("text")
-        self.miss(action.line, show(text) if text is not None else action.kind, "it cannot be followed")
+        self.note_missed(action.line, show(text) if text is not None else action.kind, "it cannot be followed")
 
     def do_pass(self, action: Action) -> None:
         """What has no place where it stands."""
 
     def do_parameter(self, action: Action) -> None:
         if self.generation == 1:
-            name = self.field(action, "name")
+            name = self.read_field(action, "name")
             if name.value is not None and name.value[:1] == "~":
                 self.scope.private.append(action)
                 return
             self.serve(action, self.scope.namespace)
             return
-        setting = self.setting(action)
+        setting = self.make_setting(action)
         if setting is not None:
             self.scope.settings.append(setting)
 
@@ -339,37 +350,37 @@ class _Launch(Filling):
         if self.generation == 1:
             self.serve_file(action, self.scope.namespace)
             return
-        self.scope.settings.append(self.setting_file(action))
+        self.scope.settings.append(self.make_setting_file(action))
 
-    def setting(self, action: Action) -> LaunchParameter | None:
+    def make_setting(self, action: Action) -> LaunchParameter | None:
         """A parameter of a ROS 2 node."""
-        name = self.name_of(action)
+        name = self.read_name(action)
         if name is None:
             return None
-        text = self.field(action, "value")
-        type_ = plain(action.get("type")) or ""
+        text = self.read_field(action, "value")
+        type_ = find_literal(action.get("type")) or ""
         value: Any = text.value
         if value is not None and type_ not in ("str", "string"):
-            value = yaml_value(value)
-        return LaunchParameter(name, value, text, self.at(action.line), tuple(self.open[self.scope.open :]))
+            value = parse_yaml_value(value)
+        return LaunchParameter(name, value, text, self.locate_line(action.line), tuple(self.open[self.scope.open :]))
 
-    def setting_file(self, action: Action) -> SettingFile:
+    def make_setting_file(self, action: Action) -> SettingFile:
         """A parameter file of a ROS 2 node."""
-        file = self.field(action, "file")
-        at, conditions = self.at(action.line), tuple(self.open[self.scope.open :])
+        file = self.read_field(action, "file")
+        at, conditions = self.locate_line(action.line), tuple(self.open[self.scope.open :])
         if file.value is None:
-            self.miss(action.line, f"parameters `{file.shown}`", *file.reasons)
+            self.note_missed(action.line, f"parameters `{file.shown}`", *file.reasons)
             return SettingFile(file, None, at, conditions)
         if file.value == "":
             return SettingFile(file, (), at, conditions)
-        entries = self.entries(file.value, action.line)
-        if entries is not None and plain(action.get("substitute")) is not None:
-            entries = self.substituted(entries)
-        below = [self.text(key).value for key in action.all("below")]
+        entries = self.read_entries(file.value, action.line)
+        if entries is not None and find_literal(action.get("substitute")) is not None:
+            entries = self.substitute_entries(entries)
+        below = [self.fill(key).value for key in action.list_values("below")]
         name = action.get("name")
         if not below and name is None:
             return SettingFile(file, entries, at, conditions)
-        prefix = (self.text(name).shown,) if name is not None else ()
+        prefix = (self.fill(name).shown,) if name is not None else ()
         if entries is not None:
             entries = tuple(
                 ParameterEntry((*prefix, *entry.path[len(below) :]), entry.value, entry.line)
@@ -380,82 +391,82 @@ class _Launch(Filling):
 
     def serve(self, action: Action, namespace: LaunchText) -> None:
         """Puts a <param> of ROS 1 on the server, below a namespace."""
-        name = self.field(action, "name")
+        name = self.read_field(action, "name")
         if name.value is not None and name.value[:1] == "~":
-            name = known(name.value[1:], name.assumed)
-        place = within(namespace if namespace.value != "" else known("/"), name)
+            name = wrap(name.value[1:], name.assumed)
+        place = resolve(namespace if namespace.value != "" else wrap("/"), name)
         full = self.note_unknown(place, action.line, "parameter")
         if full.value is None:
             return
         given = next((key for key in OF_RUNNING if action.get(key) is not None), "")
         if not given:
-            text = self.field(action, "value")
+            text = self.read_field(action, "value")
         else:
-            text = unknown(show(action.get(given) or literal("")), f"it is {OF_RUNNING[given]}")
+            text = make_unknown(show(action.get(given) or make_literal("")), f"it is {OF_RUNNING[given]}")
         value = None
         if text.value is not None:
-            value = ros1_value(text.value.strip(), plain(action.get("type")) or "auto")
+            value = parse_ros1_value(text.value.strip(), find_literal(action.get("type")) or "auto")
         self.put(full.value, value, text, action.line)
 
     def put(self, name: str, value: Any, text: LaunchText, line: int) -> None:
         if self.open:
             before = self.server.get(name)
             if before is not None and before.text.value != text.value:
-                text, value = unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}"), None
+                text, value = make_unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}"), None
         self.server.pop(name, None)
-        self.server[name] = LaunchParameter(name, value, text, self.at(line), tuple(self.open))
+        self.server[name] = LaunchParameter(name, value, text, self.locate_line(line), tuple(self.open))
 
     def serve_file(self, action: Action, namespace: LaunchText) -> None:
         """Does a <rosparam>."""
-        below = self.field(action, "name")
-        base = namespace if namespace.value != "" else known("/")
+        below = self.read_field(action, "name")
+        base = namespace if namespace.value != "" else wrap("/")
         if below.value is not None and below.value[:1] == "~":
-            below = known(below.value[1:].lstrip("/"), below.assumed)
-        full = base if below.value == "" else within(base, below)
+            below = wrap(below.value[1:].lstrip("/"), below.assumed)
+        full = base if below.value == "" else resolve(base, below)
         if self.note_unknown(full, action.line, "parameters below").value is None:
             return
-        command = plain(action.get("command")) or "load"
+        command = find_literal(action.get("command")) or "load"
         if command == "delete":
             self.forget(full.value or "/")
         if command != "load":
             return
         substitute = action.get("substitute")
-        fill = substitute is not None and truth_of(self.text(substitute)) is True
+        fill = substitute is not None and parse_truth(self.fill(substitute)) is True
         file, content = action.get("file"), action.get("text")
         if file is not None:
-            text = self.note_unknown(self.text(file), action.line, "parameters")
-            entries = self.entries(text.value, action.line) if text.value is not None else None
+            text = self.note_unknown(self.fill(file), action.line, "parameters")
+            entries = self.read_entries(text.value, action.line) if text.value is not None else None
             assumed = text.assumed
         else:
             # What is filled in may be any piece of YAML, so that it comes before reading.
-            text = self.text(content or literal(""))
+            text = self.fill(content or make_literal(""))
             entries, assumed, fill = parameters(text.shown).entries, text.assumed, False
-        for entry in self.substituted(entries or ()) if fill else entries or ():
+        for entry in self.substitute_entries(entries or ()) if fill else entries or ():
             key = "/".join(part.strip("/") for part in (full.value or "/", *entry.path) if part.strip("/"))
-            self.put(f"/{key}", entry.value, known(str(entry.value), assumed), action.line)
+            self.put(f"/{key}", entry.value, wrap(str(entry.value), assumed), action.line)
 
     def do_node(self, action: Action) -> None:
         if self.generation == 1:
-            self.node1(action)
+            self.start_ros1_node(action)
         else:
-            self.node2(action, EMPTY)
+            self.start_ros2_node(action, EMPTY)
 
     do_lifecycle = do_test = do_container = do_node
 
-    def node2(self, action: Action, container: LaunchText) -> None:
-        package, executable, plugin = (self.field(action, key) for key in ("package", "executable", "plugin"))
-        name = self.field(action, "name")
-        namespace = self.field(action, "namespace")
-        full_namespace = self.scope.namespace if namespace.value == "" else self.inside(namespace)
-        arguments = tuple(self.text(value) for value in action.all("arguments"))
+    def start_ros2_node(self, action: Action, container: LaunchText) -> None:
+        package, executable, plugin = (self.read_field(action, key) for key in ("package", "executable", "plugin"))
+        name = self.read_field(action, "name")
+        namespace = self.read_field(action, "namespace")
+        full_namespace = self.scope.namespace if namespace.value == "" else self.make_inner_namespace(namespace)
+        arguments = tuple(self.fill(value) for value in action.list_values("arguments"))
         outer = self.scope
-        self.scope = outer.inner(len(self.open))
-        first_remaps, first_settings, renamed, moved = self.ros_arguments(arguments, action.line)
+        self.scope = outer.make_inner(len(self.open))
+        first_remaps, first_settings, renamed, moved = self.parse_ros_arguments(arguments, action.line)
         self.run(child for child in action.children if child.kind in _OF_NODE)
         remaps, settings = self.scope.remaps, self.scope.settings
         self.scope = outer
         if moved is not None:
-            full_namespace = within(known("/"), moved)
+            full_namespace = resolve(wrap("/"), moved)
         if renamed is not None:
             name = renamed
         kind = action.kind if action.kind in ("lifecycle", "container", "composable", "test") else "node"
@@ -475,21 +486,21 @@ class _Launch(Filling):
         if kind == "container":
             self.load(action, started.full_name)
 
-    def field(self, action: Action, key: str) -> LaunchText:
-        return self.text(action.get(key) or literal(""))
+    def read_field(self, action: Action, key: str) -> LaunchText:
+        return self.fill(action.get(key) or make_literal(""))
 
     def begin(self, action: Action, kind: str, **fields: Any) -> Started:
         """Notes that an action starts something. fields: those of Started that are not empty, lists as tuples."""
         started = Started(
-            kind, self.generation, self.at(action.line), tuple(self.chain), tuple(self.open),
-            every([tuple(self.assumed)]), tuple(self.after), **fields,
+            kind, self.generation, self.locate_line(action.line), tuple(self.chain), tuple(self.open),
+            merge_groups([tuple(self.assumed)]), tuple(self.after), **fields,
         )  # fmt: skip
         self.started.append(started)
         for key in _TEXTS:
             self.note_unknown(getattr(started, key), action.line, f"{key} of {kind}")
         return started
 
-    def ros_arguments(
+    def parse_ros_arguments(
         self, arguments: Sequence[LaunchText], line: int
     ) -> tuple[list[Remap], list[LaunchParameter | SettingFile], LaunchText | None, LaunchText | None]:
         """Remappings, parameters, name and namespace that ROS 2 arguments on a command line give."""
@@ -510,27 +521,29 @@ class _Launch(Filling):
                 option = word
             elif option and word is not None:
                 old, _, new = word.partition(":=")
-                rule = ros2_rule(word)
+                rule = parse_ros2_rule(word)
                 if option in ("-r", "--remap") and rule is not None:
                     if rule.match in ("__node", "__name"):
-                        name = name or known(new, text.assumed)
+                        name = name or wrap(new, text.assumed)
                     elif rule.match == "__ns":
-                        namespace = namespace or known(new, text.assumed)
+                        namespace = namespace or wrap(new, text.assumed)
                     else:
-                        remaps.append(Remap(known(old), known(new, text.assumed), self.at(line)))
+                        remaps.append(Remap(wrap(old), wrap(new, text.assumed), self.locate_line(line)))
                 elif option in ("-p", "--param"):
-                    settings.append(LaunchParameter(old, yaml_value(new), known(new, text.assumed), self.at(line)))
+                    settings.append(
+                        LaunchParameter(old, parse_yaml_value(new), wrap(new, text.assumed), self.locate_line(line))
+                    )
                 elif option == "--params-file":
-                    settings.append(SettingFile(text, self.entries(word, line), self.at(line)))
+                    settings.append(SettingFile(text, self.read_entries(word, line), self.locate_line(line)))
                 option = ""
             elif option:
-                self.miss(line, f"argument `{option} {text.shown}`", *text.reasons)
+                self.note_missed(line, f"argument `{option} {text.shown}`", *text.reasons)
                 option = ""
         return remaps, settings, name, namespace
 
     def load(self, action: Action, container: LaunchText) -> None:
         """Starts the composable nodes below an action."""
-        outer, self.scope = self.scope, self.scope.inner(len(self.open))
+        outer, self.scope = self.scope, self.scope.make_inner(len(self.open))
         before, self.container = self.container, container
         self.run(child for child in action.children if child.kind == "composable")
         self.container = before
@@ -539,16 +552,16 @@ class _Launch(Filling):
     def do_load(self, action: Action) -> None:
         own = action.get("container-node")
         if own is not None:
-            container = self.inside(self.text(own))
+            container = self.make_inner_namespace(self.fill(own))
         else:
-            container = within(known("/"), self.field(action, "container"))
+            container = resolve(wrap("/"), self.read_field(action, "container"))
         self.load(action, self.note_unknown(container, action.line, "container"))
 
     def do_composable(self, action: Action) -> None:
-        self.node2(action, self.container)
+        self.start_ros2_node(action, self.container)
 
     def do_process(self, action: Action) -> None:
-        words = tuple(self.text(value) for value in action.all("command"))
+        words = tuple(self.fill(value) for value in action.list_values("command"))
         package = executable = EMPTY
         rest = words
         if [w.value for w in words[:2]] == ["ros2", "run"] and len(words) >= 4:
@@ -557,8 +570,8 @@ class _Launch(Filling):
             installed = _INSTALLED.match(words[0].value or "")
             executable, rest = words[0], words[1:]
             if installed is not None:
-                package, executable = (known(part, words[0].assumed) for part in installed.groups())
-        remaps, settings, name, namespace = self.ros_arguments(rest, action.line)
+                package, executable = (wrap(part, words[0].assumed) for part in installed.groups())
+        remaps, settings, name, namespace = self.parse_ros_arguments(rest, action.line)
         self.begin(
             action,
             "process",
@@ -571,20 +584,20 @@ class _Launch(Filling):
             arguments=words,
         )
 
-    def node1(self, action: Action) -> None:
-        package, executable, name = (self.field(action, key) for key in ("package", "executable", "name"))
-        base = self.scope.namespace if self.scope.namespace.value != "" else known("/")
-        namespace = within(base, self.field(action, "namespace")) if action.get("namespace") is not None else base
-        words = [word for value in action.all("arguments") for word in self.split(self.text(value))]
+    def start_ros1_node(self, action: Action) -> None:
+        package, executable, name = (self.read_field(action, key) for key in ("package", "executable", "name"))
+        base = self.scope.namespace if self.scope.namespace.value != "" else wrap("/")
+        namespace = resolve(base, self.read_field(action, "namespace")) if action.get("namespace") is not None else base
+        words = [word for value in action.list_values("arguments") for word in self.split(self.fill(value))]
         for text in words:
             if text.value is not None and text.value.startswith("__name:="):
-                name = known(text.value[8:], text.assumed)
+                name = wrap(text.value[8:], text.assumed)
             elif text.value is not None and text.value.startswith("__ns:="):
-                namespace = within(known("/"), known(text.value[6:], text.assumed))
-        full = within(namespace, name)
+                namespace = resolve(wrap("/"), wrap(text.value[6:], text.assumed))
+        full = resolve(namespace, name)
         if full.value is not None:
             self.clear(action, full)
-        outer, self.scope = self.scope, self.scope.inner(len(self.open))
+        outer, self.scope = self.scope, self.scope.make_inner(len(self.open))
         self.scope.remaps = []
         own: list[Remap] = []
         given: list[tuple[Action, list[str]]] = [(action, []) for action in self.scope.private]
@@ -594,7 +607,7 @@ class _Launch(Filling):
                 continue
             self.open += open_
             if child.kind == "remap":
-                own.append(self.remap(child))
+                own.append(self.make_remap(child))
             elif child.kind == "parameter":
                 given.append((child, open_))
             elif child.kind == "parameter-file" and full.value is not None:
@@ -606,16 +619,16 @@ class _Launch(Filling):
             self.open += open_
             self.serve(child, full)
             del self.open[len(self.open) - len(open_) :]
-        remaps = _without_earlier([*self.scope.remaps, *own])
+        remaps = _drop_earlier([*self.scope.remaps, *own])
         for text in words:
             old, sign, new = (text.value or "").partition(":=")
             if not sign or old.startswith("__"):
                 continue
             if old.startswith("_"):
                 if full.value is not None:
-                    self.put(f"{full.value}/{old[1:]}", ros1_value(new), known(new, text.assumed), action.line)
+                    self.put(f"{full.value}/{old[1:]}", parse_ros1_value(new), wrap(new, text.assumed), action.line)
             else:
-                remaps.append(Remap(known(old), known(new, text.assumed), self.at(action.line)))
+                remaps.append(Remap(wrap(old), wrap(new, text.assumed), self.locate_line(action.line)))
         kind, plugin, container = ("test" if action.kind == "test" else "node"), EMPTY, EMPTY
         if package.value == "nodelet" and words:
             command = words[0].value
@@ -625,7 +638,7 @@ class _Launch(Filling):
                 plugin = words[1]
                 kind = "composable" if command == "load" else "node"
                 if command == "load" and len(words) > 2:
-                    container = within(namespace, words[2])
+                    container = resolve(namespace, words[2])
         self.begin(
             action,
             kind,
@@ -643,21 +656,21 @@ class _Launch(Filling):
         """The words of one argument, which a substitution may have brought several of."""
         if text.value is None:
             return [text]
-        return [known(word, text.assumed) for word in text.value.split()] if " " in text.value else [text]
+        return [wrap(word, text.assumed) for word in text.value.split()] if " " in text.value else [text]
 
 
 _INSTALLED = re.compile(r"\$\(prefix ([\w.-]+)\)/lib/\1/([^/]+)\Z")
 _TEXTS = ("package", "executable", "plugin", "container", "name", "namespace")
 _OF_NODE = frozenset(("remap", "parameter", "parameter-file", "unknown"))
 _STARTING = frozenset(("node", "lifecycle", "test", "container", "composable", "load", "include", "group", "process"))
-_DOING = methods_of(_Launch, "do_")
+_DOING = collect_methods(_Launch, "do_")
 
 
-def _without_earlier(remaps: list[Remap]) -> list[Remap]:
+def _drop_earlier(remaps: list[Remap]) -> list[Remap]:
     """Remappings less those for whose name there is a later one, as roslaunch keeps them."""
     kept: list[Remap] = []
     for remap in remaps:
         if remap.old.value is not None and not remap.conditions:
-            kept = [k for k in kept if k.old.value is None or canonical(k.old.value) != canonical(remap.old.value)]
+            kept = [k for k in kept if k.old.value is None or normalise(k.old.value) != normalise(remap.old.value)]
         kept.append(remap)
     return kept

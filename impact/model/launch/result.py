@@ -7,20 +7,20 @@ from typing import Any, NamedTuple, Protocol
 
 from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterEntry, ParameterFile
-from ..flow.names import canonical, joined
-from .text import LaunchText, known, within
+from ..flow.names import join_name, normalise
+from .text import LaunchText, resolve, wrap
 
-EMPTY = known("")
+EMPTY = wrap("")
 
 
 class LaunchSources(Protocol):
     """Where launch and parameter files come from. package and path: as in `$(find package)/path`, the path normal and
     without a leading slash. None for what is not there."""
 
-    def launch(self, package: str, path: str) -> LaunchFile | None:
+    def find_launch_file(self, package: str, path: str) -> LaunchFile | None:
         """The facts of a launch file."""
 
-    def parameters(self, package: str, path: str) -> ParameterFile | None:
+    def find_parameter_file(self, package: str, path: str) -> ParameterFile | None:
         """The facts of a file of parameters."""
 
 
@@ -98,9 +98,9 @@ class Started(NamedTuple):
         """Namespace and name together; unknown where either is, or where the name is left to the program."""
         if self.name.value == "":
             return LaunchText(
-                None, joined(self.namespace.shown or "/", "<its own>"), ("the name is left to the program",)
+                None, join_name(self.namespace.shown or "/", "<its own>"), ("the name is left to the program",)
             )
-        full = within(self.namespace if self.namespace.value != "" else known("/"), self.name)
+        full = resolve(self.namespace if self.namespace.value != "" else wrap("/"), self.name)
         if full.value is not None and full.value[:1] != "/":
             return LaunchText(None, full.shown, (f"`{full.value}` is no name of a node",), full.assumed)
         return full
@@ -144,7 +144,7 @@ class Launched(NamedTuple):
     files: tuple[tuple[str, str], ...]
     actions: int = 0
 
-    def values(self, started: Started, name: str = "") -> dict[str, LaunchParameter]:
+    def collect_parameters(self, started: Started, name: str = "") -> dict[str, LaunchParameter]:
         """The private parameters of a node. name: its full name where the launch leaves it to the program; without one
         only what holds for any node is given."""
         full = name or started.full_name.value or ""
@@ -159,7 +159,7 @@ class Launched(NamedTuple):
                 found.pop(setting.name, None)
                 found[setting.name] = setting
                 continue
-            for key, entry in file_values(setting, full).items():
+            for key, entry in select_file_values(setting, full).items():
                 found.pop(key, None)
                 shown = str(entry.value)
                 text = LaunchText(shown, shown, (), setting.file.assumed)
@@ -167,7 +167,7 @@ class Launched(NamedTuple):
         return found
 
 
-def file_values(setting: SettingFile, full_name: str) -> dict[str, ParameterEntry]:
+def select_file_values(setting: SettingFile, full_name: str) -> dict[str, ParameterEntry]:
     """The entries of a ROS 2 parameter file that hold for a node, later ones over earlier ones. full_name: empty for a
     node whose name is not known: then only what is for every node."""
     found: dict[str, ParameterEntry] = {}
@@ -192,14 +192,14 @@ def file_values(setting: SettingFile, full_name: str) -> dict[str, ParameterEntr
 
 def _names_node(keys: tuple[str, ...], full_name: str) -> bool:
     """Whether the keys above `ros__parameters` mean a node: `/**` any, `*` one part of a name, `**` any number."""
-    pattern = _pattern(keys)
+    pattern = _compile_pattern(keys)
     return pattern is None or (bool(full_name) and pattern.fullmatch(full_name) is not None)
 
 
 @lru_cache(maxsize=4096)
-def _pattern(keys: tuple[str, ...]) -> re.Pattern[str] | None:
+def _compile_pattern(keys: tuple[str, ...]) -> re.Pattern[str] | None:
     """What names of nodes match some keys; None for any."""
-    pattern = canonical("/" + "/".join(keys))
+    pattern = normalise("/" + "/".join(keys))
     if pattern == "/**":
         return None
     parts = [r"(?:/\w+)*" if part == "**" else r"/\w+" if part == "*" else "/" + re.escape(part)

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 from ...facts.launch.actions import ActionCondition, Value, ValuePart
 from ...facts.launch.parameter_files import extract as parameters
-from ...facts.launch.parameter_files import scalar
+from ...facts.launch.parameter_files import parse_scalar
 from ...facts.python.text import ARITHMETIC, COMPARISONS
-from ..flow.names import joined
+from ..flow.names import join_name
 
 LONGEST = 100_000
 
@@ -28,39 +28,39 @@ class LaunchText(NamedTuple):
     assumed: tuple[str, ...] = ()
 
 
-def known(value: str, assumed: tuple[str, ...] = ()) -> LaunchText:
+def wrap(value: str, assumed: tuple[str, ...] = ()) -> LaunchText:
     """A text that is known."""
     return LaunchText(value, value, (), assumed)
 
 
-def unknown(shown: str, *reasons: str, assumed: tuple[str, ...] = ()) -> LaunchText:
+def make_unknown(shown: str, *reasons: str, assumed: tuple[str, ...] = ()) -> LaunchText:
     """A text that is not."""
     return LaunchText(None, f"<{shown}>", reasons, assumed)
 
 
-def together(texts: Sequence[LaunchText], between: str = "") -> LaunchText:
+def join_texts(texts: Sequence[LaunchText], between: str = "") -> LaunchText:
     """Texts one after the other as one."""
     value = None if any(t.value is None for t in texts) else between.join(t.value or "" for t in texts)
     if value is not None and len(value) > LONGEST:
-        return unknown("...", "is too long")
+        return make_unknown("...", "is too long")
     shown = value if value is not None else between.join(t.shown for t in texts)[:LONGEST]
-    return LaunchText(value, shown, every(t.reasons for t in texts), every(t.assumed for t in texts))
+    return LaunchText(value, shown, merge_groups(t.reasons for t in texts), merge_groups(t.assumed for t in texts))
 
 
-def within(namespace: LaunchText, name: LaunchText) -> LaunchText:
+def resolve(namespace: LaunchText, name: LaunchText) -> LaunchText:
     """A name put into a namespace."""
     if name.value is not None and name.value[:1] == "/":
         return name
     if namespace.value is None or name.value is None:
-        both = together((namespace, name), "/")
+        both = join_texts((namespace, name), "/")
         return both._replace(value=None, shown=both.shown.replace("//", "/"))
-    return known(joined(namespace.value, name.value), every((namespace.assumed, name.assumed)))
+    return wrap(join_name(namespace.value, name.value), merge_groups((namespace.assumed, name.assumed)))
 
 
 _MOST = 200
 
 
-def every(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
+def merge_groups(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
     """All of several tuples, each once, in order, as far as a person reads on."""
     return tuple(dict.fromkeys(item for group in groups for item in group))[:_MOST]
 
@@ -98,14 +98,14 @@ def show_condition(condition: ActionCondition) -> str:
     return f"not ({text})" if condition.kind == "unless" else text
 
 
-def truth_of(text: LaunchText) -> bool | None:
+def parse_truth(text: LaunchText) -> bool | None:
     """What roslaunch and launch make of a text that is asked: True, False, or None for what they refuse."""
     if text.value is None:
         return None
     return {"true": True, "1": True, "false": False, "0": False}.get(text.value.strip().lower())
 
 
-def flag(value: bool) -> str:
+def format_flag(value: bool) -> str:
     return "true" if value else "false"
 
 
@@ -124,7 +124,7 @@ METHODS = frozenset(
 )  # fmt: skip
 
 
-def text_method(receiver: str, name: str, arguments: Sequence[Any]) -> Any:
+def call_text_method(receiver: str, name: str, arguments: Sequence[Any]) -> Any:
     """What one of METHODS gives. Raises CannotTell for other methods, wrong arguments and long results."""
     longest = max((len(a) for a in arguments if isinstance(a, str)), default=0)
     if name not in METHODS or len(receiver) * longest > LONGEST:
@@ -142,7 +142,7 @@ def evaluate(expression: str, names: Mapping[str, Any], functions: Mapping[str, 
         raise CannotTell("is too long")
     try:
         tree = ast.parse(expression.strip(), mode="eval")
-        return _Evaluator(names, functions).value(tree.body)
+        return _Evaluator(names, functions).evaluate(tree.body)
     except CannotTell:
         raise
     except (SyntaxError, ValueError, TypeError, ArithmeticError, LookupError, AttributeError) as error:
@@ -156,7 +156,7 @@ class _Evaluator:
         self.names = names
         self.functions = functions
 
-    def value(self, node: ast.expr) -> Any:
+    def evaluate(self, node: ast.expr) -> Any:
         if isinstance(node, ast.Constant):
             return node.value
         if isinstance(node, ast.Name):
@@ -167,12 +167,12 @@ class _Evaluator:
         if isinstance(node, ast.BoolOp):
             result: Any = None
             for part in node.values:
-                result = self.value(part)
+                result = self.evaluate(part)
                 if bool(result) == isinstance(node.op, ast.Or):
                     break
             return result
         if isinstance(node, ast.UnaryOp):
-            operand = self.value(node.operand)
+            operand = self.evaluate(node.operand)
             if isinstance(node.op, ast.Not):
                 return not operand
             if isinstance(node.op, ast.USub):
@@ -180,32 +180,34 @@ class _Evaluator:
             if isinstance(node.op, ast.UAdd):
                 return +operand
         if isinstance(node, ast.BinOp):
-            return self.sum(node)
+            return self.evaluate_arithmetic(node)
         if isinstance(node, ast.Compare):
-            left = self.value(node.left)
+            left = self.evaluate(node.left)
             for op, right_node in zip(node.ops, node.comparators, strict=True):
-                right = self.value(right_node)
+                right = self.evaluate(right_node)
                 if not COMPARISONS[type(op)](left, right):
                     return False
                 left = right
             return True
         if isinstance(node, ast.IfExp):
-            return self.value(node.body if self.value(node.test) else node.orelse)
+            return self.evaluate(node.body if self.evaluate(node.test) else node.orelse)
         if isinstance(node, (ast.List, ast.Tuple)):
-            return [self.value(element) for element in node.elts]
+            return [self.evaluate(element) for element in node.elts]
         if isinstance(node, ast.Subscript):
-            return self.value(node.value)[self.index(node.slice)]
+            return self.evaluate(node.value)[self.index(node.slice)]
         if isinstance(node, ast.Call) and not node.keywords:
             return self.call(node)
         raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
 
     def index(self, node: ast.expr) -> Any:
         if not isinstance(node, ast.Slice):
-            return self.value(node)
-        return slice(*(None if bound is None else self.value(bound) for bound in (node.lower, node.upper, node.step)))
+            return self.evaluate(node)
+        return slice(
+            *(None if bound is None else self.evaluate(bound) for bound in (node.lower, node.upper, node.step))
+        )
 
-    def sum(self, node: ast.BinOp) -> Any:
-        left, right = self.value(node.left), self.value(node.right)
+    def evaluate_arithmetic(self, node: ast.BinOp) -> Any:
+        left, right = self.evaluate(node.left), self.evaluate(node.right)
         calculate = ARITHMETIC.get(type(node.op))
         if calculate is None:
             raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
@@ -219,7 +221,7 @@ class _Evaluator:
         return result
 
     def call(self, node: ast.Call) -> Any:
-        arguments = [self.value(argument) for argument in node.args]
+        arguments = [self.evaluate(argument) for argument in node.args]
         if isinstance(node.func, ast.Name):
             function = self.functions.get(node.func.id) or _FUNCTIONS.get(node.func.id)
             if function is not None:
@@ -230,13 +232,13 @@ class _Evaluator:
                 if callable(function) and node.func.attr in _OF_MATH:
                     return function(*arguments)
             if node.func.attr in METHODS:
-                receiver = self.value(node.func.value)
+                receiver = self.evaluate(node.func.value)
                 if isinstance(receiver, str):
-                    return text_method(receiver, node.func.attr, arguments)
+                    return call_text_method(receiver, node.func.attr, arguments)
         raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
 
 
-def ros1_value(text: str, type_: str = "auto") -> Any:
+def parse_ros1_value(text: str, type_: str = "auto") -> Any:
     """A parameter of ROS 1 from its text, as roslaunch's convert_value() makes it; the text where that would fail."""
     kind = type_.lower().strip() or "auto"
     try:
@@ -258,13 +260,13 @@ def ros1_value(text: str, type_: str = "auto") -> Any:
         if kind != "auto" and word in ("1", "0"):
             return word == "1"
     if kind == "yaml":
-        return yaml_value(text)
+        return parse_yaml_value(text)
     return text
 
 
-def yaml_value(text: str) -> Any:
+def parse_yaml_value(text: str) -> Any:
     """What a text is by YAML's rules; mappings stay text."""
     if text[:1] not in ("[", "'", '"', "-", "!", "&", "{", ">", "|"):
-        return scalar(text.strip())
+        return parse_scalar(text.strip())
     entries = parameters(text).entries
-    return entries[0].value if len(entries) == 1 and entries[0].path == () else scalar(text)
+    return entries[0].value if len(entries) == 1 and entries[0].path == () else parse_scalar(text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ...facts.python.source import PythonFile
 from ...facts.python.uses import PythonUse
 
@@ -20,14 +20,14 @@ class Changing:
     def __init__(self, surfaces: Surfaces):
         self._surfaces = surfaces
 
-    @cached_method
-    def words(self, module: str) -> frozenset[str]:
+    @cache_method
+    def list_words(self, module: str) -> frozenset[str]:
         """Last parts of the changing names of a top-level module."""
-        return frozenset(self._words_of(packages_of(module)))
+        return frozenset(self._list_words(list_packages(module)))
 
-    def _words_of(self, packages: Iterable[str]) -> Iterator[str]:
+    def _list_words(self, packages: Iterable[str]) -> Iterator[str]:
         for package in packages:
-            for line in self._surfaces.lines(package).values():
+            for line in self._surfaces.find_lines(package).values():
                 for name in line.events.get("python", ()):
                     parts = name.split(".")
                     if parts[-1] in ("__init__", "__new__"):
@@ -35,53 +35,53 @@ class Changing:
                     elif not parts[-1].startswith("__"):
                         yield parts[-1]
 
-    def stored(self, module: str) -> bool:
+    def is_stored(self, module: str) -> bool:
         """Whether versions of a package that a top-level module may come from are stored."""
-        return not self._surfaces.packages.isdisjoint(packages_of(module))
+        return not self._surfaces.packages.isdisjoint(list_packages(module))
 
-    def concerned(self, name: str) -> bool:
+    def may_change(self, name: str) -> bool:
         """Whether a dotted name may be, or lie in, one that changes."""
         head, *parts = name.split(".")
-        words = self.words(head)
+        words = self.list_words(head)
         return bool(words) and (head in words or not words.isdisjoint(parts))
 
 
-def packages_of(module: str) -> tuple[str, ...]:
+def list_packages(module: str) -> tuple[str, ...]:
     """Packages that a top-level module may come from. In ROS 2 the Python half of a package that has both is often one
     of its own, after which the module is not called."""
     return (module, f"{module}_py")
 
 
-def python_packages(files: Iterable[str]) -> set[str]:
+def find_python_packages(files: Iterable[str]) -> set[str]:
     """Names of the folders that are Python packages among some files."""
     return {path.split("/")[-2] for path in files if path.endswith("/__init__.py")}
 
 
-def uses_of(facts: PythonFile, own: frozenset[str], changing: Changing) -> Iterator[PythonUse]:
+def find_uses(facts: PythonFile, own: frozenset[str], changing: Changing) -> Iterator[PythonUse]:
     """Uses in one file of names that may have changed, or never been. own: top-level modules of the package itself.
     Besides what PythonUse tells, how is `import` for a module that is imported, `from` for a name that is imported from
     one, or a constant, and has not changed, and `name` for any other name."""
     told: set[str] = set()
     for item in facts.imports:
         head = item.module.partition(".")[0]
-        if item.level or head in own or not changing.stored(head):
+        if item.level or head in own or not changing.is_stored(head):
             continue
-        if changing.concerned(item.module):
+        if changing.may_change(item.module):
             yield PythonUse(item.module, "import", item.line, item.column, None, "", item.lazy, True, item.conditions)
         for word in item.names:
             name = f"{item.module}.{word}"
-            if word != "*" and name not in told and not changing.concerned(name):
+            if word != "*" and name not in told and not changing.may_change(name):
                 told.add(name)
                 yield PythonUse(name, "from", item.line, item.column, None, "", item.lazy, True, item.conditions)
     for attribute in facts.attributes:
         head, *_, word = attribute.text.split(".")
-        concerned = changing.concerned(attribute.text)
+        concerned = changing.may_change(attribute.text)
         constant = word.isupper() and attribute.text.count(".") > 1 and attribute.text not in told
-        if head not in own and (concerned or (constant and changing.stored(head))):
+        if head not in own and (concerned or (constant and changing.is_stored(head))):
             yield PythonUse(
                 attribute.text, "name" if concerned else "from", attribute.line, attribute.column, None, "",
                 attribute.lazy, True, attribute.conditions,
             )  # fmt: skip
     for use in facts.uses:
-        if use.name[0] != "." and use.name.partition(".")[0] not in own and changing.concerned(use.name):
+        if use.name[0] != "." and use.name.partition(".")[0] not in own and changing.may_change(use.name):
             yield use

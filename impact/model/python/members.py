@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ...facts.python.source import PythonFile
 from ...facts.python.uses import ELEMENT, KINDS, FieldUse
 from ...targets.surface.fields import Fields
-from ..members import FoundField, InterfaceScope, MemberType, NamedInterface, interfaces_imported, section_of
+from ..members import FoundField, InterfaceScope, MemberType, NamedInterface, find_imported_interfaces, find_section
 
 if TYPE_CHECKING:
     from ...targets.asked_versions import AskedVersions
@@ -23,40 +23,40 @@ def may_use_interfaces(
     if any(KINDS & {module.partition(".")[2], *names} and not (module.partition(".")[2] in KINDS and names)
            for module, names in modules):  # fmt: skip
         return True  # `import pkg.msg`, `from pkg import msg`
-    return not InterfaceScope(interfaces_imported(modules, table), table, asked, home).changing.isdisjoint(
+    return not InterfaceScope(find_imported_interfaces(modules, table), table, asked, home).changing.isdisjoint(
         file.words.split(" ")
     )
 
 
-def interfaces_used(uses: Iterable[FieldUse], table: Fields) -> list[NamedInterface]:
+def list_used(uses: Iterable[FieldUse], table: Fields) -> list[NamedInterface]:
     """The interfaces that uses are of, of both generations where both have one of that name."""
     named = dict.fromkeys(tuple(use.type.split(".")[:3]) for use in uses)
-    return interfaces_imported([(f"{package}.{kind}", (name,)) for package, kind, name in named], table)
+    return find_imported_interfaces([(f"{package}.{kind}", (name,)) for package, kind, name in named], table)
 
 
-def changing_members(uses: Iterable[FieldUse], scope: InterfaceScope) -> Iterator[tuple[FieldUse, FoundField]]:
+def find_changing_members(uses: Iterable[FieldUse], scope: InterfaceScope) -> Iterator[tuple[FieldUse, FoundField]]:
     """The uses of members that some version lacks."""
     for use in uses:
         if use.steps[-1] not in scope.changing:
             continue
-        type_ = _type(use.type, scope)
+        type_ = _resolve_type(use.type, scope)
         for step in use.steps[:-1]:
             if type_ is None:
                 break
             if step == ELEMENT:
                 type_ = type_._replace(several=False) if type_.several else None
             else:
-                type_ = scope.step(type_, step)
-        section = scope.changes(type_, use.steps[-1]) if type_ is not None else None
+                type_ = scope.resolve_field(type_, step)
+        section = scope.find_changed_section(type_, use.steps[-1]) if type_ is not None else None
         if type_ is not None and section is not None:
             yield use, FoundField(type_.interface, section, use.steps[-1], 0, True)
 
 
-def _type(text: str, scope: InterfaceScope) -> MemberType | None:
+def _resolve_type(text: str, scope: InterfaceScope) -> MemberType | None:
     """The type that `pkg.kind.Name` or `pkg.kind.Name.Request` is."""
     package, kind, name, *rest = text.split(".")
     for told in scope.by_name.get(name, ()):
         if told[0].package == package and told[0].name.startswith(f"{kind}/"):
-            section = section_of(told, rest)
+            section = find_section(told, rest)
             return MemberType(told[0], section) if section is not None else None
     return None

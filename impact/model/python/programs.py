@@ -90,7 +90,7 @@ class ScriptSetup:
 def list_started_programs(view: TargetView, package: Package) -> dict[str, bool]:
     """Programs of the package that the workspace starts with `ros2 run` or as nodes, and whether in any case."""
     found: dict[str, bool] = {}
-    for other in view.everyone():
+    for other in view.list_built():
         for use in other.digest.references:
             reference = use.reference
             if reference.kind == "executable" and reference.package == package.name:

@@ -11,7 +11,7 @@ from functools import cached_property
 
 import msgspec
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.python.reader import Import
 from ...facts.python.source import PythonFile
@@ -31,11 +31,11 @@ def list_undefined(
             continue  # settings of tools, which define names for them
         for use in facts.unbound:
             yield path, Import("", (use.text,), 0, use.line, use.column, use.lazy, use.conditions)
-        around = modules.list_around(path) if "." in posixpath.basename(_stem_of(path)) else frozenset()
+        around = modules.list_around(path) if "." in posixpath.basename(_strip_ending(path)) else frozenset()
         for item in facts.imports:
             if not item.level and item.module.partition(".")[0] in around:
                 continue  # a launch file is no module, so that the folder above its own is not searched
-            meant = modules.absolute(path, item) if item.level else item.module
+            meant = modules.make_absolute(path, item) if item.level else item.module
             program = path if facts.interpreter else ""
             if modules.lacks(meant, program) or (not item.level and modules.is_meant_by(item)):
                 yield path, msgspec.structs.replace(item, module="", names=(meant,))
@@ -66,7 +66,12 @@ def list_siblings(
     if any(use.text.startswith("sys.path") for facts in files.values() for use in facts.attributes):
         return  # more folders may be looked into
     modules = _Modules(files, (), ())
-    imported = {place for path, facts in files.items() for item in facts.imports for place in modules.named(path, item)}
+    imported = {
+        place
+        for path, facts in files.items()
+        for item in facts.imports
+        for place in modules.list_named_files(path, item)
+    }
     started = modules.list_started(setup)
     for path in sorted(started | imported):
         for item in files[path].imports:
@@ -86,11 +91,11 @@ def list_unlisted(
         folder, listed = posixpath.dirname(path), set(file.packages)
         if not listed or "*" in listed or any(one.startswith(("packages", "arguments")) for one in file.unresolved):
             continue
-        roots = {posixpath.dirname(file.places_of(folder, name)[1]) for name in listed if "." not in name}
+        roots = {posixpath.dirname(file.list_module_paths(folder, name)[1]) for name in listed if "." not in name}
         for importer, facts in files.items():
             if posixpath.dirname(importer) in roots or not f"{importer}/".startswith(tuple(f"{r}/" for r in roots)):
                 for item in facts.imports:
-                    owners = {modules.package_of(place, roots) for place in modules.named(importer, item)}
+                    owners = {modules.find_package(place, roots) for place in modules.list_named_files(importer, item)}
                     for owner in sorted(owners - listed - {""}):
                         lazy = item.lazy or not (importer in started or facts.interpreter)
                         yield importer, msgspec.structs.replace(item, module=owner, names=(UNLISTED,), lazy=lazy)
@@ -130,7 +135,7 @@ def offer_python(
     that it installs."""
     modules = {}
     for path, facts in files.items():
-        stem = _stem_of(path)
+        stem = _strip_ending(path)
         root = next((one for one in roots if stem == one or stem.startswith(f"{one}/")), None)
         if root is not None and f"{root}/__init__.py" in files:
             modules[stem[len(root) - len(posixpath.basename(root)) :].replace("/", ".")] = facts.bound
@@ -144,7 +149,7 @@ def list_undefined_functions(
     above. setup: the setup files of a package by their paths."""
     for path, file in setup:
         for _, module, line, function in file.entry_points:
-            place = next((one for one in file.places_of(posixpath.dirname(path), module) if one in files), None)
+            place = next((one for one in file.list_module_paths(posixpath.dirname(path), module) if one in files), None)
             name = function.partition(".")[0]
             if place is not None and name and files[place].bound and f" {name} " not in files[place].bound:
                 yield path, Import(module, (name,), 0, line, 0)
@@ -176,8 +181,8 @@ class _Modules:
         # Folders with an __init__.py that lie in none such, or in `src`, by their names.
         self._roots: dict[str, list[str]] = {}
         for path in files:
-            self._by_name.setdefault(posixpath.basename(_stem_of(path)), []).append(path)
-            root = _stem_of(path)
+            self._by_name.setdefault(posixpath.basename(_strip_ending(path)), []).append(path)
+            root = _strip_ending(path)
             around = posixpath.dirname(root)
             outermost = f"{around}/__init__.py" not in files or posixpath.basename(around) == "src"
             if path.endswith("/__init__.py") and outermost:
@@ -210,7 +215,7 @@ class _Modules:
             return False
         for roots in self._roots.values():
             for root in roots:
-                file = self._file_at(f"{root}/{rest.replace('.', '/')}")
+                file = self._find_file(f"{root}/{rest.replace('.', '/')}")
                 if file is None or any(other.module == item.module for other in file.imports):
                     continue
                 if any(self._is_of_another(other, root) for other in self._imports_of.get(head, ())):
@@ -231,36 +236,36 @@ class _Modules:
 
     def _is_of_another(self, item: Import, root: str) -> bool:
         """Whether what an import asks of another package is not at the same place below a root."""
-        file = self._file_at(f"{root}/{item.module.partition('.')[2].replace('.', '/')}")
+        file = self._find_file(f"{root}/{item.module.partition('.')[2].replace('.', '/')}")
         return file is None or not all(f" {name} " in file.bound for name in item.names)
 
-    def _file_at(self, stem: str) -> PythonFile | None:
+    def _find_file(self, stem: str) -> PythonFile | None:
         return self._files.get(f"{stem}.py") or self._files.get(f"{stem}/__init__.py")
 
     def lacks(self, module: str, program: str = "") -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none. program: the file
         that imports it where that is started, which finds the folders beside it."""
         head, *rest = module.split(".")
-        meant = self._meant(module) if rest else set()
+        meant = self._list_module_paths(module) if rest else set()
         beside = posixpath.join(posixpath.dirname(program), head)
         if rest and program and beside in self._folders and head not in sys.stdlib_module_names:
             meant.add("/".join((beside, *rest)))
         if not meant or not _GENERATED.isdisjoint(rest) or any(self.may_be_built(part) for part in rest):
             return False
-        there = {_stem_of(path) for path in self._by_name.get(rest[-1], ())}
+        there = {_strip_ending(path) for path in self._by_name.get(rest[-1], ())}
         return meant.isdisjoint(there) and not any(f"{f}/".startswith(f"{m}/") for m in meant for f in self._folders)
 
     def list_around(self, path: str) -> frozenset[str]:
         """The names of the outermost Python packages that a file lies in."""
         return frozenset(name for name, roots in self._roots.items() if any(path.startswith(f"{r}/") for r in roots))
 
-    def _meant(self, module: str) -> set[str]:
+    def _list_module_paths(self, module: str) -> set[str]:
         """The paths, without endings, that a module has below folders which its first name may be."""
         head, *rest = module.split(".")
         roots = self._roots.get(head, ()) if head not in sys.stdlib_module_names else ()
         return {"/".join((root, *rest)) for root in roots}
 
-    def absolute(self, path: str, item: Import) -> str:
+    def make_absolute(self, path: str, item: Import) -> str:
         """The module that a relative import names, from its outermost package on; empty where that is not known."""
         folder = path
         for _ in range(item.level):
@@ -271,10 +276,10 @@ class _Modules:
                     return f"{folder[len(posixpath.dirname(root)) :].lstrip('/').replace('/', '.')}.{item.module}"
         return ""
 
-    def named(self, path: str, item: Import) -> Iterator[str]:
+    def list_named_files(self, path: str, item: Import) -> Iterator[str]:
         """The files that an import from a package names by their package: the module, or modules among the names."""
-        module = self.absolute(path, item) if item.level else item.module
-        for stem in self._meant(module) if module else ():
+        module = self.make_absolute(path, item) if item.level else item.module
+        for stem in self._list_module_paths(module) if module else ():
             if stem in self._stems and not stem.endswith("/__init__"):
                 yield self._stems[stem]
             yield from (self._stems[f"{stem}/{name}"] for name in item.names if f"{stem}/{name}" in self._stems)
@@ -284,19 +289,19 @@ class _Modules:
         found: set[str] = set()
         for path, file in setup:
             for _, module, *_ in file.entry_points:
-                found.update(self._files.keys() & set(file.places_of(posixpath.dirname(path), module)))
+                found.update(self._files.keys() & set(file.list_module_paths(posixpath.dirname(path), module)))
         scripts = {path for path, facts in self._files.items() if facts.interpreter}
         reached = set(walk((*found, *scripts), self._list_imported))
         # A script counts as a module where something imports it.
         return frozenset(found.union(*map(self._list_imported, reached)))
 
-    @cached_method
+    @cache_method
     def _list_imported(self, path: str) -> set[str]:
         """The modules that a file imports in any case."""
         imports = (item for item in self._files[path].imports if not (item.lazy or item.conditions))
-        return {place for item in imports for place in self.named(path, item)}
+        return {place for item in imports for place in self.list_named_files(path, item)}
 
-    def package_of(self, path: str, roots: Collection[str]) -> str:
+    def find_package(self, path: str, roots: Collection[str]) -> str:
         """The Python package that a module lies in, below one of these folders; empty for another module."""
         folder = posixpath.dirname(path)
         root = next((one for one in roots if f"{folder}/".startswith(f"{one}/")), None)
@@ -304,7 +309,7 @@ class _Modules:
 
     @cached_property
     def _stems(self) -> dict[str, str]:
-        return {_stem_of(path): path for path in self._files}
+        return {_strip_ending(path): path for path in self._files}
 
     def is_beside(self, path: str, name: str) -> bool:
         """Whether a module of a Python package lies beside one of this name, and none at the top is called so."""
@@ -312,7 +317,7 @@ class _Modules:
         stem = posixpath.join(folder, name)
         if name in sys.stdlib_module_names or name in self._roots or f"{folder}/__init__.py" not in self._files:
             return False
-        inside = [_stem_of(one) == stem for one in self._by_name.get(name, ())]
+        inside = [_strip_ending(one) == stem for one in self._by_name.get(name, ())]
         return bool(inside) and all(inside) and self._stems[stem] != path
 
     def find(self, path: str, item: Import) -> str | None:
@@ -325,16 +330,16 @@ class _Modules:
                 folder = posixpath.dirname(folder)
             exact = posixpath.join(folder, ending).rstrip("/")
             near = near or self._by_name.get(posixpath.basename(exact), ())
-            found = [one for one in near if _stem_of(one) == exact]
+            found = [one for one in near if _strip_ending(one) == exact]
         elif "/" in ending:
-            meant = self._meant(item.module)
-            found = [one for one in near if _stem_of(one) in meant]
+            meant = self._list_module_paths(item.module)
+            found = [one for one in near if _strip_ending(one) in meant]
         else:  # of one word there are many modules elsewhere; the one beside a program comes first
-            meant = {posixpath.join(posixpath.dirname(path), ending), *self._meant(item.module)}
-            found = [one for one in near if len(near) == 1 and _stem_of(one) in meant]
+            meant = {posixpath.join(posixpath.dirname(path), ending), *self._list_module_paths(item.module)}
+            found = [one for one in near if len(near) == 1 and _strip_ending(one) in meant]
         return found[0] if len(found) == 1 else None
 
 
-def _stem_of(path: str) -> str:
+def _strip_ending(path: str) -> str:
     """The path of a module without its ending, the folder's of a package."""
     return path.removesuffix("/__init__.py").removesuffix(".py")

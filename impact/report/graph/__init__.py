@@ -5,7 +5,7 @@ from importlib import import_module
 from typing import Any
 
 from ...model.flow.graph import Graph
-from ...model.flow.select import NothingSelected, Selection, part_of, selected
+from ...model.flow.select import NothingSelected, Selection, extract_part, select_graph
 from ..style import Style
 from .text import WIDE
 from .text import render as as_text
@@ -24,20 +24,20 @@ def draw(
     asked: dict[str, Any] = {
         "nodes": nodes, "topics": topics, "packages": packages, "around": around, "hops": hops, "everything": keep,
     }  # fmt: skip
-    part, before = (selected(graph, **asked), None) if base is None else _compared(graph, base, asked)
+    part, before = (select_graph(graph, **asked), None) if base is None else _select_compared(graph, base, asked)
     if format == "text":
         return as_text(part, before, everything, style)
     return import_module(f".{format}", __name__).render(part, before)
 
 
-def _compared(graph: Graph, base: Graph, asked: dict[str, Any]) -> tuple[Selection, Graph]:
+def _select_compared(graph: Graph, base: Graph, asked: dict[str, Any]) -> tuple[Selection, Graph]:
     """Parts of a graph and of its base to be compared: what was asked for in either, so that nothing is new or gone
     because the question alone found it on one side. Raises NothingSelected where it finds nothing in both."""
     parts: list[Selection] = []
     missing: list[NothingSelected] = []
     for each in (graph, base):
         try:
-            parts.append(selected(each, **asked))
+            parts.append(select_graph(each, **asked))
         except NothingSelected as nothing:
             missing.append(nothing)
     if not parts:
@@ -45,5 +45,5 @@ def _compared(graph: Graph, base: Graph, asked: dict[str, Any]) -> tuple[Selecti
     nodes = {node.id for part in parts for node in part.graph.nodes}
     nodes |= {endpoint.node for part in parts for endpoint in part.graph.endpoints}
     names = {each.topic for part in parts for each in (*part.graph.endpoints, *part.graph.publishes)}
-    now, before = (part_of(each, nodes, names) for each in (graph, base))
+    now, before = (extract_part(each, nodes, names) for each in (graph, base))
     return Selection(now, max(part.hidden for part in parts), parts[0].asked), before

@@ -1,7 +1,7 @@
 """The message-flow graph for Graphviz: nodes as ellipses, topics as boxes, services and actions with dashed edges."""
 
-from ....edges.console import visible
-from ...model.flow.connections import Edge, edges, names_of
+from ....edges.console import escape
+from ...model.flow.connections import Edge, list_edges, name_nodes
 from ...model.flow.graph import Graph
 from ...model.flow.select import Selection
 
@@ -12,35 +12,35 @@ _SHAPES = {"topic": "box", "service": "diamond", "action": "hexagon"}
 def render(selection: Selection, base: Graph | None) -> str:
     """A digraph in the DOT language (https://graphviz.org/doc/info/lang.html)."""
     graph = selection.graph
-    names = (names_of(base) if base is not None else {}) | names_of(graph)
-    found = [edge for edge in edges(graph, base) if edge.node in names]
+    names = (name_nodes(base) if base is not None else {}) | name_nodes(graph)
+    found = [edge for edge in list_edges(graph, base) if edge.node in names]
     lines = ["digraph message_flow {", "  rankdir=LR;", "  node [fontname=Helvetica, fontsize=10];"]
     for node in sorted({edge.node for edge in found} | {node.id for node in graph.nodes}):
-        lines.append(f"  {quoted('n ' + node)} [shape=ellipse, label={_label(names[node])}];")
+        lines.append(f"  {quote_text('n ' + node)} [shape=ellipse, label={_format_label(names[node])}];")
     for kind, name in sorted({(edge.kind, edge.name) for edge in found}):
         types = sorted({t for edge in found if (edge.kind, edge.name) == (kind, name) for t in edge.types})
-        label = _label(name, *types)
-        lines.append(f"  {quoted(f'{kind} {name}')} [shape={_SHAPES[kind]}, style=rounded, label={label}];")
-    lines.extend(_edge(edge) for edge in found)
+        label = _format_label(name, *types)
+        lines.append(f"  {quote_text(f'{kind} {name}')} [shape={_SHAPES[kind]}, style=rounded, label={label}];")
+    lines.extend(_render_edge(edge) for edge in found)
     return "\n".join([*lines, "}"]) + "\n"
 
 
-def _edge(edge: Edge) -> str:
-    ends = [quoted("n " + edge.node), quoted(f"{edge.kind} {edge.name}")]
+def _render_edge(edge: Edge) -> str:
+    ends = [quote_text("n " + edge.node), quote_text(f"{edge.kind} {edge.name}")]
     style = []
     if edge.kind != "topic":
         style.append("style=dashed")
     if edge.mark:
-        style += [f'color="{COLOURS[edge.mark]}"', "penwidth=2", f"tooltip={_label(edge.mark + ' ' + edge.why)}"]
+        style += [f'color="{COLOURS[edge.mark]}"', "penwidth=2", f"tooltip={_format_label(edge.mark + ' ' + edge.why)}"]
     tail = f" [{', '.join(style)}]" if style else ""
     return f"  {' -> '.join(ends if edge.outward else reversed(ends))}{tail};"
 
 
-def _label(*lines: str) -> str:
+def _format_label(*lines: str) -> str:
     """A label: as a string, in which `\\n` ends a line, and `&amp;` and the like would be one character."""
-    return '"' + "\\n".join(quoted(line.replace("&", "&amp;"))[1:-1] for line in lines) + '"'
+    return '"' + "\\n".join(quote_text(line.replace("&", "&amp;"))[1:-1] for line in lines) + '"'
 
 
-def quoted(text: str) -> str:
+def quote_text(text: str) -> str:
     """A quoted string of DOT on one line: a backslash is itself, what a terminal or CI obeys is shown escaped."""
-    return '"' + visible(text).replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return '"' + escape(text).replace("\\", "\\\\").replace('"', '\\"') + '"'

@@ -11,10 +11,10 @@ from typing import Any
 import msgspec
 
 from ....edges.version import __version__
-from ...model.flow.connections import Edge, edges, names_of
+from ...model.flow.connections import Edge, list_edges, name_nodes
 from ...model.flow.graph import Endpoint, Graph, GuardAt, ParameterUse, Publish
 from ...model.flow.select import Selection
-from ..page import page
+from ..page import render_page
 
 _WAYS = 12
 _LONGEST = 2000
@@ -23,15 +23,15 @@ _LONGEST = 2000
 def render(selection: Selection, base: Graph | None) -> str:
     """The page as text."""
     template = Path(__file__).with_name("assets") / "graph.html"
-    return page(template, f"rosimpact graph: {selection.graph.root}", _data(selection, base))
+    return render_page(template, f"rosimpact graph: {selection.graph.root}", _build_data(selection, base))
 
 
-def _data(selection: Selection, base: Graph | None) -> dict[str, Any]:
+def _build_data(selection: Selection, base: Graph | None) -> dict[str, Any]:
     graph = selection.graph
-    found = edges(graph, base)
-    nodes = _nodes(graph, base, {edge.node for edge in found})
+    found = list_edges(graph, base)
+    nodes = _build_nodes(graph, base, {edge.node for edge in found})
     places = {node["id"]: place for place, node in enumerate(nodes)}
-    names = _names(found)
+    names = _build_names(found)
     named = {(name["kind"], name["name"]): place for place, name in enumerate(names)}
     return {
         "version": __version__,
@@ -43,17 +43,18 @@ def _data(selection: Selection, base: Graph | None) -> dict[str, Any]:
         "nodes": nodes,
         "names": names,
         "edges": [
-            _edge(edge) | {"node": places.get(edge.node, -1), "name": named[edge.kind, edge.name]} for edge in found
+            _build_edge(edge) | {"node": places.get(edge.node, -1), "name": named[edge.kind, edge.name]}
+            for edge in found
         ],
         "coverage": msgspec.to_builtins(graph.coverage),
     }
 
 
-def _nodes(graph: Graph, base: Graph | None, used: set[str]) -> list[dict[str, Any]]:
+def _build_nodes(graph: Graph, base: Graph | None, used: set[str]) -> list[dict[str, Any]]:
     """The nodes of the graph, then those of the base alone that have edges, with what is no edge."""
     old = {} if base is None else {node.id: node for node in base.nodes}
     now = {node.id for node in graph.nodes}
-    labels = (names_of(base) if base is not None else {}) | names_of(graph)
+    labels = (name_nodes(base) if base is not None else {}) | name_nodes(graph)
     rows: dict[str, dict[str, Any]] = {}
     for node in (*graph.nodes, *(node for name, node in old.items() if name in used and name not in now)):
         mark = "" if base is None else "removed" if node.id not in now else "" if node.id in old else "added"
@@ -62,18 +63,18 @@ def _nodes(graph: Graph, base: Graph | None, used: set[str]) -> list[dict[str, A
     for timer in graph.timers:
         if timer.node in rows:
             rows[timer.node]["timers"].append(msgspec.to_builtins(timer))
-    for (node, name), uses in _parameters(graph).items():
+    for (node, name), uses in _collect_parameters(graph).items():
         if node in rows:
             first = next((use for use in uses if use.kind == "declared"), uses[0])
             kinds = ", ".join(dict.fromkeys(use.kind for use in uses))
             rows[node]["parameters"].append([name, first.default, kinds, first.path, first.line, len(uses) - 1])
     for one in (*graph.endpoints, *graph.publishes):
         if not one.topic and one.node in rows:
-            rows[one.node]["unnamed"].append(_unnamed(one))
-    return [row | {key: _distinct(row[key]) for key in ("timers", "unnamed")} for row in rows.values()]
+            rows[one.node]["unnamed"].append(_build_unnamed(one))
+    return [row | {key: _remove_duplicates(row[key]) for key in ("timers", "unnamed")} for row in rows.values()]
 
 
-def _parameters(graph: Graph) -> dict[tuple[str, str], list[ParameterUse]]:
+def _collect_parameters(graph: Graph) -> dict[tuple[str, str], list[ParameterUse]]:
     """The uses of each parameter of each node: one that many functions read is one all the same."""
     found: dict[tuple[str, str], list[ParameterUse]] = {}
     for use in dict.fromkeys(graph.parameters):
@@ -81,13 +82,13 @@ def _parameters(graph: Graph) -> dict[tuple[str, str], list[ParameterUse]]:
     return found
 
 
-def _unnamed(one: Endpoint | Publish) -> dict[str, Any]:
+def _build_unnamed(one: Endpoint | Publish) -> dict[str, Any]:
     """What a node does under a name that is not known."""
     role, written = (one.role, one.written) if isinstance(one, Endpoint) else ("publish", one.variable)
     return {"role": role, "written": written, "type": one.type, "path": one.path, "line": one.line, "why": one.reason}
 
 
-def _names(found: Iterable[Edge]) -> list[dict[str, Any]]:
+def _build_names(found: Iterable[Edge]) -> list[dict[str, Any]]:
     """Topics, services and actions; one that all its edges mark alike is marked so itself."""
     groups: dict[tuple[str, str], list[Edge]] = {}
     for edge in found:
@@ -100,36 +101,36 @@ def _names(found: Iterable[Edge]) -> list[dict[str, Any]]:
     return rows
 
 
-def _edge(edge: Edge) -> dict[str, Any]:
-    row = {"role": edge.role, "outward": edge.outward, "mark": edge.mark, "why": edge.why, **_said(edge)}
-    return row if edge.before is None else row | {"before": _said(edge.before)}
+def _build_edge(edge: Edge) -> dict[str, Any]:
+    row = {"role": edge.role, "outward": edge.outward, "mark": edge.mark, "why": edge.why, **_describe_edge(edge)}
+    return row if edge.before is None else row | {"before": _describe_edge(edge.before)}
 
 
-def _said(edge: Edge) -> dict[str, Any]:
+def _describe_edge(edge: Edge) -> dict[str, Any]:
     """What the sources say of an edge: types, where it is made, where is published."""
     return {
         "types": edge.types,
-        "at": _distinct(map(_endpoint, edge.endpoints)),
-        "publishes": _distinct(map(_publish, edge.publishes)),
+        "at": _remove_duplicates(map(_build_endpoint, edge.endpoints)),
+        "publishes": _remove_duplicates(map(_build_publish, edge.publishes)),
     }
 
 
-def _endpoint(endpoint: Endpoint) -> dict[str, Any]:
+def _build_endpoint(endpoint: Endpoint) -> dict[str, Any]:
     row = msgspec.to_builtins(endpoint)
     return {
         key: row[key] for key in ("path", "line", "type", "written", "how", "qos", "callback", "function", "implied")
     }
 
 
-def _publish(publish: Publish) -> dict[str, Any]:
+def _build_publish(publish: Publish) -> dict[str, Any]:
     """A publish statement: what is published, and for each way to it what starts it and its guards, outermost first.
 
     Where no way is known, the guards around the statement stand alone."""
-    ways = [[_trigger(way.trigger.kind, way.trigger.detail), list(map(_guard, way.guards))] for way in publish.by]
+    ways = [[_format(way.trigger.kind, way.trigger.detail), list(map(_build_guard, way.guards))] for way in publish.by]
     if not ways:
-        started = [_trigger(trigger.kind, trigger.detail) for trigger in publish.triggers]
-        ways = [[", ".join(dict.fromkeys(filter(None, started))), list(map(_guard, publish.guards))]]
-    ways = _distinct(ways)
+        started = [_format(trigger.kind, trigger.detail) for trigger in publish.triggers]
+        ways = [[", ".join(dict.fromkeys(filter(None, started))), list(map(_build_guard, publish.guards))]]
+    ways = _remove_duplicates(ways)
     return {
         "path": publish.path,
         "line": publish.line,
@@ -140,16 +141,16 @@ def _publish(publish: Publish) -> dict[str, Any]:
     }
 
 
-def _trigger(kind: str, detail: str) -> str:
+def _format(kind: str, detail: str) -> str:
     return "" if kind == "unknown" else f"{kind} {detail}".strip()
 
 
-def _guard(guard: GuardAt) -> list[Any]:
+def _build_guard(guard: GuardAt) -> list[Any]:
     """Text, path, line."""
     text = {"if": "{}", "unless": "not ({})"}.get(guard.kind, f"{guard.kind} {{}}").replace("{}", guard.text)
     return [text[:_LONGEST], guard.path, guard.line]
 
 
-def _distinct(rows: Iterable[Any]) -> list[Any]:
+def _remove_duplicates(rows: Iterable[Any]) -> list[Any]:
     """The rows without repetitions, in their order."""
     return list({json.dumps(row, default=str): row for row in rows}.values())

@@ -4,12 +4,12 @@ from typing import Any
 
 import msgspec
 
-from ....edges.console import json_text
+from ....edges.console import format_json
 from ....edges.version import __version__
-from ...model.flow.connections import edges
+from ...model.flow.connections import list_edges
 from ...model.flow.graph import Coverage, Endpoint, Graph, Node, ParameterUse, Publish, Timer
-from ...model.flow.select import Selection, endpoints_of
-from ..schemas import SCHEMA, STABLE, generated_schema
+from ...model.flow.select import Selection, group_endpoints
+from ..schemas import SCHEMA, STABLE, generate_schema
 
 _LISTS = {
     "publisher": "publishers", "subscriber": "subscribers", "server": "servers", "client": "clients",
@@ -31,13 +31,13 @@ def render(selection: Selection, base: Graph | None) -> str:
         "services": [],
         "actions": [],
     }
-    for (kind, name), endpoints in endpoints_of(graph).items():
+    for (kind, name), endpoints in group_endpoints(graph).items():
         row: dict[str, Any] = {"name": name, "types": sorted({e.type for e in endpoints if e.type})}
         for role in dict.fromkeys(endpoint.role for endpoint in endpoints):
             row[_LISTS[role]] = sorted({e.node for e in endpoints if e.role == role})
         found[f"{kind}s"].append(row)
     for role, name in _LISTS.items():
-        found[name] = [_endpoint(endpoint) for endpoint in graph.endpoints if endpoint.role == role]
+        found[name] = [_build_endpoint(endpoint) for endpoint in graph.endpoints if endpoint.role == role]
     found["publishes"] = msgspec.to_builtins(graph.publishes)
     found["timers"] = msgspec.to_builtins(graph.timers)
     found["parameters"] = msgspec.to_builtins(graph.parameters)
@@ -47,13 +47,13 @@ def render(selection: Selection, base: Graph | None) -> str:
         found["changes"] = [
             {"change": edge.mark, "why": edge.why, "node": edge.node, "name": edge.name, "kind": edge.kind,
              "role": edge.role, "path": edge.endpoints[0].path, "line": edge.endpoints[0].line}
-            for edge in edges(graph, base)
+            for edge in list_edges(graph, base)
             if edge.mark
         ]  # fmt: skip
-    return json_text(found) + "\n"
+    return format_json(found) + "\n"
 
 
-def schema() -> str:
+def render_schema() -> str:
     """The JSON schema (draft 2020-12) of what render() gives; docs/graph.schema.json holds it."""
     kinds = [Node, Endpoint, Publish, Timer, ParameterUse, Coverage]
     (node, endpoint, publish, timer, parameter, coverage), parts = msgspec.json.schema_components(
@@ -85,10 +85,10 @@ def schema() -> str:
         f"What `rosimpact graph --format json` prints. {STABLE} `base` and `changes` are there with --base alone."
     )
     further = {"base": text, "changes": {"type": "array", "items": {"type": "object", "properties": change}}}
-    return generated_schema("message-flow graph", described, properties, parts, further)
+    return generate_schema("message-flow graph", described, properties, parts, further)
 
 
-def _endpoint(endpoint: Endpoint) -> dict[str, Any]:
+def _build_endpoint(endpoint: Endpoint) -> dict[str, Any]:
     row = msgspec.to_builtins(endpoint)
     del row["role"]
     return row

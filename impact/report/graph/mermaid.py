@@ -1,7 +1,7 @@
 """The message-flow graph as a Mermaid flowchart, for Markdown pages."""
 
-from ....edges.console import visible
-from ...model.flow.connections import Edge, edges, names_of
+from ....edges.console import escape
+from ...model.flow.connections import Edge, list_edges, name_nodes
 from ...model.flow.graph import Graph
 from ...model.flow.select import Selection
 from .dot import COLOURS
@@ -18,12 +18,12 @@ def render(selection: Selection, base: Graph | None) -> str:
     """A flowchart (https://mermaid.js.org/syntax/flowchart.html). What goes beyond MOST edges or ROOM is left out, what
     differs from the base last, and said."""
     graph = selection.graph
-    names = (names_of(base) if base is not None else {}) | names_of(graph)
-    found = [edge for edge in edges(graph, base) if edge.node in names]
-    kept = _kept(found, names)
+    names = (name_nodes(base) if base is not None else {}) | name_nodes(graph)
+    found = [edge for edge in list_edges(graph, base) if edge.node in names]
+    kept = _select_edges(found, names)
     ids: dict[tuple[str, str], str] = {}
 
-    def id_of(kind: str, name: str) -> str:
+    def assign_id(kind: str, name: str) -> str:
         return ids.setdefault((kind, name), f"{kind[0]}{len(ids)}")
 
     lines = ["flowchart LR"]
@@ -31,29 +31,29 @@ def render(selection: Selection, base: Graph | None) -> str:
         lines.append(f"  %% {len(found) - len(kept)} of {len(found)} edges are left out: ask for less with --around")
     links, styles = [], []
     for edge in kept:
-        node, name = id_of("node", edge.node), id_of(edge.kind, edge.name)
+        node, name = assign_id("node", edge.node), assign_id(edge.kind, edge.name)
         ends = (node, name) if edge.outward else (name, node)
         if edge.mark:
             styles.append(f"  linkStyle {len(links)} stroke:{COLOURS[edge.mark]},stroke-width:3px")
         links.append(f"  {ends[0]} {'-->' if edge.kind == 'topic' else '-.->'} {ends[1]}")
     for (kind, name), short in ids.items():
-        label = escaped(names.get(name, name) if kind == "node" else name)
+        label = escape_label(names.get(name, name) if kind == "node" else name)
         lines.append(f'  {short}(["{label}"])' if kind == "node" else f'  {short}["{label}"]')
     return "\n".join([*lines, *links, *styles]) + "\n"
 
 
-def _kept(found: list[Edge], names: dict[str, str]) -> list[Edge]:
+def _select_edges(found: list[Edge], names: dict[str, str]) -> list[Edge]:
     """Edges for which there is room, those that differ from the base before others, in the order given."""
     room = ROOM
     kept: set[int] = set()
     for place in sorted(range(len(found)), key=lambda place: not found[place].mark)[:MOST]:
-        room -= len(escaped(names[found[place].node])) + len(escaped(found[place].name)) + _LINES
+        room -= len(escape_label(names[found[place].node])) + len(escape_label(found[place].name)) + _LINES
         if room < 0:
             break
         kept.add(place)
     return [edge for place, edge in enumerate(found) if place in kept]
 
 
-def escaped(text: str) -> str:
+def escape_label(text: str) -> str:
     """A label's text: what Mermaid would read as its own is written as an entity."""
-    return "".join(c if c.isalnum() or c in " /_-.:~" else f"#{ord(c)};" for c in visible(text))
+    return "".join(c if c.isalnum() or c in " /_-.:~" else f"#{ord(c)};" for c in escape(text))

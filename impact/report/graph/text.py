@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 
-from ....edges.console import counted
-from ...model.flow.connections import Edge, conditions, edges, loops, names_of
+from ....edges.console import format_count
+from ...model.flow.connections import Edge, format_conditions, format_loops, list_edges, name_nodes
 from ...model.flow.graph import Coverage, Endpoint, Graph, GuardAt, Publish, Trigger, Unresolved
 from ...model.flow.select import Selection
-from ..columns import UNBROKEN, LinePart, laid_out
+from ..columns import UNBROKEN, LinePart, lay_out
 from ..style import PLAIN, Style
 
 _SHOWN = 20
@@ -23,128 +23,128 @@ WIDE = PLAIN._replace(width=UNBROKEN)
 def render(selection: Selection, base: Graph | None, everything: bool = False, style: Style = WIDE) -> str:
     """The graph for people; everything: all that was not resolved, not the first 20 alone."""
     graph = selection.graph
-    names = names_of(graph) | (names_of(base) if base is not None else {})
-    found = edges(graph, base)
-    lines = [*_head(found, graph, selection.hidden, style), ""]
+    names = name_nodes(graph) | (name_nodes(base) if base is not None else {})
+    found = list_edges(graph, base)
+    lines = [*_render_head(found, graph, selection.hidden, style), ""]
     groups: dict[tuple[str, str], list[Edge]] = {}
     for edge in found:
         groups.setdefault((edge.name, edge.kind), []).append(edge)
     for group in groups.values():
-        lines += [*_name(group, names, style), ""]
+        lines += [*_render_name(group, names, style), ""]
     alone = sorted({names[node.id] for node in graph.nodes} - {names.get(edge.node, "") for edge in found})
     if alone:
-        said = f"{counted(len(alone), 'node')} with none of these: {', '.join(alone)}"
-        lines += [*_line([LinePart(said)], style, 0, 2), ""]
+        said = f"{format_count(len(alone), 'node')} with none of these: {', '.join(alone)}"
+        lines += [*_render([LinePart(said)], style, 0, 2), ""]
     near = graph.coverage.unresolved
     if selection.asked and not everything:
         paths = {each.path for each in (*graph.endpoints, *graph.publishes)}
         near = tuple(one for one in near if one.path in paths)
-    lines += coverage_lines(graph.coverage, near, everything, style)
+    lines += render_coverage(graph.coverage, near, everything, style)
     return "\n".join(lines) + "\n"
 
 
-def _line(pieces: Sequence[LinePart], style: Style, indent: int, hang: int = _HANG) -> Iterator[str]:
-    return laid_out(pieces, style, indent, hang)
+def _render(pieces: Sequence[LinePart], style: Style, indent: int, hang: int = _HANG) -> Iterator[str]:
+    return lay_out(pieces, style, indent, hang)
 
 
-def _head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style) -> Iterator[str]:
-    said = [counted(len({node.id for node in graph.nodes}), "node")]
+def _render_head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style) -> Iterator[str]:
+    said = [format_count(len({node.id for node in graph.nodes}), "node")]
     for kind in ("topic", "service", "action"):
         names = {edge.name for edge in found if edge.kind == kind and edge.mark != "removed"}
-        said += [counted(len(names), kind)] if names else []
+        said += [format_count(len(names), kind)] if names else []
     text = ", ".join(said)
     if hidden:
         are, them = ("is", "it") if hidden == 1 else ("are", "them")
-        text += f" ({counted(hidden, 'name')} that most nodes have {are} hidden; --all shows {them})"
-    return _line([LinePart(text)], style, 0)
+        text += f" ({format_count(hidden, 'name')} that most nodes have {are} hidden; --all shows {them})"
+    return _render([LinePart(text)], style, 0)
 
 
-def _name(group: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
+def _render_name(group: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
     types = sorted({kind for edge in group for kind in edge.types})
     # No name begins a line: CI systems read what is there.
     name = LinePart(f"{group[0].kind} {group[0].name}", "bold")
-    yield from _line([name, LinePart(" or ".join(types) if types else "type not known")], style, 0)
-    for same in _alike(group):
-        yield from _edge(same, names, style)
+    yield from _render([name, LinePart(" or ".join(types) if types else "type not known")], style, 0)
+    for same in _group_alike(group):
+        yield from _render_edge(same, names, style)
 
 
-def _alike(group: Sequence[Edge]) -> list[list[Edge]]:
+def _group_alike(group: Sequence[Edge]) -> list[list[Edge]]:
     """Edges that the same lines of code make stand together: one library is used by many nodes."""
     found: dict[tuple, list[Edge]] = {}
     for edge in group:
-        found.setdefault((edge.mark, edge.why, edge.role, _said(edge), edge.before and _said(edge.before)), []).append(
-            edge
-        )
+        found.setdefault(
+            (edge.mark, edge.why, edge.role, _make_edge_key(edge), edge.before and _make_edge_key(edge.before)), []
+        ).append(edge)
     return list(found.values())
 
 
-def _said(edge: Edge) -> tuple:
+def _make_edge_key(edge: Edge) -> tuple:
     """All that is written of an edge but its node."""
     places = tuple((each.path, each.line, each.how, each.callback, each.qos) for each in edge.endpoints)
-    return edge.types, places, tuple(_statements(edge.publishes))
+    return edge.types, places, tuple(_list_statements(edge.publishes))
 
 
-def _edge(same: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
+def _render_edge(same: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
     edge, mark = same[0], _ROLES[same[0].mark]
     who = ", ".join(dict.fromkeys(names.get(each.node, each.node) or "(no node)" for each in same))
     line = [LinePart(f"{_SIGN[edge.mark]}{_VERBS[edge.role]:10s}", mark), LinePart(who, mark, hang=_NODES)]
-    for endpoint in _distinct(edge.endpoints):
+    for endpoint in _remove_duplicates(edge.endpoints):
         line.append(LinePart("", path=f"{endpoint.path}:{endpoint.line}"))
-        beside = _beside(endpoint, edge, style)
+        beside = _format_note(endpoint, edge, style)
         line += [LinePart(beside, mark or "dim")] if beside else []
-        yield from _line(line, style, _HANG if line[0].path else 0)
+        yield from _render(line, style, _HANG if line[0].path else 0)
         line = []
     if edge.before is not None:
-        yield from _differences(edge, edge.before, style)
+        yield from _render_differences(edge, edge.before, style)
         return
-    for statement in _statements(edge.publishes):
-        yield from _line(statement, style, _HANG, _HANG + 2)
+    for statement in _list_statements(edge.publishes):
+        yield from _render(statement, style, _HANG, _HANG + 2)
 
 
-def _differences(edge: Edge, before: Edge, style: Style) -> Iterator[str]:
+def _render_differences(edge: Edge, before: Edge, style: Style) -> Iterator[str]:
     """What a changed edge was in the base (`-`) and is now (`+`), then its publish statements that are as they were."""
-    for said in (_types, _qualities):
+    for said in (_list_types, _list_qos):
         old, now = said(before), said(edge)
         for sign, role, lines in (("-", "error", old - now), ("+", "good", now - old)):
             for line in sorted(lines):
-                yield from _line([LinePart(f"{sign} {line}", role)], style, _HANG - 2, _HANG + 2)
-    old, now = ({statement[1:]: statement for statement in _statements(each.publishes)} for each in (before, edge))
+                yield from _render([LinePart(f"{sign} {line}", role)], style, _HANG - 2, _HANG + 2)
+    old, now = ({statement[1:]: statement for statement in _list_statements(each.publishes)} for each in (before, edge))
     for sign, role, lines in (("- ", "error", old.keys() - now.keys()), ("+ ", "good", now.keys() - old.keys())):
         for statement in sorted((old | now)[line] for line in lines):
             first = statement[0]._replace(text=sign + statement[0].text)
             painted = [piece._replace(role=role) for piece in (first, *statement[1:])]
-            yield from _line(painted, style, _HANG - 2, _HANG + 2)
+            yield from _render(painted, style, _HANG - 2, _HANG + 2)
     for line in sorted(now.keys() & old.keys(), key=now.__getitem__):
-        yield from _line(now[line], style, _HANG, _HANG + 2)
-        was, is_now = (_ways(each.publishes, line) for each in (before, edge))
+        yield from _render(now[line], style, _HANG, _HANG + 2)
+        was, is_now = (_collect_ways(each.publishes, line) for each in (before, edge))
         for sign, role, ways in (("-", "error", was - is_now), ("+", "good", is_now - was)):
             for way in sorted(ways):
-                yield from _line([LinePart(f"{sign} {way}", role)], style, _HANG + 2, _HANG + 4)
+                yield from _render([LinePart(f"{sign} {way}", role)], style, _HANG + 2, _HANG + 4)
 
 
-def _ways(publishes: Sequence[Publish], line: tuple[LinePart, ...]) -> set[str]:
+def _collect_ways(publishes: Sequence[Publish], line: tuple[LinePart, ...]) -> set[str]:
     """Of the publish statements that are written as this line, the ways that lead there."""
     return {
-        _when(way.guards, (way.trigger,)) or "always"
+        _format_when(way.guards, (way.trigger,)) or "always"
         for publish in publishes
-        if _publish(publish)[1:] == line
+        if _render_publish(publish)[1:] == line
         for way in publish.by
     }
 
 
-def _types(edge: Edge) -> set[str]:
+def _list_types(edge: Edge) -> set[str]:
     return {f"type {kind}" for kind in edge.types}
 
 
-def _qualities(edge: Edge) -> set[str]:
+def _list_qos(edge: Edge) -> set[str]:
     return {f"QoS {each.qos.written}" for each in edge.endpoints if each.qos is not None and each.qos.written}
 
 
-def _distinct(endpoints: Sequence[Endpoint]) -> list[Endpoint]:
+def _remove_duplicates(endpoints: Sequence[Endpoint]) -> list[Endpoint]:
     return list({(endpoint.path, endpoint.line): endpoint for endpoint in endpoints}.values())
 
 
-def _beside(endpoint: Endpoint, edge: Edge, style: Style) -> str:
+def _format_note(endpoint: Endpoint, edge: Edge, style: Style) -> str:
     said = []
     if edge.why:
         said.append(f"changed: {edge.why}")
@@ -158,46 +158,46 @@ def _beside(endpoint: Endpoint, edge: Edge, style: Style) -> str:
     return f"[{'; '.join(said)}]" if said else ""
 
 
-def _statements(publishes: Sequence[Publish]) -> list[tuple[LinePart, ...]]:
+def _list_statements(publishes: Sequence[Publish]) -> list[tuple[LinePart, ...]]:
     """Publish statements: where, when and on what. One that publishes to several publishers is said once."""
-    return list(dict.fromkeys(map(_publish, publishes)))
+    return list(dict.fromkeys(map(_render_publish, publishes)))
 
 
-def _publish(publish: Publish) -> tuple[LinePart, ...]:
+def _render_publish(publish: Publish) -> tuple[LinePart, ...]:
     place = LinePart("publish at ", path=f"{publish.path}:{publish.line}")
-    said = [_when(publish.guards, publish.triggers)] + [f"{publish.ways} ways lead there"] * (publish.ways > 1)
+    said = [_format_when(publish.guards, publish.triggers)] + [f"{publish.ways} ways lead there"] * (publish.ways > 1)
     text = "; ".join(filter(None, said))
     return (place, LinePart(text)) if text else (place,)
 
 
-def _when(guards: Sequence[GuardAt], triggers: Sequence[Trigger]) -> str:
+def _format_when(guards: Sequence[GuardAt], triggers: Sequence[Trigger]) -> str:
     """Under which conditions, in which loops, and on what; empty for nothing."""
-    asked, around = conditions(guards), loops(guards)
+    asked, around = format_conditions(guards), format_loops(guards)
     on = ", ".join(dict.fromkeys(f"{each.kind} {each.detail}".strip() for each in triggers if each.kind != "unknown"))
     said = {"when": asked, "in": around, "on": on}
     return "; ".join(f"{word} {text}" for word, text in said.items() if text)
 
 
-def coverage_lines(
+def render_coverage(
     coverage: Coverage, near: Sequence[Unresolved], everything: bool, style: Style
 ) -> Iterator[str]:  # fmt: skip
     """How much was resolved, and what was not. near: of that, what may be listed; everything: all of it, not the first
     20 alone."""
     share = f", {coverage.by_default:,} by a parameter's default" if coverage.by_default else ""
-    yield from _line(
-        [LinePart(f"{coverage.resolved:,} of {counted(coverage.calls, 'API call')} resolved{share}; "
-               f"{counted(coverage.files, 'file')} read")], style, 0, 2,
+    yield from _render(
+        [LinePart(f"{coverage.resolved:,} of {format_count(coverage.calls, 'API call')} resolved{share}; "
+               f"{format_count(coverage.files, 'file')} read")], style, 0, 2,
     )  # fmt: skip
     if coverage.unread:
         shown = coverage.unread if everything else coverage.unread[:5]
         rest = f" and {len(coverage.unread) - len(shown)} more" if len(shown) < len(coverage.unread) else ""
-        yield from _line([LinePart(f"{len(coverage.unread)} of them in part: {', '.join(shown)}{rest}")], style, 0, 2)
+        yield from _render([LinePart(f"{len(coverage.unread)} of them in part: {', '.join(shown)}{rest}")], style, 0, 2)
     shown = near if everything else near[:_SHOWN]
     for one in shown:
         written = f" `{one.written}`" if one.written else ""
         pieces = [LinePart("", path=f"{one.path}:{one.line}:"), LinePart(f"{one.what}{written}: {one.reason}")]
-        yield from _line(pieces, style, 2, 4)
+        yield from _render(pieces, style, 2, 4)
     more = len(coverage.unresolved) - len(shown)
     if more:
         said = f"and {more:,} more" if shown else f"{more:,} {'is' if more == 1 else 'are'} not resolved"
-        yield from _line([LinePart(f"{said}; --all lists {'it' if more == 1 else 'them'}")], style, 2)
+        yield from _render([LinePart(f"{said}; --all lists {'it' if more == 1 else 'them'}")], style, 2)

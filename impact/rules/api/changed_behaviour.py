@@ -23,10 +23,10 @@ Not reported
 from collections.abc import Iterator, Sequence
 
 from ...model.package import NameUse
-from ...targets.changes import ChangeRow, all_uses, behaves_differently
+from ...targets.changes import ChangeRow, behaves_differently, load_uses
 from ...targets.evidence_record import Evidence
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
-from .changed_default import long_term_before
+from .changed_default import find_previous_lts
 from .diagnosis import is_of_another_distro
 
 
@@ -38,10 +38,10 @@ from .diagnosis import is_of_another_distro
 def changed_behaviour(views: Sequence[TargetView]) -> Iterator[tuple[TargetView, Diagnostic]]:
     if not views:
         return
-    table = all_uses("behaviour")
+    table = load_uses("behaviour")
     workspace = views[0].workspace
     own = {function for package in workspace for function in package.digest.functions}
-    before = long_term_before(views[0].target.distro) if len(views) == 1 else None
+    before = find_previous_lts(views[0].target.distro) if len(views) == 1 else None
     fresh: dict[str, bool] = {}
     for package in workspace:
         seen: set[tuple[str, str]] = set()
@@ -58,7 +58,7 @@ def changed_behaviour(views: Sequence[TargetView]) -> Iterator[tuple[TargetView,
             holding = [view for view in views if behaves_differently(row, view.target)]
             if not holding or (len(holding) == len(views) and not fresh[row.old]):
                 continue  # known before it is asked what the use is of, which is dear
-            asked = [view for view in views if _counts(view, package, use, row)]
+            asked = [view for view in views if _is_relevant(view, package, use, row)]
             with_it = [view for view in asked if view in holding]
             if not with_it or (len(with_it) == len(asked) and not fresh[row.old]):
                 continue
@@ -73,10 +73,10 @@ def changed_behaviour(views: Sequence[TargetView]) -> Iterator[tuple[TargetView,
                 yield view, Diagnostic(use.at, shown, package.name, data, evidence=evidence)
 
 
-def _counts(view: TargetView, package: Package, use: NameUse, row: ChangeRow) -> bool:
+def _is_relevant(view: TargetView, package: Package, use: NameUse, row: ChangeRow) -> bool:
     """Whether a use is compiled or run on a target that has the package in some version."""
-    if not view.builds(package) or behaves_differently(row, view.target) is None or not view.active(use.conditions):
+    if not view.builds(package) or behaves_differently(row, view.target) is None or not view.applies(use.conditions):
         return False
     if use.language == "yaml" and is_of_another_distro(view, use.at.path, package.digest.files):
         return False
-    return view.concerned(package, row, use.at.path)
+    return view.may_concern(package, row, use.at.path)

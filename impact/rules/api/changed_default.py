@@ -21,10 +21,10 @@ Not reported
 from functools import cache
 
 from ...targets.distro.distro import DistroTarget
-from ...targets.distro.known import known_distros
-from ...targets.surface.offers_cpp import defaults_changed
+from ...targets.distro.known import list_known_distros
+from ...targets.surface.offers_cpp import find_changed_default
 from ...targets.symbol import Availability
-from ...targets.version import at_least
+from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .uses import list_cpp_uses
 
@@ -41,7 +41,7 @@ def changed_default(view: TargetView, package: Package):
         found = use.found
         if found.form != "default" or not use.sure or not _came_lately(view.target, found):
             continue
-        values = defaults_changed(view.offers, found, use.arguments)
+        values = find_changed_default(view.offers, found, use.arguments)
         if values is None:
             continue
         data = {"old": values[0], "new": values[1], "upstream": found.package, "since": found.since}
@@ -50,16 +50,16 @@ def changed_default(view: TargetView, package: Package):
 
 def _came_lately(target: DistroTarget, found: Availability) -> bool:
     """Whether a change came after the long-term distro before the target's."""
-    earlier = long_term_before(target.distro)
-    version = earlier.version(found.package) if earlier is not None else None
-    return version is None or not at_least(version, found.since)
+    earlier = find_previous_lts(target.distro)
+    version = earlier.find_version(found.package) if earlier is not None else None
+    return version is None or not is_at_least(version, found.since)
 
 
 @cache
-def long_term_before(distro: str) -> DistroTarget | None:
+def find_previous_lts(distro: str) -> DistroTarget | None:
     """The long-term distro of the same generation before one."""
-    here = next((one for one in known_distros() if one.name == distro), None)
+    here = next((one for one in list_known_distros() if one.name == distro), None)
     if here is None:
         return None
-    earlier = [one for one in known_distros() if one.lts and one.ros == here.ros and one.released < here.released]
+    earlier = [one for one in list_known_distros() if one.lts and one.ros == here.ros and one.released < here.released]
     return DistroTarget(max(earlier, key=lambda one: one.released).name) if earlier else None

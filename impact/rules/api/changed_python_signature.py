@@ -24,7 +24,7 @@ Not reported
 """
 
 from ..vocabulary import Package, TargetView, Text, rule
-from .diagnosis import UPSTREAM, data_of, diagnose
+from .diagnosis import UPSTREAM, build_data, diagnose
 from .uses import list_python_uses
 
 _HERE = f"{UPSTREAM}[[ ({{horizon}})]]"
@@ -44,13 +44,13 @@ _HERE = f"{UPSTREAM}[[ ({{horizon}})]]"
 )
 def changed_python_signature(view: TargetView, package: Package):
     # What parameters are called now, where a reviewed table knows: by `function.parameter`.
-    renamed = {change.old: change.new.rpartition(".")[2] for change in view.changes("python-api") if change.new}
+    renamed = {change.old: change.new.rpartition(".")[2] for change in view.list_changes("python-api") if change.new}
     for use in list_python_uses(view, package):
         found = use.found
         if found.form not in ("call", "override"):
             continue
         evidence = found.evidence
-        data = {**data_of(found), "detail": found.detail}
+        data = {**build_data(found), "detail": found.detail}
         data["declaration"] = evidence.new[0] if evidence is not None and evidence.new else ""
         names = [f"`{renamed[key]}` for `{one}`" for one in use.keywords if (key := f"{use.name}.{one}") in renamed]
         data["spelling"] = " and ".join(names)

@@ -32,14 +32,14 @@ Not reported
 
 from collections.abc import Iterator
 
-from ....edges.console import counted
+from ....edges.console import format_count
 from ...model.standards import find_failing_standard
-from ...targets.availability import of_row
-from ...targets.changes import function_of, shows_no_type, standards_of
+from ...targets.availability import convert_row
+from ...targets.changes import find_function, find_standards, shows_no_type
 from ...targets.symbol import Horizon, Symbol
 from ...targets.target import ChangeInForce
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rate_upcoming, rule
-from .diagnosis import UPSTREAM, data_of, diagnose
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
+from .diagnosis import UPSTREAM, build_data, diagnose
 from .uses import UnservedUse, list_cpp_uses
 
 # What every C++ file is compiled with, whatever its package declares.
@@ -87,7 +87,7 @@ def changed_signature(view: TargetView):
 
 
 def _diagnose_use(use: UnservedUse, package: Package) -> Diagnostic | Upcoming:
-    data = {**data_of(use.found), "arguments": counted(use.arguments, "argument")}
+    data = {**build_data(use.found), "arguments": format_count(use.arguments, "argument")}
     kind = use.found.form if use.found.earlier else f"{use.found.form} early"
     return diagnose(use.found, use.at, use.name, package.name, use.doubts, kind=kind, data=data)
 
@@ -99,7 +99,7 @@ def _list_reviewed(view: TargetView) -> Iterator[Diagnostic]:
         for label, (change, ahead) in view.coming.items()
         if change.kind == "call-changed" and change.package not in _COMPILER
     }
-    refused.update((change.old, (change, None)) for change in view.changes("call-changed"))
+    refused.update((change.old, (change, None)) for change in view.list_changes("call-changed"))
     refused = {label: row for label, row in refused.items() if row[0].package not in view.workspace.may_have}
     for package in view if refused else ():
         yield from rate_upcoming(_list_reviewed_of(view, package, refused))
@@ -121,23 +121,23 @@ def _list_reviewed_of(
     }
     for use, change, ahead in uses:
         if (
-            function_of(use.text) in own.get(use.language, ())
-            or not view.active(use.conditions)
-            or not (change.package in _COMPILER or view.concerned(package, change, use.at.path))
-            or (ahead is not None and not view.active_on(ahead, use.conditions))
+            find_function(use.text) in own.get(use.language, ())
+            or not view.applies(use.conditions)
+            or not (change.package in _COMPILER or view.may_concern(package, change, use.at.path))
+            or (ahead is not None and not view.is_active_on(ahead, use.conditions))
         ):
             continue
-        standard = find_failing_standard(view, package, use, *standards_of(change.old))
+        standard = find_failing_standard(view, package, use, *find_standards(change.old))
         if standard is None:
             continue
         shown = use.shown or use.text
-        found = of_row(Symbol("c++", use.text), change)
-        found = found if ahead is None else found.on(ahead)
-        doubts = doubts_of_place(view, use.role, use.conditions)
+        found = convert_row(Symbol("c++", use.text), change)
+        found = found if ahead is None else found.apply_horizon(ahead)
+        doubts = list_place_doubts(view, use.role, use.conditions)
         doubts = doubts if use.language == "cpp" else (*doubts, Doubt.LATE)
         doubts = (*doubts, Doubt.AMBIGUOUS) if shows_no_type(use.text) else doubts
         doubts = (*doubts, Doubt.GUARDED) if view.is_included_under_conditions(package, change.package) else doubts
-        data = {**data_of(found), "standard": standard, "advice": change.new}
+        data = {**build_data(found), "standard": standard, "advice": change.new}
         if standard:
             data["since"] = ""  # the version is bound to the standard
             found = found._replace(evidence=None)

@@ -18,14 +18,14 @@ Not reported
     Code that a version test excludes on the target.
 """
 
-from ...targets.availability import of_row
+from ...targets.availability import convert_row
 from ...targets.symbol import Symbol
 from ..vocabulary import Doubt, TargetView, rule
-from .diagnosis import availability_texts, diagnose
+from .diagnosis import build_availability_texts, diagnose
 from .uses import list_cpp_uses, list_python_uses
 
 
-@rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=availability_texts())
+@rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=build_availability_texts())
 def deprecated_name(view: TargetView):
     seen = set()
     for package in view:
@@ -38,7 +38,7 @@ def deprecated_name(view: TargetView):
                 yield diagnose(use.found, use.at, use.name, package.name)
     rows = {
         c.old: c
-        for c in view.changes("api-removed", "api-renamed", "python-removed", "cmake-removed", "cmake-renamed")
+        for c in view.list_changes("api-removed", "api-renamed", "python-removed", "cmake-removed", "cmake-renamed")
         if c.state == "deprecated" and c.old
     }
     for package in view:
@@ -47,14 +47,14 @@ def deprecated_name(view: TargetView):
         names += [(use.name, use.at, use.conditions) for use in package.build.uses]
         for text, at, conditions in names:
             change = rows.get(text)
-            if change is None or not view.active(conditions) or not view.concerned(package, change, at.path):
+            if change is None or not view.applies(conditions) or not view.may_concern(package, change, at.path):
                 continue
             if not f"{text}.".startswith(gone):  # else what it stands in has gone with it, which is reported
                 seen.add((at.path, at.line))
                 # What the next distro removes of CMake, removed-cmake-name says.
                 cmake = change.kind.startswith("cmake")
-                if not cmake or view.availability(Symbol("command", text)).state != "upcoming":
-                    yield diagnose(of_row(Symbol("c++", text), change), at, text, package.name)
+                if not cmake or view.find_availability(Symbol("command", text)).state != "upcoming":
+                    yield diagnose(convert_row(Symbol("c++", text), change), at, text, package.name)
     for package in view:
         for use in list_cpp_uses(view, package):
             if use.found.state == "deprecated" and use.sure and (use.at.path, use.at.line) not in seen:

@@ -15,7 +15,7 @@ from ..vocabulary import (
     Together,
     Upcoming,
     Value,
-    doubts_of_place,
+    list_place_doubts,
 )
 
 UPSTREAM = "{upstream}[[ {version}]]"
@@ -28,7 +28,7 @@ GONE_PACKAGE = Text(
 """For what find_gone_package() yields."""
 
 
-def availability_texts(verb: str = "use") -> dict[str, Text]:
+def build_availability_texts(verb: str = "use") -> dict[str, Text]:
     """The texts for what is_missing, deprecated or upcoming, by the kinds that diagnose() gives. verb: what one does
     with the replacement."""
     help = (
@@ -45,7 +45,7 @@ def availability_texts(verb: str = "use") -> dict[str, Text]:
     }
 
 
-def data_of(found: Availability) -> dict[str, Value]:
+def build_data(found: Availability) -> dict[str, Value]:
     """The data that the texts name. Of what to do instead only the best is told."""
     moved = found.moved_to if found.state != "not yet" else ""
     replacement = "" if moved else found.replacement
@@ -65,11 +65,11 @@ def data_of(found: Availability) -> dict[str, Value]:
 
 def find_missing(view: TargetView, kind: str, name: str, packages: Iterable[str]) -> Availability | None:
     """What is known of a thing that none of these packages has here, or will have; None for all else."""
-    found = view.availability(Symbol(kind, name, tuple(packages)))
+    found = view.find_availability(Symbol(kind, name, tuple(packages)))
     return found if found.is_missing or found.state == "upcoming" else None
 
 
-def lacking_of(upstream: str) -> tuple[Together, ...]:
+def make_version_together(upstream: str) -> tuple[Together, ...]:
     """What all have in common that a package of another version, or its absence, breaks."""
     return (Together(f"version of {upstream}", everywhere=True),)
 
@@ -87,13 +87,13 @@ def diagnose(
     order: tuple = (),
 ) -> Diagnostic | Upcoming:
     """What is to be said of something that a use needs. doubts: about the place. kind, data: which text, and what it
-    names, where it is none of availability_texts(). order: see Upcoming; by default the place."""
-    given = data_of(found) if data is None else data
+    names, where it is none of build_availability_texts(). order: see Upcoming; by default the place."""
+    given = build_data(found) if data is None else data
     kind = kind or ("never" if found.form == "never" else found.state)
     all_doubts = (*doubts, found.sure or Doubt.INCOMPLETE)
     diagnostic = Diagnostic(
         at, subject, package, given, kind, all_doubts,
-        fix=fix, evidence=found.evidence, together=lacking_of(found.package),
+        fix=fix, evidence=found.evidence, together=make_version_together(found.package),
     )  # fmt: skip
     if found.state != "upcoming" or found.horizon is None:
         return diagnostic
@@ -111,18 +111,18 @@ def find_gone_package(
         return
     if not view.is_package(upstream) or upstream in view.workspace.packages or upstream in package.declared:
         return
-    if view.available(upstream) or view.underlaid or view.private(upstream):
+    if view.is_available(upstream) or view.underlaid or view.is_private(upstream):
         return
     found = find_missing(view, "package", upstream, ())
     if found is not None and found.state in ("removed", "not yet"):
-        last = view.target.last_distro(upstream)
+        last = view.target.find_last_distro(upstream)
         data = {
-            "upstream": upstream, "distro": view.target.distro, "replacement": view.successor(upstream),
+            "upstream": upstream, "distro": view.target.distro, "replacement": view.find_successor(upstream),
             "last": last if found.state == "removed" and last != view.target.distro else "",
         }  # fmt: skip
-        doubts = (*doubts_of_place(view, use.role), Doubt.LATE)
+        doubts = (*list_place_doubts(view, use.role), Doubt.LATE)
         yield Diagnostic(
-            use.at, subject, package.name, data, "package", doubts, together=lacking_of(upstream)
+            use.at, subject, package.name, data, "package", doubts, together=make_version_together(upstream)
         )  # fmt: skip
 
 

@@ -5,14 +5,14 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from ....edges.memory import kept_with
+from ....edges.memory import cache_in_derived
 from ...model.misspelling import is_slip
 from ...model.package import IncludeUse
-from ...targets.availability import of_row
-from ...targets.providers.library import versioned_folder
+from ...targets.availability import convert_row
+from ...targets.providers.library import find_versioned_folder
 from ...targets.symbol import Availability, Symbol
 from ...targets.target import ChangeInForce
-from ..vocabulary import Doubt, FixAction, Package, TargetView, doubts_of_place
+from ..vocabulary import Doubt, FixAction, Package, TargetView, list_place_doubts
 from .moved_header import respell
 from .parameter_header import ParameterHeaders
 
@@ -34,8 +34,8 @@ class IncludedHeaders:
     def __init__(self, view: TargetView):
         self._view = view
         kinds = ("header-removed", "header-renamed", "header-moved")
-        self._gone = {c.old: c for c in view.changes(*kinds) if c.state == "removed" and c.old}
-        self._early = {c.new: c for c in view.changes(*kinds[1:]) if c.state == "absent" and c.new}
+        self._gone = {c.old: c for c in view.list_changes(*kinds) if c.state == "removed" and c.old}
+        self._early = {c.new: c for c in view.list_changes(*kinds[1:]) if c.state == "absent" and c.new}
         self._quiet: set[str] = set()
         self._parameters = ParameterHeaders(view)
 
@@ -47,24 +47,24 @@ class IncludedHeaders:
         foreign = _list_files_of_other_generation(view, package)
         for include in package.digest.includes:
             path = include.path
-            if path in self._quiet or not view.active(include.conditions):
+            if path in self._quiet or not view.applies(include.conditions):
                 continue
             if self._parameters.find_fault(include):
                 continue
             if view.workspace.provides_header(path):
                 self._quiet.add(path)
                 continue
-            if versioned_folder(view.target, path) is None:
-                doubts = self._doubts_of(package, include)
+            if find_versioned_folder(view.target, path) is None:
+                doubts = self._collect_doubts(package, include)
                 if not doubts or include.at.path not in foreign:
                     yield include, doubts
 
-    def _doubts_of(self, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
-        doubts = doubts_of_place(self._view, include.role, include.conditions)
+    def _collect_doubts(self, package: Package, include: IncludeUse) -> tuple[Doubt, ...]:
+        doubts = list_place_doubts(self._view, include.role, include.conditions)
         if not include.targets:
             return (*doubts, Doubt.UNCOMPILED)
         compiling = (target for target in package.build.targets if target.name in include.targets)
-        return doubts if any(self._view.certain(t.conditions) for t in compiling) else (*doubts, Doubt.CONDITIONAL)
+        return doubts if any(self._view.is_sure(t.conditions) for t in compiling) else (*doubts, Doubt.CONDITIONAL)
 
     def skip(self, path: str) -> None:
         """Leaves a header of which nothing is known to be wrong out from now on, unless a place may say otherwise."""
@@ -78,19 +78,19 @@ class IncludedHeaders:
         view, path = self._view, include.path
         symbol = Symbol("header", path)
         if (change := self._find_row(path)) is not None:
-            found = of_row(symbol, change)
+            found = convert_row(symbol, change)
             as_it_is = found.state == "removed" and change.kind != "header-removed"
             return HeaderLoss(found, fix=respell(view, package, include, found.replacement) if as_it_is else ())
         change, ahead = view.coming.get(path, (None, None))
         is_header_row = change is not None and change.kind.startswith("header")
-        if change is not None and ahead is not None and is_header_row and view.active_on(ahead, include.conditions):
+        if change is not None and ahead is not None and is_header_row and view.is_active_on(ahead, include.conditions):
             fix = respell(view, package, include, change.new) if change.kind != "header-removed" else ()
-            return HeaderLoss(of_row(symbol, change).on(ahead), fix=fix, ordered=True)
-        found = view.header_availability(path)
+            return HeaderLoss(convert_row(symbol, change).apply_horizon(ahead), fix=fix, ordered=True)
+        found = view.find_header_availability(path)
         if found is not None and view.breaks_under(found, include.conditions):
             fix = () if found.state == "not yet" else respell(view, package, include, found.replacement)
             return HeaderLoss(found, fix=fix, ordered=True)
-        found = view.lost_header(path)
+        found = view.find_lost_header(path)
         if found is None:
             return None
         if found.form == "platform" and view.unknown_contents.may_hold(package, path):
@@ -103,7 +103,7 @@ class IncludedHeaders:
         change = self._gone.get(path)
         if change is not None and change.package in view.workspace.unread_names:
             return None
-        if change is not None and not view.nested_header(change.package, path):
+        if change is not None and not view.has_nested_header(change.package, path):
             return change
         change = self._early.get(path)
         if change is None or view.has_released_header(path.partition("/")[0], path):
@@ -125,8 +125,8 @@ def _list_files_of_other_generation(view: TargetView, package: Package) -> froze
     return including[other] - including[own] if including[own] else frozenset()
 
 
-@kept_with
-def included_headers(view: TargetView) -> IncludedHeaders:
+@cache_in_derived
+def get_included_headers(view: TargetView) -> IncludedHeaders:
     """Those of a view, made once."""
     return IncludedHeaders(view)
 
@@ -143,7 +143,7 @@ def find_misspelt(view: TargetView, package: Package, path: str, includer: str =
     somebody has what it names."""
     if path.startswith("."):
         return _find_other_ending(package, path, includer)
-    answered = any(provider.sure or provider.name != package.name for provider in view.header(path))
+    answered = any(provider.sure or provider.name != package.name for provider in view.find_header(path))
     if answered or len(path.rpartition("/")[2]) < _SHORTEST:
         return None
     bare = "/" not in path
@@ -154,25 +154,25 @@ def find_misspelt(view: TargetView, package: Package, path: str, includer: str =
     generated = _OF_RECONFIGURE.match(path)
     if generated is None or not any(made.how == "reconfigure" for made in package.build.generated):
         return None
-    known = view.is_package(generated["package"]) or generated["package"] in view.declared(package)
+    known = view.is_package(generated["package"]) or generated["package"] in view.collect_declared(package)
     return None if known else f"{package.name}/{path.rpartition('/')[2]}"
 
 
 def is_answered(view: TargetView, path: str) -> bool:
     """Whether somebody may have a header; a package of the workspace has no more than is known of it."""
-    return any(p.sure or p.name not in view.workspace.packages for p in view.header(path))
+    return any(p.sure or p.name not in view.workspace.packages for p in view.find_header(path))
 
 
 def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
     """Whether an include names what no file of the workspace is called, no build here makes and nobody is known to
     have."""
     path, build = include.path, package.build
-    if not include.targets or not view.certain(include.conditions) or build.unresolved:
+    if not include.targets or not view.is_sure(include.conditions) or build.unresolved:
         return False
     if is_answered(view, path):
         return False
     name = path.rpartition("/")[2]
-    if not re.fullmatch(r"[\w./+-]+\.(?:h|hh|hpp|hxx|H)", path) or name in _file_names(view):
+    if not re.fullmatch(r"[\w./+-]+\.(?:h|hh|hpp|hxx|H)", path) or name in _list_file_names(view):
         return False
     if any(made.rstrip("/").endswith(name) or made.endswith("/") for made in build.made):
         return False
@@ -189,7 +189,7 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
 def _list_direct(view: TargetView, package: Package) -> set[str]:
     """What a package declares and finds itself."""
     passed = {one.item for target in package.build.targets for one in target.links if one.how == "ament"}
-    return {*view.declared(package), *(one.name for one in package.build.found), *passed}
+    return {*view.collect_declared(package), *(one.name for one in package.build.found), *passed}
 
 
 def _has_known_headers(view: TargetView, name: str) -> bool:
@@ -201,13 +201,13 @@ def _has_known_headers(view: TargetView, name: str) -> bool:
     if name in view.preinstalled or name.startswith("python"):
         return True
     if view.is_package(name):
-        return view.offers.package(name) is not None and not view.unknown_contents.is_carried_library(name)
-    keys = (name, *view.debian(name), *(p.package or p.name for p in view.cmake(name)))
+        return view.offers.find_package(name) is not None and not view.unknown_contents.is_carried_library(name)
+    keys = (name, *view.list_debs(name), *(p.package or p.name for p in view.find_cmake(name)))
     return view.providers.knows_system(keys)
 
 
-@kept_with
-def _file_names(view: TargetView) -> frozenset[str]:
+@cache_in_derived
+def _list_file_names(view: TargetView) -> frozenset[str]:
     """The names of all files of the workspace."""
     files = (path for package in view.workspace for path in package.digest.files)
     return frozenset(path.rpartition("/")[2] for path in files)
@@ -231,5 +231,5 @@ def is_bridge(view: TargetView, package: Package) -> bool:
     therefore includes headers of both."""
     if view.target.ros != 2:
         return False
-    bridged = "ros1_bridge" in view.declared(package)
+    bridged = "ros1_bridge" in view.collect_declared(package)
     return bridged or any(include.path.startswith("ros/") for include in package.digest.includes)

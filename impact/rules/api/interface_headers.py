@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from ...model.misspelling import SpellingIndex
 from ...model.package import IncludeUse, is_header
-from ...model.workspace import snake
-from ...targets.surface.fields import default_fields
+from ...model.workspace import make_snake_case
+from ...targets.surface.fields import load_fields
 from ...targets.symbol import Availability
 from ..vocabulary import Doubt, Package, TargetView, Text, Value
 from .diagnosis import find_missing
@@ -53,7 +53,7 @@ def find_interface_fault(view: TargetView, path: str) -> Fault | None:
     of_this_generation = ("/" in stem) == (view.target.ros == 2)
     name = ""
     if stem and of_this_generation and ending == ("hpp" if "/" in stem else "h"):
-        history = default_fields().history(head, view.target.ros)
+        history = load_fields().find_history(head, view.target.ros)
         name = history.by_header.get(stem, "") if history is not None else ""
     fault = None
     if head in view.workspace.packages:
@@ -74,7 +74,11 @@ def find_interface_fault(view: TargetView, path: str) -> Fault | None:
 
 def _is_nobody(view: TargetView, name: str) -> bool:
     """Whether no package is known by a name, and none of the workspace declares one."""
-    return not (view.is_package(name) or view.private(name) or any(name in view.declared(p) for p in view.everyone()))
+    return not (
+        view.is_package(name)
+        or view.is_private(name)
+        or any(name in view.collect_declared(p) for p in view.list_built())
+    )
 
 
 def _respell(view: TargetView, head: str, rest: str) -> Fault | None:
@@ -86,11 +90,11 @@ def _respell(view: TargetView, head: str, rest: str) -> Fault | None:
     if view.target.ros == 2:
         if len(parts) == 1 and rest.endswith(".h") and _CAMEL.match(name):
             folder = "srv" if name.endswith(("Request", "Response")) else "msg"
-            return Fault("ros 1 name", {"replacement": f"{head}/{folder}/{snake(name)}.hpp"})
+            return Fault("ros 1 name", {"replacement": f"{head}/{folder}/{make_snake_case(name)}.hpp"})
         if len(parts) == 1 and rest.endswith(".hpp") and (folder := _find_folder(view, head, name)):
             return Fault("folder", {"folder": f"{head}/{folder}", "replacement": f"{head}/{folder}/{rest}"})
         if len(parts) == 2 and parts[0] in _FOLDERS and name != name.lower():
-            return Fault("case", {"replacement": f"{head}/{parts[0]}/{snake(name).replace('__', '_')}.hpp"})
+            return Fault("case", {"replacement": f"{head}/{parts[0]}/{make_snake_case(name).replace('__', '_')}.hpp"})
     elif len(parts) == 2 and parts[0] in _FOLDERS and rest.endswith(".hpp"):
         return Fault("ros 2 name", {"replacement": f"{head}/<Name>.h"})
     return None
@@ -101,8 +105,8 @@ def _find_folder(view: TargetView, head: str, stem: str) -> str:
     beside the folders."""
     if head in view.workspace.packages:
         made = {folder for folder in _FOLDERS if view.workspace.is_interface_header(head, f"{folder}/{stem}.hpp")}
-    elif view.providers.known_releases(head) and not view.providers.header_history(head, f"{head}/{stem}.hpp"):
-        history = default_fields().history(head, view.target.ros)
+    elif view.providers.list_known_releases(head) and not view.providers.list_header_spans(head, f"{head}/{stem}.hpp"):
+        history = load_fields().find_history(head, view.target.ros)
         made = {folder for folder in _FOLDERS if history is not None and f"{folder}/{stem}" in history.by_header}
     else:
         return ""
@@ -114,7 +118,7 @@ def _generates_interfaces(view: TargetView, name: str) -> bool:
     package = view.workspace.packages.get(name)
     if package is not None:
         return package.is_interface_package
-    return name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")) and view.target.version(name) is not None
+    return name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")) and view.target.find_version(name) is not None
 
 
 def _find_moved(view: TargetView, head: str, rest: str) -> Fault | None:
@@ -128,20 +132,20 @@ def _find_never_generated(view: TargetView, path: str) -> Fault | None:
     """A path that looks like that of a generated header, where no version of the package that was read has such an
     interface, all of them were read up to the target's, and the release has no such file."""
     head, _, rest = path.partition("/")
-    version = view.target.version(head)
-    history = default_fields().history(head, view.target.ros) if version else None
-    if not version or history is None or history.state(version) is None:
+    version = view.target.find_version(head)
+    history = load_fields().find_history(head, view.target.ros) if version else None
+    if not version or history is None or history.find_state(version) is None:
         return None
     if not _GENERATED_HEADER[view.target.ros].match(rest) or not history.read_up_to(version):
         return None
-    if view.providers.header_history(head, path) or view.has_released_header(head, path) is not False:
+    if view.providers.list_header_spans(head, path) or view.has_released_header(head, path) is not False:
         return None
     stem, _, ending = rest.rpartition(".")
-    close = SpellingIndex(s for s in history.by_header if ("/" in s) == ("/" in rest)).nearest(stem)
+    close = SpellingIndex(s for s in history.by_header if ("/" in s) == ("/" in rest)).find_nearest(stem)
     return Fault("never generated", {"upstream": head, "replacement": f"{head}/{close}.{ending}" if close else ""})
 
 
-def doubts_of_c_header(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt, ...] | None:
+def collect_c_header_doubts(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt, ...] | None:
     """What speaks against an error where a file includes a header of C; None where the file may be about C."""
     beside = {i.path for i in package.digest.includes if i.at.path == include.at.path} - {include.path}
     if include.role == "aside" or include.path + "pp" in beside:
@@ -149,10 +153,10 @@ def doubts_of_c_header(view: TargetView, package: Package, include: IncludeUse) 
     if not any(path.startswith("rclcpp") for path in beside):
         return None
     own = any(path == include.at.path and inner for path, inner in package.digest.inner)
-    if own or not is_header(include.at.path) or not view.certain(include.conditions):
+    if own or not is_header(include.at.path) or not view.is_sure(include.conditions):
         return (Doubt.UNCOMPILED,)  # what the package's own headers bring along is not followed
     machine, wanted = view.machine, include.path + "pp"
     known = frozenset(beside)
-    unknown = [path for path in machine.outside(known) if path in known and not view.is_standard(path)]
-    brought = machine.bits((wanted,)) & machine.mask(known)
+    unknown = [path for path in machine.list_unknown_headers(known) if path in known and not view.is_standard(path)]
+    brought = machine.find_bits((wanted,)) & machine.compute_mask(known)
     return (Doubt.UNCOMPILED,) if unknown or brought else (Doubt.INCOMPLETE,)

@@ -21,18 +21,18 @@ Not reported
 """
 
 from ...model.package import IncludeUse
-from ...targets.availability import of_row
-from ...targets.evidence import of_offered
+from ...targets.availability import convert_row
+from ...targets.evidence import make_offer_evidence
 from ...targets.symbol import Availability, Symbol
 from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, rule
-from .diagnosis import availability_texts, data_of
+from .diagnosis import build_availability_texts, build_data
 
 
-@rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=availability_texts("include"))
+@rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=build_availability_texts("include"))
 def moved_header(view: TargetView):
     moved = {
         c.old: c
-        for c in view.changes("header-removed", "header-renamed", "header-moved")
+        for c in view.list_changes("header-removed", "header-renamed", "header-moved")
         if c.state == "deprecated" and c.old
     }
     known: dict[str, Availability | None] = {}
@@ -41,34 +41,34 @@ def moved_header(view: TargetView):
             path = include.path
             change = moved.get(path)
             if path not in known:
-                known[path] = of_row(Symbol("header", path), change) if change else _find_deprecated(view, path)
+                known[path] = convert_row(Symbol("header", path), change) if change else _find_deprecated(view, path)
             found = known[path]
-            if found is None or not view.active(include.conditions) or view.workspace.provides_header(path):
+            if found is None or not view.applies(include.conditions) or view.workspace.provides_header(path):
                 continue
             removed = change is not None and change.kind == "header-removed"
             fix = () if removed else respell(view, package, include, found.replacement)
             yield Diagnostic(
-                include.at, path, package.name, data_of(found), "deprecated", fix=fix, evidence=found.evidence
+                include.at, path, package.name, build_data(found), "deprecated", fix=fix, evidence=found.evidence
             )
 
 
 def _find_deprecated(view: TargetView, path: str) -> Availability | None:
     """A header that warns in the target's version of who provides it, by the stored surfaces."""
-    owners = [p.name for p in view.header(path) if p.kind == "ros" and p.name not in view.workspace.packages]
+    owners = [p.name for p in view.find_header(path) if p.kind == "ros" and p.name not in view.workspace.packages]
     found = view.offers.find("header", path, owners)
     if found is None or found.state != "deprecated" or not found.sure:
         return None
     return Availability(Symbol("header", path), "deprecated", found.package, found.version,
-                        replacement=found.instead, evidence=of_offered(found))  # fmt: skip
+                        replacement=found.instead, evidence=make_offer_evidence(found))  # fmt: skip
 
 
 def respell(view: TargetView, package: Package, include: IncludeUse, path: str) -> tuple[Replace, ...]:
     """The fix that includes a header by its new path: where the target has it there, and the package has who provides
     it."""
     at = include.at
-    if not path or not view.certain(include.conditions) or view.environment.headers(path) is not True:
+    if not path or not view.is_sure(include.conditions) or view.environment.headers(path) is not True:
         return ()
-    if not view.answered(view.header(path), view.build_environment(package)):
+    if not view.is_met(view.find_header(path), view.build_environment(package)):
         return ()
     # The column is that of `<` or the quotation mark.
     return (Replace(at.path, at.line, at.column + 1, include.path, path),)

@@ -25,9 +25,9 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.cmake.links import linked_items
+from ...model.cmake.links import list_linked_items
 from ...model.package import IncludeUse
-from ...targets.version import at_least
+from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _HELP = "include `{replacement}`"
@@ -39,7 +39,7 @@ class ParameterHeaders:
     Source: generate_parameter_library's CMake at the tags."""
 
     def __init__(self, view: TargetView):
-        version = view.target.version("generate_parameter_library")
+        version = view.target.find_version("generate_parameter_library")
         own = "generate_parameter_library" in view.workspace.packages
         self.version = "" if own else version or ""
         self.owner = {
@@ -55,7 +55,7 @@ class ParameterHeaders:
         owner = self.owner.get(file.removesuffix(".hpp")) if file.endswith(".hpp") else None
         if owner is None or head not in ("", owner) or include.role == "aside":
             return None
-        installed, only_new = at_least(self.version, "0.4.0"), at_least(self.version, "1.0.0")
+        installed, only_new = is_at_least(self.version, "0.4.0"), is_at_least(self.version, "1.0.0")
         if head and not installed:
             return "early", file
         if not head and only_new:
@@ -87,7 +87,7 @@ def parameter_header(view: TargetView):
     for package in view:
         for include in package.digest.includes:
             fault = headers.find_fault(include)
-            if fault is not None and view.active(include.conditions):
+            if fault is not None and view.applies(include.conditions):
                 kind, replacement = fault
                 data = {"version": headers.version, "replacement": replacement}
                 doubts = (Doubt.DISTURBS,) if kind == "installed" else ()
@@ -100,10 +100,10 @@ def _list_unlinked(view: TargetView, package: Package, headers: ParameterHeaders
     seen = set()
     for include in package.digest.includes:
         library = include.path.rpartition("/")[2].removesuffix(".hpp")
-        if headers.owner.get(library) != package.name or not view.certain(include.conditions):
+        if headers.owner.get(library) != package.name or not view.is_sure(include.conditions):
             continue
         for name in include.targets:
-            items = linked_items(package, name) if (name, library) not in seen else None
+            items = list_linked_items(package, name) if (name, library) not in seen else None
             if items is None or library in items or any("$" in item and "::" not in item for item in items):
                 continue
             if any(one.alias_of == library and one.name in items for one in targets.values()):

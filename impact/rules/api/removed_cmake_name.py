@@ -28,15 +28,15 @@ from collections.abc import Iterator
 from ...facts.condition import Condition
 from ...model.cmake.names import MODULES
 from ...targets.symbol import Symbol
-from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Upcoming, doubts_of_place, rate_upcoming, rule
-from .diagnosis import availability_texts, diagnose, find_missing
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Upcoming, list_place_doubts, rate_upcoming, rule
+from .diagnosis import build_availability_texts, diagnose, find_missing
 
 Names = list[tuple[str, At, tuple[Condition, ...], str]]
 
 
-@rule(scope="target", texts=availability_texts())
+@rule(scope="target", texts=build_availability_texts())
 def removed_cmake_name(view: TargetView):
-    rows = view.changes("cmake-removed", "cmake-renamed")
+    rows = view.list_changes("cmake-removed", "cmake-renamed")
     gone = {c.old: c.package for c in rows if c.state in ("removed", "deprecated")}
     for package in view:
         names: Names = [(use.name, use.at, use.conditions, use.kind) for use in package.build.uses]
@@ -57,12 +57,12 @@ def _list_reviewed(
     seen = set()
     for name, at, conditions, kind in names:
         owner = gone.get(name) or (folded.get(name.lower()) if kind == "command" else None)
-        if owner is None or name in seen or not view.active(conditions):
+        if owner is None or name in seen or not view.applies(conditions):
             continue
-        found = view.availability(Symbol(kind, name, (owner,)))
+        found = view.find_availability(Symbol(kind, name, (owner,)))
         if view.breaks_under(found, conditions):
             seen.add(name)
-            doubts = (*doubts_of_place(view, "build", conditions), kind != "variable" or Doubt.INCOMPLETE)
+            doubts = (*list_place_doubts(view, "build", conditions), kind != "variable" or Doubt.INCOMPLETE)
             yield diagnose(found._replace(sure=True), at, name, package.name, doubts)
 
 
@@ -75,9 +75,9 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
         # A variable may be set in more ways than its package shows.
         if kind == "variable" or (kind == "target" and ("::" not in name or "$" in name or name in own)):
             continue
-        if not view.active(conditions):
+        if not view.applies(conditions):
             continue
-        certain = view.certain(conditions)
+        certain = view.is_sure(conditions)
         key = kind, name.lower() if kind == "command" else name
         if key not in places or (certain and not places[key][1]):
             places[key] = at, certain, conditions
@@ -97,7 +97,7 @@ def _may_be_built(view: TargetView, package: Package, name: str) -> bool:
     """Whether a package that comes along is called like a system library, and so may have another version of it."""
     space = _fold(name.partition("::")[0])
     found = (one.name for one in package.build.found if one.how == "find_package")
-    return any(space in _fold(one) for one in view.transitive_dependencies(found) if view.is_package(one))
+    return any(space in _fold(one) for one in view.list_transitive(found) if view.is_package(one))
 
 
 def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
@@ -111,7 +111,7 @@ def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
         or bool(package.build.unresolved)
         or view.unknown_contents.is_made_apart(package, name)
         or any(f"Find{one}" in MODULES or one in view.workspace.find_modules for one in named)
-        or any(provider.kind == "ros" for one in named for provider in view.cmake(one)[:1])
+        or any(provider.kind == "ros" for one in named for provider in view.find_cmake(one)[:1])
     )
 
 

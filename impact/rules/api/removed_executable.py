@@ -29,22 +29,22 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.package import ReferenceUse
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rule
 from .diagnosis import (
     GONE_PACKAGE,
     UPSTREAM,
-    availability_texts,
+    build_availability_texts,
     diagnose,
     find_gone_package,
     find_missing,
     is_of_another_distro,
-    lacking_of,
+    make_version_together,
 )  # fmt: skip
 
 
 @rule(
     texts={
-        **availability_texts(),
+        **build_availability_texts(),
         "package": GONE_PACKAGE,
         "argument": Text(f"`{{file}}` of {UPSTREAM} no longer has an argument `{{name}}`"),
         "argument early": Text(f"`{{file}}` of {UPSTREAM} has no argument `{{name}}`[[ (added in {{since}})]]"),
@@ -59,44 +59,44 @@ def removed_executable(view: TargetView, package: Package):
         if reference.package and reference.package != package.name and "$" not in reference.name:
             if reference.kind == "executable":
                 yield from find_gone_package(view, package, use, reference.package, reference.name)
-                yield from _lost(view, package.name, use, "executable", reference.name)
+                yield from _report(view, package.name, use, "executable", reference.name)
             elif reference.kind == "file":
                 path = _launch_file(view, reference.package, reference.name)
-                yield from _lost(view, package.name, use, "launch file", path)
-                yield from _arguments(view, package.name, use, path)
+                yield from _report(view, package.name, use, "launch file", path)
+                yield from _check_arguments(view, package.name, use, path)
 
 
-def _lost(view: TargetView, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Diagnostic | Upcoming]:
+def _report(view: TargetView, package: str, use: ReferenceUse, side: str, name: str) -> Iterator[Diagnostic | Upcoming]:
     found = find_missing(view, side, name, (use.reference.package,))
     if found is not None:
         sure = view.target.ros == 2 and not use.reference.conditional and use.role != "test"
         compiled = view.target.ros == 1 or not name.endswith((".launch", ".launch.xml"))
-        doubts = (*doubts_of_place(view, use.role), sure or Doubt.LATE, compiled or Doubt.UNCOMPILED)
+        doubts = (*list_place_doubts(view, use.role), sure or Doubt.LATE, compiled or Doubt.UNCOMPILED)
         yield diagnose(found, use.at, name, package, doubts)
 
 
 def _launch_file(view: TargetView, package: str, name: str) -> str:
     """The launch file that is meant; on a command line it is told without its folder."""
-    offer = view.offers.package(package) if "/" not in name else None
+    offer = view.offers.find_package(package) if "/" not in name else None
     if offer is None or any(posixpath.basename(launch.path) == name for launch in offer.build.launches):
         return name
-    return next((one.name for one in offer.every("launch file") if posixpath.basename(one.name) == name), name)
+    return next((one.name for one in offer.list_offered("launch file") if posixpath.basename(one.name) == name), name)
 
 
-def _arguments(view: TargetView, package: str, use: ReferenceUse, path: str) -> Iterator[Diagnostic]:
+def _check_arguments(view: TargetView, package: str, use: ReferenceUse, path: str) -> Iterator[Diagnostic]:
     """Arguments given to an included launch file that no launch file of the target's version declares."""
     reference = use.reference
     for name in reference.arguments or ():
         found = find_missing(view, "launch argument", f"{path} {name}", (reference.package,))
-        offer = view.offers.package(reference.package) if found is not None else None
+        offer = view.offers.find_package(reference.package) if found is not None else None
         if found is None or offer is None or found.state == "upcoming":
             continue
         if any(name == known for launch in offer.build.launches for known, _ in launch.arguments):
             continue
         data = {"file": path, "name": name, "upstream": found.package, "version": found.version, "since": found.since}
         kind = "argument" if found.state == "removed" else "argument early"
-        doubts = (*doubts_of_place(view, use.role), Doubt.LATE)
+        doubts = (*list_place_doubts(view, use.role), Doubt.LATE)
         yield Diagnostic(
             use.at, f"{path} {name}", package, data, kind, doubts,
-            evidence=found.evidence, together=lacking_of(found.package),
+            evidence=found.evidence, together=make_version_together(found.package),
         )  # fmt: skip

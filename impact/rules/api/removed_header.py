@@ -30,21 +30,21 @@ Not reported
 
 from ...model.package import is_header
 from ..vocabulary import Package, TargetView, Text, rule
-from .diagnosis import availability_texts, diagnose
-from .included_headers import find_misspelt, included_headers, is_bridge
+from .diagnosis import build_availability_texts, diagnose
+from .included_headers import find_misspelt, get_included_headers, is_bridge
 from .interface_headers import find_interface_fault
 
 
 @rule(
     texts={
-        **availability_texts("include"),
+        **build_availability_texts("include"),
         "broken": Text("no package of the workspace has or generates `{subject}`"),
         "platform": Text("no package of {upstream} has `{subject}`"),
         "nested": Text("`{subject}` is not installed by {upstream} {version}", "[[include `{replacement}`]]"),
     },
 )
 def removed_header(view: TargetView, package: Package):
-    headers = included_headers(view)
+    headers = get_included_headers(view)
     for include, doubts in headers.list_asked(package):
         path, at = include.path, include.at
         order = (not is_header(at.path), at.path, at.line)

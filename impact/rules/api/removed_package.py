@@ -26,7 +26,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.cmake.build import FoundPackage
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 
 _GONE = "package `{subject}` is not available in {distro}"
 TEXTS = {
@@ -44,30 +44,30 @@ def removed_package(view: TargetView, package: Package):
 
 def list_gone_packages(view: TargetView, package: Package, kind: str) -> Iterator[Diagnostic]:
     """Diagnostics for every use of a package whose change of the given kind is in force."""
-    gone = {c.old or c.package: c.new for c in view.changes(kind) if c.state == "removed"}
+    gone = {c.old or c.package: c.new for c in view.list_changes(kind) if c.state == "removed"}
     uses = [
-        (d.name, "declared", view.manifest_place(package, d),
+        (d.name, "declared", view.find_place(package, d),
          (d.kind in ("build", "buildtool", "exec") or Doubt.TEST,))
         for d in package.manifest.dependencies
-        if d.kind not in ("conflict", "replace") and view.active_manifest(d.condition)
+        if d.kind not in ("conflict", "replace") and view.is_declaration_active(d.condition)
     ]  # fmt: skip
     uses += [
-        (f.name, "found", f.at, _doubts_of_search(view, f))
+        (f.name, "found", f.at, _collect_search_doubts(view, f))
         for f in package.build.found
-        if view.active(f.conditions) and not (f.quiet and not f.required and f.name in package.build.asked)
+        if view.applies(f.conditions) and not (f.quiet and not f.required and f.name in package.build.asked)
     ]
     seen = set()
     for name, how, at, doubts in uses:
-        if name not in gone or name in seen or view.available(name):
+        if name not in gone or name in seen or view.is_available(name):
             continue
         seen.add(name)
         data = {"distro": view.target.distro, "replacement": gone[name]}
         yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone[name] else how, doubts)
 
 
-def _doubts_of_search(view: TargetView, found: FoundPackage) -> tuple[Doubt | bool, ...]:
+def _collect_search_doubts(view: TargetView, found: FoundPackage) -> tuple[Doubt | bool, ...]:
     """What speaks against an error where CMake looks for a package. What it does not always look for, or goes on
     without, and belongs to the other generation of ROS, is for builds in that."""
-    doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
-    dispensable = any(isinstance(each, Doubt) for each in doubts) and view.target.other_generation(found.name)
+    doubts = (*list_place_doubts(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
+    dispensable = any(isinstance(each, Doubt) for each in doubts) and view.target.is_other_generation(found.name)
     return (*doubts, Doubt.DISPENSABLE) if dispensable else doubts

@@ -25,9 +25,9 @@ Not reported
 """
 
 from ...model.undeclared_parameters import list_undeclared_parameters
-from ...targets.evidence import of_offered
+from ...targets.evidence import make_offer_evidence
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
-from .diagnosis import is_of_another_distro, lacking_of
+from .diagnosis import is_of_another_distro, make_version_together
 
 _HELP = "[[set `{replacement}`]]"
 
@@ -57,5 +57,5 @@ def removed_parameter(view: TargetView, package: Package):
         }
         yield Diagnostic(
             at, one.use.name, package.name, data, "removed" if one.is_gone else "not yet",
-            evidence=of_offered(offered), together=lacking_of(offered.package),
+            evidence=make_offer_evidence(offered), together=make_version_together(offered.package),
         )  # fmt: skip

@@ -27,13 +27,13 @@ Not reported
 import difflib
 import re
 
-from ....edges.memory import kept_with
+from ....edges.memory import cache_in_derived
 from ...model.package import ReferenceUse
 from ...model.python.programs import has_unknown_commands
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 from .diagnosis import (
     GONE_PACKAGE,
-    availability_texts,
+    build_availability_texts,
     diagnose,
     find_gone_package,
     find_missing,
@@ -43,7 +43,7 @@ from .diagnosis import (
 
 @rule(
     texts={
-        **availability_texts(),
+        **build_availability_texts(),
         "package": GONE_PACKAGE,
         "own": Text("`{subject}` is not declared by {upstream}", help="[[did you mean `{alike}`?]]"),
     },
@@ -67,20 +67,20 @@ def removed_plugin(view: TargetView, package: Package):
             if not any("$" in one for one in known) and not has_unknown_commands(owner):
                 close = difflib.get_close_matches(name, sorted(known), 1)
                 data = {"upstream": head, "alike": close[0] if close else ""}
-                doubts = (*doubts_of_place(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
+                doubts = (*list_place_doubts(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
                 yield Diagnostic(use.at, name, package.name, data, "own", doubts)
             continue
-        found = find_missing(view, "plugin", name, _packages(view, package, use))
+        found = find_missing(view, "plugin", name, _list_candidates(view, package, use))
         if found is None:
             yield from find_gone_package(view, package, use, head, name)
             continue
-        other = _respelt(view, found.package, name)
-        doubts = (*doubts_of_place(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
+        other = _find_respelling(view, found.package, name)
+        doubts = (*list_place_doubts(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
         found = found._replace(replacement=other, moved_to="") if other else found
         yield diagnose(found, use.at, name, package.name, doubts)
 
 
-@kept_with
+@cache_in_derived
 def _list_declared(view: TargetView) -> dict[str, set[str]]:
     """Names of the plugins and components of each package of the workspace."""
     found: dict[str, set[str]] = {}
@@ -91,10 +91,10 @@ def _list_declared(view: TargetView) -> dict[str, set[str]]:
     return found
 
 
-def _packages(view: TargetView, package: Package, use: ReferenceUse) -> list[str]:
+def _list_candidates(view: TargetView, package: Package, use: ReferenceUse) -> list[str]:
     """Packages that may have a plugin: the one that is named, the one it is called after, else any that comes along."""
     heads = (use.reference.package, _find_package_part(use.reference.name))
-    named = [name for name in heads if name and view.is_package(name) and view.available(name)]
+    named = [name for name in heads if name and view.is_package(name) and view.is_available(name)]
     return named or sorted(name for name in view.build_environment(package) if name not in view.workspace.packages)
 
 
@@ -103,8 +103,8 @@ def _find_package_part(name: str) -> str:
     return re.split(r"/|::", name)[0]
 
 
-def _respelt(view: TargetView, package: str, name: str) -> str:
+def _find_respelling(view: TargetView, package: str, name: str) -> str:
     """The same class as the target's version calls it."""
-    offer = view.offers.package(package)
+    offer = view.offers.find_package(package)
     known = {plugin.name for plugin in offer.build.plugins} if offer is not None else set()
     return next((one for one in (name.replace("/", "::"), name.replace("::", "/")) if one != name and one in known), "")

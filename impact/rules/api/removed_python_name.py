@@ -26,12 +26,12 @@ Not reported
     written.
 """
 
-from ..vocabulary import SEVERITIES, Doubt, Package, TargetView, rule, severity
-from .diagnosis import availability_texts, diagnose
+from ..vocabulary import SEVERITIES, Doubt, Package, TargetView, limit_severity, rule
+from .diagnosis import build_availability_texts, diagnose
 from .uses import UnservedUse, list_python_uses
 
 
-@rule(texts=availability_texts())
+@rule(texts=build_availability_texts())
 def removed_python_name(view: TargetView, package: Package):
     # Of each name the worst place in a file: what follows a failed import is not reached.
     worst: dict[tuple[str, str, bool], UnservedUse] = {}
@@ -45,4 +45,4 @@ def removed_python_name(view: TargetView, package: Package):
 
 
 def _rank(use: UnservedUse) -> int:
-    return SEVERITIES.index(severity(*use.doubts, use.found.sure or Doubt.INCOMPLETE))
+    return SEVERITIES.index(limit_severity(*use.doubts, use.found.sure or Doubt.INCOMPLETE))

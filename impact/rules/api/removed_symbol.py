@@ -35,15 +35,15 @@ from typing import Literal
 
 from ...facts.condition import Condition
 from ...model.package import NameUse, is_header
-from ...targets.availability import of_row
-from ...targets.changes import excuses, removed_in
+from ...targets.availability import convert_row
+from ...targets.changes import find_removal_version, list_excuses
 from ...targets.providers.library import include_roots
-from ...targets.providers.stdlib import stood_in_for
+from ...targets.providers.stdlib import has_substitute
 from ...targets.symbol import Symbol
 from ...targets.target import ChangeInForce
-from ...targets.version import parts
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rate_upcoming, rule
-from .diagnosis import UPSTREAM, availability_texts, diagnose
+from ...targets.version import parse
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
+from .diagnosis import UPSTREAM, build_availability_texts, diagnose
 from .reviewed_names import KINDS_OF_NAMES, ReviewedNames, is_contradicted
 from .uses import list_cpp_uses
 
@@ -54,7 +54,7 @@ _TRIED = frozenset({Condition("python", "try"), Condition("python", "try", True)
 @rule(
     scope="target",
     texts={
-        **availability_texts(),
+        **build_availability_texts(),
         "changed": Text(f"`{{subject}}` has changed in {UPSTREAM}", "[[use `{replacement}`]]"),
     },
 )
@@ -80,13 +80,13 @@ def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> I
     for use in package.digest.names:
         if "::" in use.text and use.text in rows.own:
             continue  # the workspace defines it
-        change = next((c for c in rows.find(use) if view.concerned(package, c, use.at.path)), None)
+        change = next((c for c in rows.find(use) if view.may_concern(package, c, use.at.path)), None)
         symbol = Symbol("python" if use.language == "python" else "c++", use.text)
         early = rows.find_early(use.text) if change is None and use.text not in rows.own else []
-        if early and view.certain(use.conditions):
-            change = next((c for c in early if view.concerned(package, c, use.at.path)), None)
+        if early and view.is_sure(use.conditions):
+            change = next((c for c in early if view.may_concern(package, c, use.at.path)), None)
             if change is not None and use.role in ("build", "run"):
-                yield diagnose(of_row(symbol, change), use.at, use.text, package.name, (Doubt.AMBIGUOUS,))
+                yield diagnose(convert_row(symbol, change), use.at, use.text, package.name, (Doubt.AMBIGUOUS,))
             continue
         ahead = None
         if change is None and use.text in view.coming:
@@ -96,35 +96,37 @@ def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> I
             or change.kind not in KINDS_OF_NAMES
             or (change.new and use.text.endswith(change.new))
             or (use.language == "python" and _TRIED.intersection(use.conditions))
-            or not view.active(use.conditions)
-            or not view.concerned(package, change, use.at.path)
-            or (ahead is not None and not view.active_on(ahead, use.conditions))
+            or not view.applies(use.conditions)
+            or not view.may_concern(package, change, use.at.path)
+            or (ahead is not None and not view.is_active_on(ahead, use.conditions))
             or (ahead is None and is_contradicted(view, symbol, change))
         ):
             continue
-        bringing = headers.bring_back(use.at.path, change) if excuses(change) else "no"
+        bringing = headers.bring_back(use.at.path, change) if list_excuses(change) else "no"
         if bringing == "yes":
             continue
         doubts = _list_doubts(view, package, use, change, rows)
         if not doubts and bringing == "maybe":
             doubts.append(Doubt.INCOMPLETE)
-        found = of_row(symbol, change)
-        order = (parts(removed_in(change)), use.at.path, use.at.line, use.at.column)
-        yield diagnose(found if ahead is None else found.on(ahead), use.at, use.text, package.name, doubts, order=order)
+        found = convert_row(symbol, change)
+        order = (parse(find_removal_version(change)), use.at.path, use.at.line, use.at.column)
+        yield diagnose(
+            found if ahead is None else found.apply_horizon(ahead), use.at, use.text, package.name, doubts, order=order
+        )
 
 
 def _list_doubts(
     view: TargetView, package: Package, use: NameUse, change: ChangeInForce, rows: ReviewedNames
 ) -> list[Doubt]:
     role = "run" if use.language == "python" and _is_run(package, use) else use.role
-    doubts = [*doubts_of_place(view, role, use.conditions)]
+    doubts = [*list_place_doubts(view, role, use.conditions)]
     if use.text in rows.own:
         doubts.append(Doubt.OWN)
     if view.is_included_under_conditions(package, change.package):
         doubts.append(Doubt.GUARDED)
     if use.language == "python" and role == "test":
         doubts.append(Doubt.TEST)
-    if (use.language == "python" and stood_in_for(use.text)) or change.kind == "api-changed":
+    if (use.language == "python" and has_substitute(use.text)) or change.kind == "api-changed":
         doubts.append(Doubt.INCOMPLETE)
     return doubts
 
@@ -160,7 +162,7 @@ class _Headers:
     def bring_back(self, file: str, change: ChangeInForce) -> Literal["yes", "maybe", "no"]:
         """Whether a file has a name in spite of a change, by what it includes."""
         paths = self._included.get(file, self._included[""])
-        endings = excuses(change)
+        endings = list_excuses(change)
         if any(self._brings(change, endings, path) for path in paths):
             return "yes"
         return "maybe" if any(self._may_bring(change, path) for path in paths) else "no"
@@ -171,15 +173,15 @@ class _Headers:
         roots = include_roots(change.package)
         if path.endswith(endings) or not roots or path.startswith(roots):
             return path.endswith(endings)
-        return any(h.startswith(roots) and h.endswith(endings) for h in self._view.machine.brought(path).headers)
+        return any(h.startswith(roots) and h.endswith(endings) for h in self._view.machine.find_brought(path).headers)
 
     def _may_bring(self, change: ChangeInForce, path: str) -> bool:
         """True for headers of packages that depend on the changed library, and of nobody known."""
         view = self._view
         if path.startswith(include_roots(change.package) or "\0") or view.is_standard(path):
             return False
-        providers = view.header(path)
-        keys = {provider.name for provider in view.cmake(_CMAKE_NAME.get(change.package, change.package))}
+        providers = view.find_header(path)
+        keys = {provider.name for provider in view.find_cmake(_CMAKE_NAME.get(change.package, change.package))}
         return not providers or any(
-            p.kind == "ros" and not keys.isdisjoint(view.transitive_dependencies((p.name,))) for p in providers
+            p.kind == "ros" and not keys.isdisjoint(view.list_transitive((p.name,))) for p in providers
         )

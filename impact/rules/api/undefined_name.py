@@ -35,7 +35,7 @@ from ...model.package import ImportUse
 from ...model.python.undefined import BESIDE, UNLISTED
 from ...targets.distro.distro import DistroTarget
 from ..python_files import Refused, report_refused
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, list_place_doubts, rule
 
 
 @rule(
@@ -77,10 +77,10 @@ def undefined_name(view: TargetView):
                 continue
             if name == "*":
                 if view.target.python_major >= 3:
-                    doubts = (*_doubts_of_import(view, use), Doubt.LATE)
+                    doubts = (*_collect_import_doubts(view, use), Doubt.LATE)
                     yield Diagnostic(use.at, use.module, package.name, {"module": use.module}, "itself", doubts)
             elif use.module or not _is_of_python2(name):
-                doubts = (*_doubts_of_import(view, use), _is_own(package, kind, name) or Doubt.AMBIGUOUS)
+                doubts = (*_collect_import_doubts(view, use), _is_own(package, kind, name) or Doubt.AMBIGUOUS)
                 # Whoever looks at the first in a file sees the others; wrong imports are mended one by one.
                 together = (Together(use.at.path if kind == "undefined" else f"{use.at.path} {name}"),)
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
@@ -89,14 +89,14 @@ def undefined_name(view: TargetView):
     def find(package: Package, target: DistroTarget) -> Iterator[Refused]:
         for use, name in _list_uses(view, package):
             if not use.module and _is_of_python2(name):
-                yield Refused(use, name.lstrip("."), "python 2", doubts=_doubts_of(use), conditions=use.conditions)
+                yield Refused(use, name.lstrip("."), "python 2", doubts=_collect_doubts(use), conditions=use.conditions)
 
     yield from report_refused(view, find)
 
 
 def _list_uses(view: TargetView, package: Package) -> Iterator[tuple[ImportUse, str]]:
     for use in package.digest.undefined:
-        if view.certain(use.conditions):
+        if view.is_sure(use.conditions):
             yield use, use.names[0]
 
 
@@ -104,7 +104,7 @@ def _find_beside(view: TargetView, package: Package, use: ImportUse) -> Iterator
     """An import of a module by its bare name that only Python 2 takes from the folder of the importing one."""
     head = use.module.partition(".")[0]
     if view.target.python_major >= 3 and not _may_be_of_another(view, package, head):
-        doubts = _doubts_of_import(view, use)
+        doubts = _collect_import_doubts(view, use)
         yield Diagnostic(use.at, head, package.name, {"module": use.module}, "beside", doubts)
 
 
@@ -115,14 +115,16 @@ def _may_be_of_another(view: TargetView, package: Package, module: str) -> bool:
         return False
     if head != package.name and any(dependency.name == head for dependency in package.manifest.dependencies):
         return True
-    return any(provider.name != package.name for provider in (*view.module(module), *view.providers.module(module)))
+    return any(
+        provider.name != package.name for provider in (*view.find_module(module), *view.providers.find_module(module))
+    )
 
 
 def _find_lacking_elsewhere(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Imports from modules of other packages of the workspace that do not exist or do not define the name."""
     for use in package.digest.imports:
         owners = view.workspace.modules.get(use.module.partition(".")[0], ())
-        if len(owners) != 1 or owners[0] == package.name or not view.certain(use.conditions):
+        if len(owners) != 1 or owners[0] == package.name or not view.is_sure(use.conditions):
             continue
         owner = view.workspace.packages[owners[0]]
         if _may_be_of_another(view, owner, use.module):
@@ -130,11 +132,11 @@ def _find_lacking_elsewhere(view: TargetView, package: Package) -> Iterator[Diag
         for name in owner.digest.python_offer.list_lacking(use.module, use.names):
             kind = "module of another" if name == use.module else "imported"
             data = {"module": use.module, "owner": owner.name}
-            yield Diagnostic(use.at, name, package.name, data, kind, _doubts_of_import(view, use))
+            yield Diagnostic(use.at, name, package.name, data, kind, _collect_import_doubts(view, use))
 
 
-def _doubts_of_import(view: TargetView, use: ImportUse) -> tuple[Doubt | bool, ...]:
-    return (*doubts_of_place(view, use.role), *_doubts_of(use), use.role != "test" or Doubt.TEST)
+def _collect_import_doubts(view: TargetView, use: ImportUse) -> tuple[Doubt | bool, ...]:
+    return (*list_place_doubts(view, use.role), *_collect_doubts(use), use.role != "test" or Doubt.TEST)
 
 
 def _is_own(package: Package, kind: str, module: str) -> bool:
@@ -146,7 +148,7 @@ def _is_of_python2(name: str) -> bool:
     return name in PYTHON2_BUILTINS or name.startswith(".")
 
 
-def _doubts_of(use: ImportUse) -> tuple[Doubt, ...]:
+def _collect_doubts(use: ImportUse) -> tuple[Doubt, ...]:
     doubts = (Doubt.LATE,) if use.lazy else ()
     of_any_type = use.names and use.names[0].startswith(".") and not use.module
     return (*doubts, Doubt.INCOMPLETE) if of_any_type else doubts

@@ -32,8 +32,8 @@ from collections.abc import Iterator
 
 from ...model.package import MemberUse
 from ...targets.symbol import Symbol
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, doubts_of_place, rate_upcoming, rule
-from .diagnosis import UPSTREAM, availability_texts, data_of, diagnose, find_missing
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
+from .diagnosis import UPSTREAM, build_availability_texts, build_data, diagnose, find_missing
 
 _MISSING = f"`{{interface}}` has no field `{{subject}}` in {UPSTREAM}"
 _HELP = "[[use `{replacement}`]][[perhaps `{alike}` replaces it]]"
@@ -42,7 +42,7 @@ _HELP = "[[use `{replacement}`]][[perhaps `{alike}` replaces it]]"
 @rule(
     scope="target",
     texts={
-        **availability_texts(),
+        **build_availability_texts(),
         "root": Text("`{interface}` does not have `{subject}`: it is in `{module}`", "import it from `{module}`"),
         "none": Text("`{interface}` has no interface `{module}`", "correct the name, or add the interface"),
         "field removed": Text(f"{_MISSING}[[ (removed in {{since}})]]", _HELP),
@@ -63,7 +63,7 @@ def unknown_field(view: TargetView):
     # What the tables of names say already is removed-symbol's.
     named = {
         c.old
-        for c in view.changes("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
+        for c in view.list_changes("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
         if c.state == "removed"
     }
     for package in view:
@@ -79,15 +79,15 @@ def _list_members(
         if (not use.sure and use.member in own) or not named.isdisjoint(_list_spellings(use)):
             continue
         # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
-        if not view.active(use.conditions) or not view.certain(c for c in use.conditions if c.language == "cpp"):
+        if not view.applies(use.conditions) or not view.is_sure(c for c in use.conditions if c.language == "cpp"):
             continue
         if use.ros != view.target.ros:
             continue
         name = f"{use.package}/{use.interface}"
         found = find_missing(view, "field", f"{use.interface}.{use.section}.{use.member}", (use.package,))
         if found is not None:
-            doubts = (*doubts_of_place(view, use.role, use.conditions), use.sure or Doubt.INCOMPLETE)
-            data = {**data_of(found), "interface": name}
+            doubts = (*list_place_doubts(view, use.role, use.conditions), use.sure or Doubt.INCOMPLETE)
+            data = {**build_data(found), "interface": name}
             kind = f"field {found.state}"
             subject = ".".join((*use.section.split(".")[1:], use.member))
             yield diagnose(found, use.at, subject, package.name, doubts, kind=kind, data=data)
@@ -101,9 +101,9 @@ def _list_imports(view: TargetView, package: Package, named: set[str]) -> Iterat
             continue
         for name in imported.names:
             full = f"{imported.module}.{name}"
-            found = view.availability(Symbol("interface", f"{kind}/{name}", (head,)))
-            if found.is_missing and full not in named and view.active(imported.conditions):
-                doubts = (*doubts_of_place(view, imported.role, imported.conditions), Doubt.LATE)
+            found = view.find_availability(Symbol("interface", f"{kind}/{name}", (head,)))
+            if found.is_missing and full not in named and view.applies(imported.conditions):
+                doubts = (*list_place_doubts(view, imported.role, imported.conditions), Doubt.LATE)
                 yield diagnose(found, imported.at, full, package.name, doubts)
 
 
@@ -112,10 +112,10 @@ def _list_of_workspace(view: TargetView, package: Package) -> Iterator[Diagnosti
     for imported in package.digest.imports:
         name, _, kind = imported.module.partition(".")
         owner = view.workspace.packages.get(name)
-        if owner is None or not owner.is_interface_package or not view.certain(imported.conditions):
+        if owner is None or not owner.is_interface_package or not view.is_sure(imported.conditions):
             continue
         interfaces = {i.name: posixpath.splitext(i.path)[1].lstrip(".") for i in owner.digest.interfaces}
-        doubts = (*doubts_of_place(view, imported.role), not imported.lazy or Doubt.LATE)
+        doubts = (*list_place_doubts(view, imported.role), not imported.lazy or Doubt.LATE)
         for one in imported.names:
             if not kind and one in interfaces and one not in owner.digest.modules:
                 data = {"interface": name, "module": f"{name}.{interfaces[one]}"}

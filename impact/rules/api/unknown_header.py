@@ -29,8 +29,8 @@ Not reported
 
 from ...model.package import IncludeUse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .included_headers import find_misspelt, included_headers, is_bridge, is_nowhere
-from .interface_headers import TEXTS, doubts_of_c_header, find_interface_fault
+from .included_headers import find_misspelt, get_included_headers, is_bridge, is_nowhere
+from .interface_headers import TEXTS, collect_c_header_doubts, find_interface_fault
 
 
 @rule(
@@ -44,7 +44,7 @@ from .interface_headers import TEXTS, doubts_of_c_header, find_interface_fault
     },
 )
 def unknown_header(view: TargetView, package: Package):
-    headers = included_headers(view)
+    headers = get_included_headers(view)
     for include, doubts in headers.list_asked(package):
         path, at = include.path, include.at
         own, fault = find_misspelt(view, package, path, at.path), find_interface_fault(view, path)
@@ -55,23 +55,23 @@ def unknown_header(view: TargetView, package: Package):
         if headers.find_loss(package, include) is not None:
             continue
         if own is not None:
-            doubts = _doubts_of_misspelt(view, package, include)
+            doubts = _collect_misspelling_doubts(view, package, include)
             yield Diagnostic(at, path, package.name, {"replacement": own}, "misspelt", doubts)
         elif fault is not None and fault.kind == "c":
-            of_c = doubts_of_c_header(view, package, include)
+            of_c = collect_c_header_doubts(view, package, include)
             if of_c is not None:
                 yield Diagnostic(at, path, package.name, fault.data, "c", of_c)
         elif fault is not None and fault.found is None and not is_bridge(view, package):
             if fault.kind == "never generated" and include.public and include.role != "aside":
                 # Nobody can compile what is installed.
-                doubts = () if view.certain(include.conditions) else (Doubt.GUARDED,)
+                doubts = () if view.is_sure(include.conditions) else (Doubt.GUARDED,)
             yield Diagnostic(at, path, package.name, fault.data, fault.kind, doubts)
 
 
-def _doubts_of_misspelt(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt | bool, ...]:
+def _collect_misspelling_doubts(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt | bool, ...]:
     """Nobody can compile an installed header with it, nor the package itself where it does."""
     if include.role == "aside" or not (include.targets or include.public):
         return (Doubt.UNCOMPILED,)
     name = include.path.rpartition("/")[2]
     made = package.build.unresolved or any(path.rstrip("/").endswith(name) for path in package.build.made)
-    return (not made or Doubt.INCOMPLETE, view.certain(include.conditions) or Doubt.GUARDED)
+    return (not made or Doubt.INCOMPLETE, view.is_sure(include.conditions) or Doubt.GUARDED)

@@ -3,17 +3,17 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
-from ....edges.memory import kept_with
+from ....edges.memory import cache_in_derived
 from ...facts.condition import Condition
 from ...model.package import CppApiUse, PythonApiUse
-from ...model.python.api import packages_of
-from ...targets.changes import function_of
+from ...model.python.api import list_packages
+from ...targets.changes import find_function
 from ...targets.surface.offers import Offers
-from ...targets.surface.offers_cpp import availability_of_use
+from ...targets.surface.offers_cpp import check_use
 from ...targets.surface.offers_python import PythonOffers
-from ...targets.surface.overrides import class_of, says_override
+from ...targets.surface.overrides import extract_class, says_override
 from ...targets.symbol import Availability
-from ..vocabulary import At, Doubt, Package, TargetView, doubts_of_place
+from ..vocabulary import At, Doubt, Package, TargetView, list_place_doubts
 
 
 class UnservedUse(NamedTuple):
@@ -33,7 +33,7 @@ Ask = Callable[[Offers, PythonOffers], Availability | None]
 _FORMS = frozenset(("arguments", "types", "override", "call"))
 
 
-def _answers(
+def _find_answers(
     view: TargetView, ask: Ask, owners: Iterable[str], conditions: tuple[Condition, ...]
 ) -> Iterator[Availability]:
     """What the target makes of a use, and the first update of it that breaks the use if that works so far."""
@@ -43,31 +43,31 @@ def _answers(
         if found.state != "deprecated" and found.form != "default":
             return
     for ahead in view.updates:
-        if all(ahead.target.version(one) == view.target.version(one) for one in owners):
+        if all(ahead.target.find_version(one) == view.target.find_version(one) for one in owners):
             continue
-        later = ask(*view.offers_on(ahead))
+        later = ask(*view.make_offers(ahead))
         if later is None or not later.earlier or not (later.state == "removed" or later.form in _FORMS):
             continue
-        if view.active_on(ahead, conditions):
-            yield later.on(ahead)
+        if view.is_active_on(ahead, conditions):
+            yield later.apply_horizon(ahead)
             return
 
 
 _REVIEWED = ("api-removed", "api-renamed", "api-changed")
 
 
-@kept_with
+@cache_in_derived
 def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
     """Uses of C++ names, in the order of the digest. What the target does not compile, and what reviewed tables speak
     of is left out. What an update of the distro breaks is upcoming."""
     if not package.digest.cpp_api:
         return
-    reviewed = {change.old for change in view.changes(*_REVIEWED)}
-    reviewed.update(change.new for change in view.changes(*_REVIEWED) if change.state == "absent")
+    reviewed = {change.old for change in view.list_changes(*_REVIEWED)}
+    reviewed.update(change.new for change in view.list_changes(*_REVIEWED) if change.state == "absent")
     calls = {
-        function_of(change.old)
-        for change in view.changes("call-changed")
-        if view.offers.package(change.package) is None  # else its surfaces know more
+        find_function(change.old)
+        for change in view.list_changes("call-changed")
+        if view.offers.find_package(change.package) is None  # else its surfaces know more
     }
     near = view.build_environment(package)
     own = {name for one in view.workspace for name in one.digest.defined}
@@ -75,7 +75,7 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
     overridden: set[tuple[str, str]] = set()
     answers: dict[tuple, list[Availability]] = {}
     for use in package.digest.cpp_api:
-        if use.package not in near or use.name in own or not view.active(use.conditions):
+        if use.package not in near or use.name in own or not view.applies(use.conditions):
             continue
         if use.package in view.workspace.may_have:
             continue
@@ -85,22 +85,22 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
         if use.name.rpartition("::")[2] in calls or not reviewed.isdisjoint(_list_tails(use.name)):
             continue
         asked = use.package, use.name, use.how, use.arguments, use.given, use.templated
-        ask: Ask = lambda offers, _, asked=asked: availability_of_use(offers, *asked)  # noqa: E731
+        ask: Ask = lambda offers, _, asked=asked: check_use(offers, *asked)  # noqa: E731
         found = answers.get((asked, use.conditions))
         if found is None:
-            found = answers[asked, use.conditions] = list(_answers(view, ask, (use.package,), use.conditions))
+            found = answers[asked, use.conditions] = list(_find_answers(view, ask, (use.package,), use.conditions))
         unserved += [(use, one) for one in found]
         if use.how == "override" and (not found or says_override(use.given, use.arguments)):
-            overridden.add((class_of(use.given, use.arguments), use.name))
+            overridden.add((extract_class(use.given, use.arguments), use.name))
     for use, found in unserved:
         beside = found.form == "override" and not says_override(use.given, use.arguments)
-        if beside and (class_of(use.given, use.arguments), use.name) in overridden:
+        if beside and (extract_class(use.given, use.arguments), use.name) in overridden:
             continue  # another of that name overrides, or is to
-        yield UnservedUse(use.at, use.name, found, _doubts_of_cpp(view, use, found), use.arguments, sure=use.sure)
+        yield UnservedUse(use.at, use.name, found, _collect_cpp_doubts(view, use, found), use.arguments, sure=use.sure)
 
 
-def _doubts_of_cpp(view: TargetView, use: CppApiUse, found: Availability) -> tuple[Doubt, ...]:
-    doubts = doubts_of_place(view, use.role, use.conditions)
+def _collect_cpp_doubts(view: TargetView, use: CppApiUse, found: Availability) -> tuple[Doubt, ...]:
+    doubts = list_place_doubts(view, use.role, use.conditions)
     if not use.sure or any(package in view.workspace.packages for package in use.through):
         doubts = (*doubts, Doubt.INCOMPLETE)
     if found.form == "override" and not says_override(use.given, use.arguments):
@@ -108,35 +108,35 @@ def _doubts_of_cpp(view: TargetView, use: CppApiUse, found: Availability) -> tup
     return doubts
 
 
-@kept_with
+@cache_in_derived
 def list_python_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
     """The same of Python; what the workspace provides is left out."""
     if not package.digest.python_api:
         return
-    reviewed = {change.old for change in view.changes("python-removed", "python-api") if change.old}
-    changed = {change.old for change in view.changes("call-changed")}
+    reviewed = {change.old for change in view.list_changes("python-removed", "python-api") if change.old}
+    changed = {change.old for change in view.list_changes("call-changed")}
     patterns = {
         (use.at.path, use.at.line) for use in package.digest.uses if use.language == "python" and use.text in changed
     }
     for one in package.digest.python_api:
         use = one.use
         head = use.name.partition(".")[0]
-        if head in view.own_modules or not use.alone or not view.certain(use.conditions):
+        if head in view.own_modules or not use.alone or not view.is_sure(use.conditions):
             continue
         if not reviewed.isdisjoint(_list_heads(use.name)):
             continue
-        owners = packages_of(head)
+        owners = list_packages(head)
         ask: Ask = lambda _, python, use=use, owners=owners: python.ask(use, owners)  # noqa: E731
-        for found in _answers(view, ask, owners, use.conditions):
+        for found in _find_answers(view, ask, owners, use.conditions):
             keywords = use.given.keywords if use.given is not None else ()
-            doubts = _doubts_of_python(view, one, found)
+            doubts = _collect_python_doubts(view, one, found)
             for at in (one.at, *(At(one.at.path, *place) for place in use.more)):
                 if (at.path, at.line) not in patterns:
                     yield UnservedUse(at, found.symbol.name, found, doubts, keywords=keywords)
 
 
-def _doubts_of_python(view: TargetView, one: PythonApiUse, found: Availability) -> tuple[Doubt, ...]:
-    doubts = doubts_of_place(view, one.role)
+def _collect_python_doubts(view: TargetView, one: PythonApiUse, found: Availability) -> tuple[Doubt, ...]:
+    doubts = list_place_doubts(view, one.role)
     if one.role == "test":
         doubts = (*doubts, Doubt.TEST)  # nobody waits for it, whatever the build makes of it
     if one.use.lazy:

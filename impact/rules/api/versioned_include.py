@@ -20,8 +20,8 @@ Not reported
     Headers of the workspace itself; includes under a condition that excludes the target.
 """
 
-from ...targets.providers.library import versioned_folder
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, doubts_of_place, rule
+from ...targets.providers.library import find_versioned_folder
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, list_place_doubts, rule
 
 _INCLUDE = "[[include `{replacement}`]]"
 
@@ -36,10 +36,10 @@ _INCLUDE = "[[include `{replacement}`]]"
 def versioned_include(view: TargetView, package: Package):
     for include in package.digest.includes:
         path = include.path
-        folder = versioned_folder(view.target, path)
-        if folder is None or not view.active(include.conditions) or view.workspace.provides_header(path):
+        folder = find_versioned_folder(view.target, path)
+        if folder is None or not view.applies(include.conditions) or view.workspace.provides_header(path):
             continue
-        doubts = doubts_of_place(view, include.role, include.conditions)
+        doubts = list_place_doubts(view, include.role, include.conditions)
         if not include.targets:
             doubts = (*doubts, Doubt.UNCOMPILED)
         data = {

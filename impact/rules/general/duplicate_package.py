@@ -32,6 +32,6 @@ from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 def duplicate_package(workspace: Workspace):
     folders = {package.name: package.path for package in workspace}
     for place in workspace.hidden:
-        owner = workspace.discovered.owner(place.manifest_path)
+        owner = workspace.discovered.find_owner(place.manifest_path)
         data = {"name": place.name, "folder": folders.get(place.name) or "."}
         yield Diagnostic(At(place.manifest_path, 1), place.manifest_path, owner.name if owner else "", data)

@@ -18,7 +18,7 @@ def unreadable_file(workspace: Workspace):
     duplicates = {place.manifest_path for place in workspace.hidden}
     for problem in workspace.gathered.problems:
         if problem.path not in duplicates:
-            owner = workspace.discovered.owner(problem.path)
+            owner = workspace.discovered.find_owner(problem.path)
             package = owner.name if owner else ""
             yield Diagnostic(At(problem.path, 1), problem.path, package, {"problem": problem.message})
     for package in workspace:

@@ -54,14 +54,14 @@ def dead_remap(workspace: Workspace):
             continue
         programs = sorted({start.program.partition("/")[2] for start, _ in rows})
         data = {"programs": tuple(programs), "names": rows[0][0].names}
-        yield Diagnostic(At(path, line), written, _package(workspace, path), data)
+        yield Diagnostic(At(path, line), written, _find_package(workspace, path), data)
 
 
 def _may_apply(start: LaunchedNode, renamed: GivenRemapping, ros: int) -> bool:
     """Whether a remapping may change a name of a node."""
     if start.hidden or renamed.old in _COMMON:
         return True
-    if ros == 1 and (start.hidden_parameters or renamed.old.rpartition("/")[2] in _last_parts(start.parameters)):
+    if ros == 1 and (start.hidden_parameters or renamed.old.rpartition("/")[2] in _list_last_parts(start.parameters)):
         return True
     old = renamed.old.rstrip("/")
     return any(name == old or name.startswith(f"{old}/") or _is_below(old, name) for name in start.names)
@@ -72,10 +72,10 @@ def _is_below(old: str, name: str) -> bool:
     return old.startswith(f"{name}/") and old[len(name) + 1 :].partition("/")[0] in _BELOW
 
 
-def _last_parts(names: tuple[str, ...]) -> set[str]:
+def _list_last_parts(names: tuple[str, ...]) -> set[str]:
     return {name.rpartition("/")[2].lstrip("~") for name in names}
 
 
-def _package(workspace: Workspace, path: str) -> str:
-    owner = workspace.discovered.owner(path)
+def _find_package(workspace: Workspace, path: str) -> str:
+    owner = workspace.discovered.find_owner(path)
     return next((name for name, each in workspace.packages.items() if owner and each.path == owner.path), "")

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
 from ...model.flow.launches import GivenParameter, GivenRemapping, LaunchedNode
-from ...model.flow.workspace import flow_of
+from ...model.flow.workspace import get_flow
 from ...model.workspace import Workspace
 
 T = TypeVar("T", GivenRemapping, GivenParameter)
@@ -19,8 +19,8 @@ def group_by_line(
     workspace are left out.
     """
     found: dict[tuple[str, int, str], list[tuple[LaunchedNode, T]]] = {}
-    elsewhere = {place for launch in flow_of(workspace).launches for place in launch.elsewhere}
-    for launch in flow_of(workspace).launches:
+    elsewhere = {place for launch in get_flow(workspace).launches for place in launch.elsewhere}
+    for launch in get_flow(workspace).launches:
         for start in launch.starts:
             for each in of(start):
                 found.setdefault((each.path, each.line, name(each)), []).append((start, each))

@@ -27,7 +27,7 @@ from collections.abc import Iterator
 from ...model.cmake.build import At
 from ...model.flow.edges import Flow
 from ...model.flow.graph import Endpoint
-from ...model.flow.workspace import flow_of
+from ...model.flow.workspace import get_flow
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, Doubt, Text, rule
 
@@ -58,17 +58,17 @@ _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
     },
 )
 def lost_edge(workspace: Workspace, base: Workspace):
-    now, before = (Flow(flow_of(each).graph, {}) for each in (workspace, base))
+    now, before = (Flow(get_flow(each).graph, {}) for each in (workspace, base))
     for topic in sorted({topic for kind, topic in before.known if kind == "topic"}):
-        had, has = _sides(before, topic), _sides(now, topic)
+        had, has = _list_sides(before, topic), _list_sides(now, topic)
         for role, gone in _OTHER.items():
             left = [one for one in has[role] if not one.implied]
             if not had[role] or not had[gone] or not left or has[gone]:
                 continue
-            if _unknown(now, gone) > _unknown(before, gone):
+            if _count_unknown(now, gone) > _count_unknown(before, gone):
                 continue
             at, old = left[0], had[gone][0]
-            successors = sorted({one.topic for one in _successors(now, before, old)})
+            successors = sorted({one.topic for one in _find_successors(now, before, old)})
             renamed = len(successors) == 1
             node = now.nodes[old.node].executable if renamed and old.node in now.nodes else old.node.rpartition("/")[2]
             yield Diagnostic(
@@ -81,18 +81,18 @@ def lost_edge(workspace: Workspace, base: Workspace):
             )
 
 
-def _unknown(flow: Flow, role: str) -> int:
+def _count_unknown(flow: Flow, role: str) -> int:
     """How many endpoints of a role have no known name."""
     return sum(one.role == role and not one.topic for one in flow.graph.endpoints)
 
 
-def _sides(flow: Flow, topic: str) -> dict[str, list[Endpoint]]:
+def _list_sides(flow: Flow, topic: str) -> dict[str, list[Endpoint]]:
     """Publishers and subscribers of a topic."""
     every = flow.known.get(("topic", topic), ())
     return {role: [one for one in every if one.role == role] for role in _OTHER}
 
 
-def _successors(now: Flow, before: Flow, old: Endpoint) -> Iterator[Endpoint]:
+def _find_successors(now: Flow, before: Flow, old: Endpoint) -> Iterator[Endpoint]:
     """What the same node has now, of the same role and type, that it did not have at the base."""
     for one in now.graph.endpoints:
         if one.node == old.node and one.role == old.role and one.type == old.type and one.topic:

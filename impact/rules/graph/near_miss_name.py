@@ -22,9 +22,9 @@ Not reported
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import Flow, Sure, display_name, flows, unstarted
+from ...model.flow.edges import Flow, Sure, build_unstarted_flow, get_label, list_flows
 from ...model.flow.misspelling import NearNames
-from ...model.flow.workspace import flow_of
+from ...model.flow.workspace import get_flow
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, Text, rule
 
@@ -40,38 +40,38 @@ from ..rule import Diagnostic, Text, rule
     ),
 )
 def near_miss_name(workspace: Workspace):
-    closed = {launch.path for launch in flow_of(workspace).launches if not launch.missing}
+    closed = {launch.path for launch in get_flow(workspace).launches if not launch.missing}
     reported = set()
-    for path, flow in flows(workspace):
-        for taker, giver in _near(flow if path else unstarted(workspace), path in closed):
+    for path, flow in list_flows(workspace):
+        for taker, giver in _find_near_pairs(flow if path else build_unstarted_flow(workspace), path in closed):
             one, other = taker.endpoint, giver.endpoint
             if (one.path, one.line) in reported:
                 continue
             reported.add((one.path, one.line))
             data = {
                 "launch": (path,) if path else (),
-                "node": display_name(giver.node),
+                "node": get_label(giver.node),
                 "replacement": other.topic,
                 "place": f"{other.path}:{other.line}",
             }
             yield Diagnostic(At(one.path, one.line), one.topic, taker.node.package, data)
 
 
-def _near(flow: Flow, closed: bool):
+def _find_near_pairs(flow: Flow, closed: bool):
     """Subscribers that nobody feeds, each with the only publisher of nearly its name that nobody reads. closed: whether
     all that runs is known, so that namespaces can be compared."""
     unread: dict[str, list[tuple[str, Sure]]] = {}
-    for one in flow.sure("publisher"):
-        if not one.endpoint.implied and not flow.others(one.endpoint):
-            unread.setdefault(flow.type_of(one.endpoint), []).append((one.endpoint.topic, one))
+    for one in flow.list_sure("publisher"):
+        if not one.endpoint.implied and not flow.list_others(one.endpoint):
+            unread.setdefault(flow.find_type(one.endpoint), []).append((one.endpoint.topic, one))
     near = {type_: NearNames(givers, namespaces=closed) for type_, givers in unread.items()}
-    for taker in flow.sure("subscriber"):
+    for taker in flow.list_sure("subscriber"):
         one = taker.endpoint
-        type_ = flow.type_of(one)
-        if not type_ or one.implied or flow.others(one) or flow.may_have("publisher", type_):
+        type_ = flow.find_type(one)
+        if not type_ or one.implied or flow.list_others(one) or flow.may_have("publisher", type_):
             continue
         found: dict[str, Sure] = {}
-        for giver in near[type_].near(one.topic) if type_ in near else ():
+        for giver in near[type_].find_near(one.topic) if type_ in near else ():
             if giver.node.id != taker.node.id:
                 found.setdefault(giver.endpoint.topic, giver)
         if len(found) == 1:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from ...model.flow.edges import Sure, begins, whole_flow
+from ...model.flow.edges import Sure, begins, build_whole_flow
 from ...model.workspace import Workspace
 
 _SIDES = {"publisher": "subscriber", "subscriber": "publisher"}
@@ -19,12 +19,12 @@ def find_one_sided(workspace: Workspace, role: str) -> Iterator[Sure]:
     """Endpoints of a role (publisher or subscriber) whose type nothing in the workspace has on the other side, one for
     each topic. Topics that tools and people outside of the workspace may use are left out: those of types that the
     workspace does not define, private ones, and known topics of tools."""
-    flow = whole_flow(workspace)
+    flow = build_whole_flow(workspace)
     met = {one.type for one in flow.graph.endpoints if one.role == _SIDES[role]}
     reported: set[object] = set()
-    for one in flow.sure(role):
+    for one in flow.list_sure(role):
         endpoint = one.endpoint
-        type_ = flow.type_of(endpoint)
+        type_ = flow.find_type(endpoint)
         if type_.partition("/")[0] not in workspace.interface_names or not met.isdisjoint((type_, "", "*")):
             continue
         private = begins(endpoint, "~") or endpoint.topic.startswith(f"{one.node.name}/")

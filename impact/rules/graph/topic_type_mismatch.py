@@ -23,7 +23,7 @@ Not reported
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import FlowPair, display_name, met, uncompared
+from ...model.flow.edges import FlowPair, get_label, list_met_pairs, list_uncompared
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, Doubt, Text, rule
 
@@ -43,18 +43,18 @@ _WHAT = {"subscriber": "topic", "client": "service", "action client": "action"}
     },
 )
 def topic_type_mismatch(workspace: Workspace):
-    for taker, number in uncompared(workspace):
+    for taker, number in list_uncompared(workspace):
         data = {"what": _WHAT[taker.role], "count": number}
         yield Diagnostic(At(taker.path, taker.line), taker.topic, "", data, "uncompared", (Doubt.UNCHECKED,))
-    for pair in met(workspace):
+    for pair in list_met_pairs(workspace):
         giver, taker = pair.giver.endpoint, pair.taker.endpoint
-        other, type = pair.flow.type_of(giver), pair.flow.type_of(taker)
+        other, type = pair.flow.find_type(giver), pair.flow.find_type(taker)
         if other and type and other != type and not _may_have_another_type(pair):
             data = {
                 "what": _WHAT[taker.role],
                 "type": type,
                 "other": other,
-                "node": display_name(pair.giver.node),
+                "node": get_label(pair.giver.node),
                 "place": f"{giver.path}:{giver.line}",
                 "launch": pair.launch,
             }
@@ -65,7 +65,7 @@ def topic_type_mismatch(workspace: Workspace):
 
 def _may_have_another_type(pair: FlowPair) -> bool:
     """Whether a side has several types for the name, of which one may fit."""
-    giver, taker = (pair.flow.of_node(side.endpoint) for side in (pair.giver, pair.taker))
+    giver, taker = (pair.flow.list_alternatives(side.endpoint) for side in (pair.giver, pair.taker))
     if {one.type for one in giver} & {one.type for one in taker}:
         return True
-    return any("" in (one.type, pair.flow.type_of(one)) for one in giver + taker)
+    return any("" in (one.type, pair.flow.find_type(one)) for one in giver + taker)

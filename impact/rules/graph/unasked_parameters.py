@@ -35,7 +35,7 @@ def find_unasked(workspace: Workspace) -> Iterator[Unasked]:
         if any(_asks(start, name) for start, _ in rows):
             continue
         start, _ = rows[0]
-        similar = next((known for known in start.parameters if is_slip_of_name(_last(known), _last(name))), "")
+        similar = next((known for known in start.parameters if is_slip_of_name(_get_last(known), _get_last(name))), "")
         yield Unasked(path, line, name, start.package, start.program.partition("/")[2], similar)
 
 
@@ -44,9 +44,9 @@ def _asks(start: LaunchedNode, name: str) -> bool:
     parts = name.replace("/", ".").split(".")
     if start.hidden_parameters or parts[-1] in _COMMON or parts[0] in _COMMON_HEADS:
         return True
-    known = {_last(one) for one in start.parameters}
+    known = {_get_last(one) for one in start.parameters}
     return any(part in known for part in parts)
 
 
-def _last(name: str) -> str:
+def _get_last(name: str) -> str:
     return name.replace("/", ".").rpartition(".")[2].lstrip("~")

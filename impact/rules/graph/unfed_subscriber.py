@@ -19,7 +19,7 @@ Not reported
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import display_name
+from ...model.flow.edges import get_label
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, Text, rule
 from .one_sided import find_one_sided
@@ -37,5 +37,5 @@ from .one_sided import find_one_sided
 def unfed_subscriber(workspace: Workspace):
     for one in find_one_sided(workspace, "subscriber"):
         endpoint = one.endpoint
-        data = {"type": endpoint.type, "node": display_name(one.node)}
+        data = {"type": endpoint.type, "node": get_label(one.node)}
         yield Diagnostic(At(endpoint.path, endpoint.line), endpoint.topic, one.node.package, data)

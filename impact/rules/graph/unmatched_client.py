@@ -20,9 +20,9 @@ Not reported
 """
 
 from ...model.cmake.build import At
-from ...model.flow.edges import Flow, Sure, begins, display_name, flows, unstarted
+from ...model.flow.edges import Flow, Sure, begins, build_unstarted_flow, get_label, list_flows
 from ...model.flow.misspelling import NearNames, is_in_namespace, is_slip_of_name
-from ...model.flow.workspace import flow_of
+from ...model.flow.workspace import get_flow
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, Text, rule
 
@@ -45,13 +45,13 @@ _EVERYWHERE = ("rcl_interfaces/", "lifecycle_msgs/", "composition_interfaces/", 
 def unmatched_client(workspace: Workspace):
     served = {
         one.topic
-        for launch in flow_of(workspace).launches
+        for launch in get_flow(workspace).launches
         for one in launch.graph.endpoints
         if one.role in ("server", "action server")
     }
     reported = set()
-    for path, flow in flows(workspace):
-        for taker, giver in _unmatched(flow if path else unstarted(workspace)):
+    for path, flow in list_flows(workspace):
+        for taker, giver in _find_unmatched(flow if path else build_unstarted_flow(workspace)):
             one, other = taker.endpoint, giver.endpoint
             if (one.path, one.line) in reported or one.topic in served:
                 continue
@@ -59,30 +59,30 @@ def unmatched_client(workspace: Workspace):
             data = {
                 "launch": (path,) if path else (),
                 "what": "service" if one.role == "client" else "action",
-                "node": display_name(giver.node),
+                "node": get_label(giver.node),
                 "replacement": other.topic,
                 "place": f"{other.path}:{other.line}",
             }
             yield Diagnostic(At(one.path, one.line), one.topic, taker.node.package, data)
 
 
-def _unmatched(flow: Flow):
+def _find_unmatched(flow: Flow):
     """Clients without a server, each with the only sure server of its type and nearly its name."""
     serving: dict[tuple[str, str], list[tuple[str, Sure]]] = {}
-    for giver in flow.sure(*_SERVER.values()):
+    for giver in flow.list_sure(*_SERVER.values()):
         if not (begins(giver.endpoint, "~") and not giver.node.started):
             key = giver.endpoint.role, giver.endpoint.type
             serving.setdefault(key, []).append((giver.endpoint.topic, giver))
     near = {key: NearNames(givers, namespaces=True) for key, givers in serving.items()}
-    for taker in flow.sure(*_SERVER):
+    for taker in flow.list_sure(*_SERVER):
         one = taker.endpoint
         role = _SERVER[one.role]
-        if not flow.type_of(one) or one.type.startswith(_EVERYWHERE) or one.implied:
+        if not flow.find_type(one) or one.type.startswith(_EVERYWHERE) or one.implied:
             continue
-        if flow.others(one) or flow.may_have(role, one.type):
+        if flow.list_others(one) or flow.may_have(role, one.type):
             continue
         found: dict[str, Sure] = {}
-        for giver in near[role, one.type].near(one.topic) if (role, one.type) in near else ():
+        for giver in near[role, one.type].find_near(one.topic) if (role, one.type) in near else ():
             other = giver.endpoint
             if is_slip_of_name(one.topic, other.topic) or _lacks_namespace(taker, giver):
                 found.setdefault(other.topic, giver)

@@ -19,7 +19,7 @@ Use instead
 
 from ...model.workspace import Workspace
 from ..rule import Text, rule
-from .comparison import UNMATCHED, diagnostic, pairs
+from .comparison import UNMATCHED, diagnose, find_changed_sections
 
 
 @rule(
@@ -31,8 +31,8 @@ from .comparison import UNMATCHED, diagnostic, pairs
     ),
 )
 def added_field(workspace: Workspace, base: Workspace):
-    for pair in pairs(workspace, base):
+    for pair in find_changed_sections(workspace, base):
         before = {field.name for field in pair.old.fields}
         for field in pair.new.fields:
             if field.name not in before:
-                yield diagnostic(workspace, pair, pair.at(field.line, field.column), field.name)
+                yield diagnose(workspace, pair, pair.make_place(field.line, field.column), field.name)

@@ -16,7 +16,7 @@ Use instead
 
 from ...model.workspace import Workspace
 from ..rule import Text, rule
-from .comparison import UNMATCHED, diagnostic, pairs
+from .comparison import UNMATCHED, diagnose, find_changed_sections
 
 _CHANGED = "the constant `{definition}.{subject}` changed from {old} to {new}"
 _HELP = "add a new constant instead"
@@ -36,10 +36,10 @@ _HELP = "add a new constant instead"
 )
 def changed_constant(workspace: Workspace, base: Workspace):
     kind = "ros1" if workspace.ros == 1 else "ros2"
-    for pair in pairs(workspace, base):
+    for pair in find_changed_sections(workspace, base):
         before = {constant.name: constant.value for constant in pair.old.constants}
         for constant in pair.new.constants:
             old = before.get(constant.name)
             if old is not None and old != constant.value:
-                at = pair.at(constant.line, constant.column)
-                yield diagnostic(workspace, pair, at, constant.name, kind, old=old, new=constant.value)
+                at = pair.make_place(constant.line, constant.column)
+                yield diagnose(workspace, pair, at, constant.name, kind, old=old, new=constant.value)

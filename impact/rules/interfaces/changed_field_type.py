@@ -19,7 +19,7 @@ Use instead
 
 from ...model.workspace import Workspace
 from ..rule import Text, rule
-from .comparison import UNMATCHED, diagnostic, pairs, type_of
+from .comparison import UNMATCHED, diagnose, find_changed_sections, format_type
 
 
 @rule(
@@ -30,9 +30,9 @@ from .comparison import UNMATCHED, diagnostic, pairs, type_of
     ),
 )
 def changed_field_type(workspace: Workspace, base: Workspace):
-    for pair in pairs(workspace, base):
-        before = {field.name: type_of(field) for field in pair.old.fields}
+    for pair in find_changed_sections(workspace, base):
+        before = {field.name: format_type(field) for field in pair.old.fields}
         for field in pair.new.fields:
-            old, new = before.get(field.name), type_of(field)
+            old, new = before.get(field.name), format_type(field)
             if old is not None and old != new:
-                yield diagnostic(workspace, pair, pair.at(field.line, field.column), field.name, old=old, new=new)
+                yield diagnose(workspace, pair, pair.make_place(field.line, field.column), field.name, old=old, new=new)

@@ -23,12 +23,12 @@ class SectionPair(NamedTuple):
     new: Section
     file: InterfaceFile
 
-    def at(self, line: int, column: int = 0) -> At:
+    def make_place(self, line: int, column: int = 0) -> At:
         """A place in the new file."""
         return At(self.file.path, line, column)
 
 
-def pairs(workspace: Workspace, base: Workspace) -> Iterator[SectionPair]:
+def find_changed_sections(workspace: Workspace, base: Workspace) -> Iterator[SectionPair]:
     """Sections of definitions that are in both workspaces and differ."""
     for package in workspace:
         before = base.packages.get(package.name)
@@ -57,13 +57,13 @@ def _find_old(before: Package, file: InterfaceFile, paths: Container[str]) -> In
     return here or next((one for one in alike if one.path not in paths), None)
 
 
-def type_of(field: Field) -> str:
+def format_type(field: Field) -> str:
     """A field's type as a person writes it."""
     return field.type + field.array
 
 
 @lru_cache(maxsize=256)
-def users_of(workspace: Workspace, package: str, name: str) -> tuple[str, ...]:
+def find_users(workspace: Workspace, package: str, name: str) -> tuple[str, ...]:
     """The packages of the workspace that use a definition of a package."""
     found = []
     for other in workspace:
@@ -87,13 +87,13 @@ def users_of(workspace: Workspace, package: str, name: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-def diagnostic(
+def diagnose(
     workspace: Workspace, pair: SectionPair, at: At, subject: str, kind: str = "", **data: Value
 ) -> Diagnostic:
     """A diagnostic about one name of a definition. Where nothing in the workspace uses the definition, a change of it
     can only break others. Beside the data given it has `definition`, `users`, and `hash`: what nodes compare when they
     connect, by its name in the workspace's generation of ROS."""
-    users = users_of(workspace, pair.package.name, pair.file.name)
+    users = find_users(workspace, pair.package.name, pair.file.name)
     hash = "md5 sum" if workspace.ros == 1 else "type hash"
     data = {"definition": pair.name, "users": users, "hash": hash, **data}
     return Diagnostic(at, subject, pair.package.name, data, kind, doubts=() if users else (Doubt.DISTURBS,))

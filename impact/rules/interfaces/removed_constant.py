@@ -18,7 +18,7 @@ Use instead
 
 from ...model.workspace import Workspace
 from ..rule import Text, rule
-from .comparison import diagnostic, pairs
+from .comparison import diagnose, find_changed_sections
 
 
 @rule(
@@ -30,8 +30,8 @@ from .comparison import diagnostic, pairs
     ),
 )
 def removed_constant(workspace: Workspace, base: Workspace):
-    for pair in pairs(workspace, base):
+    for pair in find_changed_sections(workspace, base):
         after = {constant.name for constant in pair.new.constants}
         for constant in pair.old.constants:
             if constant.name not in after:
-                yield diagnostic(workspace, pair, pair.at(1), constant.name)
+                yield diagnose(workspace, pair, pair.make_place(1), constant.name)

@@ -19,7 +19,7 @@ Use instead
 
 from ...model.workspace import Workspace
 from ..rule import Text, rule
-from .comparison import UNMATCHED, diagnostic, pairs
+from .comparison import UNMATCHED, diagnose, find_changed_sections
 
 
 @rule(
@@ -30,8 +30,8 @@ from .comparison import UNMATCHED, diagnostic, pairs
     ),
 )
 def removed_field(workspace: Workspace, base: Workspace):
-    for pair in pairs(workspace, base):
+    for pair in find_changed_sections(workspace, base):
         after = {field.name for field in pair.new.fields}
         for field in pair.old.fields:
             if field.name not in after:
-                yield diagnostic(workspace, pair, pair.at(1), field.name)
+                yield diagnose(workspace, pair, pair.make_place(1), field.name)

@@ -19,7 +19,7 @@ Use instead
 from ...model.cmake.build import At
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, Doubt, Text, rule
-from .comparison import users_of
+from .comparison import find_users
 
 _REMOVED = "`{subject}` was removed; used by {users:nothing in the workspace}"
 
@@ -42,7 +42,7 @@ def removed_interface(workspace: Workspace, base: Workspace):
             others = packages_with.get((file.name, file.definition.kind), [])
             if package is not None and package.name in others:
                 continue
-            users = users_of(workspace, before.name, file.name)
+            users = find_users(workspace, before.name, file.name)
             replacement = f"{others[0]}/{file.name}" if others else ""
             yield Diagnostic(
                 At(package.digest.manifest_path, 1) if package else At(file.path, 1),

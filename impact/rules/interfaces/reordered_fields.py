@@ -20,7 +20,7 @@ Use instead
 
 from ...model.workspace import Workspace
 from ..rule import Text, rule
-from .comparison import UNMATCHED, diagnostic, pairs
+from .comparison import UNMATCHED, diagnose, find_changed_sections
 
 
 @rule(
@@ -31,7 +31,7 @@ from .comparison import UNMATCHED, diagnostic, pairs
     ),
 )
 def reordered_fields(workspace: Workspace, base: Workspace):
-    for pair in pairs(workspace, base):
+    for pair in find_changed_sections(workspace, base):
         common = {field.name for field in pair.old.fields} & {field.name for field in pair.new.fields}
         new = [field for field in pair.new.fields if field.name in common]
         old = [field.name for field in pair.old.fields if field.name in common]
@@ -39,4 +39,4 @@ def reordered_fields(workspace: Workspace, base: Workspace):
             continue
         moved = next((field for field, name in zip(new, old, strict=True) if field.name != name), None)
         if moved is not None:
-            yield diagnostic(workspace, pair, pair.at(moved.line, moved.column), moved.name)
+            yield diagnose(workspace, pair, pair.make_place(moved.line, moved.column), moved.name)

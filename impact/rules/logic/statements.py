@@ -3,12 +3,12 @@
 from collections.abc import Callable, Iterator
 
 from ...logic.changes import LogicChange
-from ...logic.two_states import publishing
+from ...logic.two_states import compare_publishing
 from ...model.cmake.build import At
-from ...model.flow.edges import display_name
+from ...model.flow.edges import get_label
 from ...model.flow.graph import Endpoint, Graph
 from ...model.flow.reach import EVERYWHERE
-from ...model.flow.workspace import flow_of
+from ...model.flow.workspace import get_flow
 from ...model.workspace import Workspace
 from ..rule import Diagnostic, Doubt
 
@@ -22,16 +22,16 @@ def find_changes(workspace: Workspace, base: Workspace, fits: Callable[[LogicCha
     """A diagnostic for each publish statement whose change fits, at its place now. Its data: `change` (what changed, in
     a clause), `old` and `new` (conditions), `readers`. Without a reader in the workspace nothing there depends on it.
     """
-    for change in publishing(workspace, base):
+    for change in compare_publishing(workspace, base):
         if not fits(change) or not EVERYWHERE.isdisjoint(change.topics):
             continue
-        readers = _names(flow_of(workspace).graph, readers_of(flow_of(workspace).graph, change))
-        data = {"change": change.why, "old": _code(change.old), "new": _code(change.new), "readers": readers}
+        readers = _list_node_names(get_flow(workspace).graph, find_readers(get_flow(workspace).graph, change))
+        data = {"change": change.why, "old": _quote(change.old), "new": _quote(change.new), "readers": readers}
         doubts = () if readers else (Doubt.CHANGED,)
         yield Diagnostic(At(change.path, change.line), change.topic, change.package, data, doubts=doubts)
 
 
-def readers_of(graph: Graph, change: LogicChange) -> list[Endpoint]:
+def find_readers(graph: Graph, change: LogicChange) -> list[Endpoint]:
     """The subscribers that a change reaches, one for each node and place."""
     place = (change.path, change.line)
     topics = {one.topic for one in graph.publishes if (one.path, one.line) == place and one.topic} | {*change.topics}
@@ -39,12 +39,12 @@ def readers_of(graph: Graph, change: LogicChange) -> list[Endpoint]:
     return list({(one.node, one.path, one.line): one for one in found}.values())
 
 
-def _names(graph: Graph, readers: list[Endpoint]) -> tuple[str, ...]:
+def _list_node_names(graph: Graph, readers: list[Endpoint]) -> tuple[str, ...]:
     nodes = {node.id: node for node in graph.nodes}
-    return tuple(dict.fromkeys(display_name(nodes[one.node]) if one.node in nodes else one.function for one in readers))
+    return tuple(dict.fromkeys(get_label(nodes[one.node]) if one.node in nodes else one.function for one in readers))
 
 
-def _code(condition: str | None) -> tuple[str, ...]:
+def _quote(condition: str | None) -> tuple[str, ...]:
     """A condition to be shown as code, cut where it is long; empty without one."""
     text = (condition or "").replace("`", "")
     if not text:

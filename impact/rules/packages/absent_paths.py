@@ -16,7 +16,7 @@ def is_absent(view: TargetView, package: Package, path: str) -> bool:
         return False
     if f"{path}.in" in package.files or view.workspace.is_unread(path):
         return False
-    if any(path in other.files for other in view.everyone()):
+    if any(path in other.files for other in view.list_built()):
         return False
     name = posixpath.basename(path)
     return not any(

@@ -30,19 +30,19 @@ def read_ament_exports(view: TargetView, package: Package) -> AmentExports | Non
     handed = {f.name for f in package.build.handed_on}
     if package.build.ament_package is None:
         written = package.build.catkin_package is None and any(i.kind == "export" for i in package.build.installs)
-        near = {provider.name for name in handed for provider in view.cmake(name)[:1]}
+        near = {provider.name for name in handed for provider in view.find_cmake(name)[:1]}
         return (
-            AmentExports([], frozenset(), frozenset(handed) | view.transitive_dependencies(near))
+            AmentExports([], frozenset(), frozenset(handed) | view.list_transitive(near))
             if handed and written
             else None
         )
-    exports = [e for e in package.build.exports if view.active(e.conditions)]
+    exports = [e for e in package.build.exports if view.applies(e.conditions)]
     dependencies = frozenset(e.item for e in exports if e.how == "ament_export_dependencies")
     if not exports_something(exports) or any("$" in name for name in dependencies):
         return None
     if any(f.how == "ament_auto" for f in package.build.found):
         return None
-    return AmentExports(exports, dependencies, view.roles.found_with(dependencies | handed))
+    return AmentExports(exports, dependencies, view.roles.list_found_with(dependencies | handed))
 
 
 def exports_something(exports: list[CMakeExport]) -> bool:

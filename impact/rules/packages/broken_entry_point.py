@@ -39,8 +39,8 @@ def broken_entry_point(view: TargetView, package: Package):
         if folder != package.path or package.build_type != "ament_python":
             continue
         for program, module, line, _ in setup.entry_points:
-            own = posixpath.dirname(setup.places_of("", module.partition(".")[0])[1])
-            places = setup.places_of(folder, module)
+            own = posixpath.dirname(setup.list_module_paths("", module.partition(".")[0])[1])
+            places = setup.list_module_paths(folder, module)
             if any(map(view.workspace.is_unread, places)) or not package.has_files(own):
                 continue  # a module of another package
             if package.files.isdisjoint(places):

@@ -1,7 +1,7 @@
 """call-after-ament-package: a command that ament_package() has to come after is called after it.
 
 What it does
-    Reports ament_export_*() and rosidl_generate_interfaces() behind ament_package() in the same file.
+    Reports ament_export_*() and generate_interfaces() behind ament_package() in the same file.
 
 Why it breaks
     ament_package() has written the configuration already: CMake stops, "must be called before ament_package()".
@@ -21,7 +21,7 @@ Not reported
     Calls in other files than ament_package().
 """
 
-from ..vocabulary import Diagnostic, Package, TargetView, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
 
 
 @rule(
@@ -36,6 +36,6 @@ def call_after_ament_package(view: TargetView, package: Package):
         ("rosidl_generate_interfaces", g.at, g.conditions) for g in package.build.generated if g.how == "rosidl"
     ]
     for name, at, conditions in calls:
-        if at.path == last.path and at.line > last.line and view.active(conditions):
-            yield Diagnostic(at, name, package.name, doubts=doubts_of_place(view, "build", conditions))
+        if at.path == last.path and at.line > last.line and view.applies(conditions):
+            yield Diagnostic(at, name, package.name, doubts=list_place_doubts(view, "build", conditions))
             break

@@ -46,17 +46,17 @@ def catkin_depends(view: TargetView, package: Package):
     build = package.build
     if view.target.ros != 1 or build.catkin_package is None or package.build_type != "catkin":
         return
-    declared = view.declared(package)
-    components = {f.name for f in build.found if f.how == "catkin" and view.certain(f.conditions)}
+    declared = view.collect_declared(package)
+    components = {f.name for f in build.found if f.how == "catkin" and view.is_sure(f.conditions)}
     old = package.manifest.format == 1
     seen = set()
     for export in build.exports:
         name = export.item
-        if export.how != "catkin_depends" or "$" in name or name in seen or not view.certain(export.conditions):
+        if export.how != "catkin_depends" or "$" in name or name in seen or not view.is_sure(export.conditions):
             continue
         seen.add(name)
         kinds = declared.get(name, set())
-        kind, sure = _why_not_catkin(view, name)
+        kind, sure = _explain_not_catkin(view, name)
         tag = "build_depend"
         if not kind or not any(f.name == name and f.required for f in build.found):
             sure = True
@@ -70,16 +70,16 @@ def catkin_depends(view: TargetView, package: Package):
         yield Diagnostic(export.at, name, package.name, data, kind, (sure or Doubt.INCOMPLETE,))
 
 
-def _why_not_catkin(view: TargetView, name: str) -> tuple[str, bool]:
+def _explain_not_catkin(view: TargetView, name: str) -> tuple[str, bool]:
     """Why a package is no catkin package on the target (`cmake`, `system`), and whether that is sure; empty when it is
     one or may be."""
     own = view.workspace.packages.get(name)
     if own is not None:
         return ("cmake", True) if own.build_type == "cmake" else ("", False)
-    if view.target.version(name) is not None:
+    if view.target.find_version(name) is not None:
         known = view.target.build_type(name)
-        plain = (known or view.target.similar_build_type(name)) == "cmake"
-        sure = bool(known) or view.target.known_build_types(name) == {"cmake"}
+        plain = (known or view.target.find_similar_build_type(name)) == "cmake"
+        sure = bool(known) or view.target.list_build_types(name) == {"cmake"}
         return ("cmake", sure) if plain else ("", False)
     if view.target.resolve(name) is not None and not view.underlaid:
         return "system", True

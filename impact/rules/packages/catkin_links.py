@@ -7,9 +7,9 @@ by the build of those in the workspace, and by the stored surfaces of those that
 import re
 from collections.abc import Iterable
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...model.cmake.links import linked_items
+from ...model.cmake.links import list_linked_items
 from ..vocabulary import Package, TargetView
 
 # What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along. Kept by hand: of the
@@ -32,12 +32,12 @@ class CatkinExports:
     def __init__(self, view: TargetView):
         self._view = view
 
-    def libraries(self, name: str) -> tuple[str, ...]:
+    def list_libraries(self, name: str) -> tuple[str, ...]:
         """The libraries that a package exports; none where that is not known."""
         package = self._view.workspace.packages.get(name)
         if package is not None:
             return tuple(e.item for e in package.build.exports if e.how == "libraries" and "$" not in e.item)
-        offer = self._view.offers.package(name)
+        offer = self._view.offers.find_package(name)
         return tuple(lib for lib in offer.build.libraries if "$" not in lib) if offer is not None else ()
 
     def may_bring(self, name: str, library: str) -> bool:
@@ -46,27 +46,27 @@ class CatkinExports:
         if package is not None:
             given = [e.item for e in package.build.exports if e.how in ("system_depends", "libraries")]
             return any("$" in item or library in item.lower() for item in given)
-        offer = self._view.offers.package(name)
+        offer = self._view.offers.find_package(name)
         if offer is None:
             return name not in BRING_NOTHING and not _INTERFACES.search(name)
         given = (*offer.build.system, *offer.build.libraries, *(why for _, why in offer.build.unknown))
         return any(library in item.lower() for item in given)
 
-    def transitive_dependencies(self, names: Iterable[str]) -> frozenset[str] | None:
+    def list_transitive(self, names: Iterable[str]) -> frozenset[str] | None:
         """These packages and all that they bring; None where that of one is not known."""
-        found = frozenset(walk(names, lambda name: self._dependencies(name) or ()))
-        return None if any(self._dependencies(name) is None for name in found) else found
+        found = frozenset(walk(names, lambda name: self._list_dependencies(name) or ()))
+        return None if any(self._list_dependencies(name) is None for name in found) else found
 
-    @cached_method
-    def _dependencies(self, name: str) -> Iterable[str] | None:
+    @cache_method
+    def _list_dependencies(self, name: str) -> Iterable[str] | None:
         package = self._view.workspace.packages.get(name)
         if package is not None:
             given = [e.item for e in package.build.exports if e.how in ("catkin_depends", "system_depends")]
             return None if package.build.unresolved or any("$" in item for item in given) else given
-        offer = self._view.offers.package(name)
+        offer = self._view.offers.find_package(name)
         if offer is None:
             # What is no package of ROS, or one that only CMake builds, hands on no package of ROS.
-            plain = not self._view.is_package(name) or self._view.target.known_build_types(name) - {""} == {"cmake"}
+            plain = not self._view.is_package(name) or self._view.target.list_build_types(name) - {""} == {"cmake"}
             return () if plain or _INTERFACES.search(name) else None
         return (*offer.build.dependencies, *offer.build.system)
 
@@ -76,7 +76,7 @@ _INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
 
 def list_linked(package: Package, target: str) -> set[str] | None:
     """All that a target is linked to, itself and through targets of its package; None where that cannot be told."""
-    items = linked_items(package, target)
+    items = list_linked_items(package, target)
     if items is None or any("$" in item and not _VARIABLE.fullmatch(item) for item in items):
         return None
     return items
@@ -85,19 +85,19 @@ def list_linked(package: Package, target: str) -> set[str] | None:
 _VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
 
 
-def linked_packages(view: TargetView, package: Package, items: Iterable[str]) -> set[str]:
+def find_linked_packages(view: TargetView, package: Package, items: Iterable[str]) -> set[str]:
     """The packages that link items stand for."""
-    names = {stem_of(item).partition("::")[0] for item in items}
+    names = {get_stem(item).partition("::")[0] for item in items}
     if "catkin" in names:
         names.update(f.name for f in package.build.found if f.how == "catkin")
     return {name for name in names if view.is_package(name)} - {package.name, "catkin"}
 
 
-def stem_of(item: str) -> str:
+def get_stem(item: str) -> str:
     """`tf` of `${tf_LIBRARIES}`; any other item itself."""
     match = _VARIABLE.fullmatch(item)
     return match.group(1) if match else item
 
 
-def plain(name: str) -> str:
+def normalize(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", name.lower())

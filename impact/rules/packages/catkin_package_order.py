@@ -51,7 +51,7 @@ def catkin_package_order(view: TargetView, package: Package):
         for target in package.build.targets
         if target.name in before
         and target.kind in ("library", "executable", "module")
-        and view.certain(target.conditions)
+        and view.is_sure(target.conditions)
     )
     if early:
         yield Diagnostic(call, "catkin_package", package.name, {"targets": early})
@@ -61,7 +61,7 @@ def _find_none(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """The place where catkin is found, in a package in which nothing may call catkin_package()."""
     build, known = package.build, view.providers.commands.get(view.target.ros, {})
     commands = {use.name for use in build.uses if use.kind == "command"}
-    found = next((f for f in build.found if f.name == "catkin" and view.certain(f.conditions)), None)
+    found = next((f for f in build.found if f.name == "catkin" and view.is_sure(f.conditions)), None)
     parts = tuple(f"{f.name}_" for f in build.found)
     harmless = all(name in known or name.startswith(parts) for name in commands)
     if found is not None and not build.unresolved and harmless and not re.search("package|export", " ".join(commands)):

@@ -21,22 +21,22 @@ _RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_
 _OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
 
 
-def circular(view: TargetView, package: Package, name: str) -> bool:
+def is_circular(view: TargetView, package: Package, name: str) -> bool:
     """True when what would be declared comes with the package itself, or is of the workspace and needs it."""
     other = view.workspace.packages.get(name)
     if other is None:
-        return package.name in view.transitive_dependencies([name])
+        return package.name in view.list_transitive([name])
     return package.name in view.build_environment(other) or any(
-        provider.name == package.name for need in view.needs(other) for provider in need.providers[:1]
+        provider.name == package.name for need in view.list_needs(other) for provider in need.providers[:1]
     )
 
 
-def doubts_of_missing(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+def collect_missing_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     """Of a need that nothing which the package declares answers. name: what would answer it, and can be had."""
     if need.role == "aside":
         return (Doubt.EXAMPLE,)
     if need.how in _STARTED or need.how == "import":
-        return _at_run_time(view, package, need, name)
+        return _collect_run_time_doubts(view, package, need, name)
     if need.how in ASKED and need.how != "program" and not (need.required and any(p.sure for p in need.providers)):
         return (Doubt.DISPENSABLE,)
     if not need.certain:
@@ -44,27 +44,27 @@ def doubts_of_missing(view: TargetView, package: Package, need: Need, name: str)
     if need.how == "environment":
         return (Doubt.LUCKY,)
     if need.how == "include":
-        return _of_include(view, package, need, name)
-    doubts = _unknown(view, package, need, name)
+        return _collect_include_doubts(view, package, need, name)
+    doubts = _collect_unknown_doubts(view, package, need, name)
     return doubts if need.required else (*doubts, Doubt.CONDITIONAL)
 
 
-def doubts_of_chance(view: TargetView, package: Package, need: Need) -> tuple[Doubt, ...]:
+def collect_chance_doubts(view: TargetView, package: Package, need: Need) -> tuple[Doubt, ...]:
     """Of a need that is answered by what happens to be installed along: none where the build farm, which builds the
     package's releases, installs no such thing, as it does not what is declared to run."""
     made = need.role == "build" or (need.role == "test" and need.how in ASKED and view.roles.farm_makes_tests)
     stops = made and (need.how in ASKED or need.targets)
-    installed = view.roles.on_build_farm(package)
-    if not stops or not view.target.ever_released(package.name) or view.answered(need.providers, installed):
+    installed = view.roles.list_on_build_farm(package)
+    if not stops or not view.target.was_ever_released(package.name) or view.is_met(need.providers, installed):
         return (Doubt.LUCKY,)
     unknown = view.unknown_contents
     return (Doubt.INCOMPLETE,) if unknown.may_come_along(package) or unknown.list_unknown(installed) else ()
 
 
-def doubts_of_compiled(view: TargetView, package: Package, need: Need) -> tuple[Doubt, ...]:
+def collect_compile_doubts(view: TargetView, package: Package, need: Need) -> tuple[Doubt, ...]:
     """Of an include that a target compiles, where the compiler is sure to stop at it."""
-    doubts = () if view.built(need.role) else (Doubt.TEST,)
-    if any(view.certain(target.conditions) for target in package.build.targets if target.name in need.targets):
+    doubts = () if view.is_built(need.role) else (Doubt.TEST,)
+    if any(view.is_sure(target.conditions) for target in package.build.targets if target.name in need.targets):
         return doubts
     return (*doubts, Doubt.CONDITIONAL)
 
@@ -78,24 +78,24 @@ def is_chance(view: TargetView, package: Package, need: Need, name: str) -> bool
     if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
         return False
     used = need.role == "test" and need.how in ("include", "import")
-    if used and view.answered(need.providers, view.roles.at_hand(package, "tests alone")):
+    if used and view.is_met(need.providers, view.roles.list_at_hand(package, "tests alone")):
         return False
     if need.subject == package.build_type:
         return not view.roles.has_build_tool(package, need.subject)
-    if not view.answered(need.providers, view.roles.at_hand(package, need.role)):
+    if not view.is_met(need.providers, view.roles.list_at_hand(package, need.role)):
         return True
     # Modules and nodes are not handed on: whoever has them can use them.
     if need.how not in ASKED and need.how != "include":
         return False
-    return not view.answered(need.providers, view.roles.handed_on(package, need.role, need.how != "include"))
+    return not view.is_met(need.providers, view.roles.list_handed_on(package, need.role, need.how != "include"))
 
 
-def _at_run_time(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     """Of modules, and of what launch files and scripts start. What depends on the package itself cannot be declared,
     and who wants both has it."""
     if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
         return (Doubt.DISPENSABLE,)
-    if circular(view, package, name):
+    if is_circular(view, package, name):
         return (Doubt.DISPENSABLE,)
     # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
     wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
@@ -106,17 +106,17 @@ def _at_run_time(view: TargetView, package: Package, need: Need, name: str) -> t
     return (Doubt.LATE,)
 
 
-def _of_include(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+def _collect_include_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     first = need.providers[0]
     if not need.targets:
         # Nothing here compiles an installed header on its own; whoever includes it needs what it includes.
         passed_on = need.public and first.kind == "ros" and not need.subject.startswith(TEST_HEADERS)
         if need.role == "test":
             return (Doubt.TEST,)
-        if not passed_on or circular(view, package, name):
+        if not passed_on or is_circular(view, package, name):
             return (Doubt.UNCOMPILED,)
         return () if _stops_another(view, package, need) else (Doubt.DISTURBS,)
-    doubts = (*_unknown(view, package, need, name), *doubts_of_compiled(view, package, need))
+    doubts = (*_collect_unknown_doubts(view, package, need, name), *collect_compile_doubts(view, package, need))
     # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
     if not first.sure and first.kind == "system":
         return (*doubts, Doubt.AMBIGUOUS)
@@ -125,34 +125,34 @@ def _of_include(view: TargetView, package: Package, need: Need, name: str) -> tu
     return doubts
 
 
-def _unknown(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
+def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     """What speaks against an error where something that comes along has dependencies or contents that are not known,
     so that it may bring what is needed."""
     opaque = view.unknown_contents.list_opaque(package) if need.providers[0].kind == "system" else ()
     # A key that installs no library itself is there for what it brings along.
-    if any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.debian, opaque)):
+    if any(debian and not any(map(_LIBRARY.search, debian)) for debian in map(view.list_debs, opaque)):
         return (Doubt.DISPENSABLE,)
     if opaque or view.unknown_contents.may_come_along(package, name, need.providers):
         return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
-    return (Doubt.LUCKY,) if together and view.answered(need.providers, view.brought_to_workspace) else ()
+    return (Doubt.LUCKY,) if together and view.is_met(need.providers, view.brought_to_workspace) else ()
 
 
 def _is_generated(view: TargetView, name: str, header: str) -> bool:
     """True for the header of an interface, which no tree of the released package shows."""
-    return bool(_OF_INTERFACE.match(header)) and not _RUNTIMES.isdisjoint(view.installed_with(name))
+    return bool(_OF_INTERFACE.match(header)) and not _RUNTIMES.isdisjoint(view.list_installed_with(name))
 
 
 def _stops_another(view: TargetView, package: Package, need: Need) -> bool:
     """True when another package of the workspace compiles the installed header, and nothing brings it what that
     includes either."""
-    for other in view.everyone():
+    for other in view.list_built():
         if other.name == package.name:
             continue
         for include in other.digest.includes:
-            if include.role != "build" or not include.targets or not view.certain(include.conditions):
+            if include.role != "build" or not include.targets or not view.is_sure(include.conditions):
                 continue
-            if need.subject not in view.outward((include.path,))[0]:
+            if need.subject not in view.find_outward((include.path,))[0]:
                 continue
             if not view.unknown_contents.may_come_along(other, need.subject, need.providers):
                 return True

@@ -21,7 +21,7 @@ Not reported
     workspace.
 """
 
-from ...targets.providers.library import not_answering
+from ...targets.providers.library import find_misspelled_version
 from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, rule
 
 
@@ -45,14 +45,14 @@ def _list_unknown_spellings(view: TargetView, package: Package):
     """find_package names that are known in another case alone: CMake looks for files of this very name."""
     own = view.workspace.cmake_files
     for f in package.build.found:
-        if f.how != "find_package" or not f.required or not view.certain(f.conditions) or view.is_package(f.name):
+        if f.how != "find_package" or not f.required or not view.is_sure(f.conditions) or view.is_package(f.name):
             continue
         if f.name.islower():
             continue  # `x-config.cmake` answers to it, which no list of files need show
-        if {f"Find{f.name}.cmake", f"{f.name}Config.cmake"} & own or any(p.sure for p in view.cmake(f.name)):
+        if {f"Find{f.name}.cmake", f"{f.name}Config.cmake"} & own or any(p.sure for p in view.find_cmake(f.name)):
             continue
-        meant = [n for n in view.providers.spellings(f.name) if n != f.name]
-        if len(meant) != 1 or not view.cmake(f.name) or meant[0] == f.name.lower():
+        meant = [n for n in view.providers.list_spellings(f.name) if n != f.name]
+        if len(meant) != 1 or not view.find_cmake(f.name) or meant[0] == f.name.lower():
             continue
         # Whoever brings the module along under the other name means that one, whatever the platform has.
         sure = f"Find{meant[0]}.cmake" in own or view.target.platform in view.providers.platforms
@@ -65,11 +65,11 @@ def _list_lost_spellings(view: TargetView, package: Package):
     """find_package names to which the target's version of a library answers no longer, where the build needs them."""
     linked = {link.item for target in package.build.targets for link in target.links if link.how == "ament"}
     for f in package.build.found:
-        if f.how != "find_package" or f.via or not (f.required or f.name in linked) or not view.active(f.conditions):
+        if f.how != "find_package" or f.via or not (f.required or f.name in linked) or not view.applies(f.conditions):
             continue
-        version = not_answering(view.target, f.name)
+        version = find_misspelled_version(view.target, f.name)
         if not version or f"Find{f.name}.cmake" in view.workspace.cmake_files:
             continue
         data = {"replacement": f.name.lower(), "version": version}
-        doubts = (f.required or Doubt.OPTIONAL, view.certain(f.conditions) or Doubt.CONDITIONAL)
+        doubts = (f.required or Doubt.OPTIONAL, view.is_sure(f.conditions) or Doubt.CONDITIONAL)
         yield Diagnostic(f.at, f.name, package.name, data, "case since", doubts)

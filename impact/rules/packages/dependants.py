@@ -1,20 +1,20 @@
 """Packages of the workspace that are sure to stop at what another one of it offers them."""
 
-from ....edges.memory import kept_with
+from ....edges.memory import cache_in_derived
 from ...model.cmake.build import BuildTarget
-from ...model.cmake.links import package_of
+from ...model.cmake.links import resolve_package
 from ..vocabulary import Package, TargetView
 
 
-def compiled_elsewhere(view: TargetView, package: Package, header: str) -> bool:
+def is_compiled_elsewhere(view: TargetView, package: Package, header: str) -> bool:
     """Whether a target of another package compiles a header of this one in any case. header: path in the workspace."""
     name = f"/{header}".rpartition("/include/")[2]
     return any(
         include.role == "build"
         and include.targets
-        and view.certain(include.conditions)
-        and name in view.outward((include.path,))[1]
-        for other in view.everyone()
+        and view.is_sure(include.conditions)
+        and name in view.find_outward((include.path,))[1]
+        for other in view.list_built()
         if other.name != package.name
         for include in other.digest.includes
     )
@@ -23,14 +23,14 @@ def compiled_elsewhere(view: TargetView, package: Package, header: str) -> bool:
 def links_without(view: TargetView, package: Package, target: BuildTarget, needed: str) -> bool:
     """Whether another package links an exported target of this one, and finds `needed` neither by itself nor along with
     others: CMake stops at a target of it. needed: as CMake calls it."""
-    names = {needed.lower(), *(provider.name.lower() for provider in view.cmake(needed))}
-    for other in view.everyone():
+    names = {needed.lower(), *(provider.name.lower() for provider in view.find_cmake(needed))}
+    for other in view.list_built():
         if other.name == package.name or not _links(view, other, package.name, target.export_name or target.name):
             continue
-        found = {f.name for f in other.build.found if view.active(f.conditions)}
+        found = {f.name for f in other.build.found if view.applies(f.conditions)}
         if any("$" in name for name in found) or any(f.how == "ament_auto" for f in other.build.found):
             continue
-        if names.isdisjoint(name.lower() for name in view.roles.found_with(found)):
+        if names.isdisjoint(name.lower() for name in view.roles.list_found_with(found)):
             return True
     return False
 
@@ -38,9 +38,9 @@ def links_without(view: TargetView, package: Package, target: BuildTarget, neede
 def _links(view: TargetView, package: Package, other: str, target: str) -> bool:
     """Whether a target that is built in any case is linked to one of another package, by name or as all that it has."""
     return any(
-        package_of(link.item) == other
+        resolve_package(link.item) == other
         and (link.how == "ament" or link.item == f"{other}::{target}" or link.item.endswith("_TARGETS}"))
-        and view.certain((*built.conditions, *link.conditions))
+        and view.is_sure((*built.conditions, *link.conditions))
         for built in package.build.targets
         for link in built.links
         if link.how in ("link", "ament")
@@ -53,11 +53,11 @@ def is_only_loaded(view: TargetView, package: Package) -> bool:
     return plugins and not _list_finders(view).get(package.name, set()) - {package.name}
 
 
-@kept_with
+@cache_in_derived
 def _list_finders(view: TargetView) -> dict[str, set[str]]:
     """What CMake looks for, with the packages of the workspace that do."""
     finders: dict[str, set[str]] = {}
-    for package in view.everyone():
+    for package in view.list_built():
         for found in package.build.found:
             finders.setdefault(found.name, set()).add(package.name)
     return finders

@@ -23,8 +23,8 @@ Not reported
     whoever starts launch files has; conditional code.
 """
 
-from ..vocabulary import Diagnostic, Package, TargetView, Text, Together, rule, weight
-from .clean_machine import doubts_of_chance, is_chance
+from ..vocabulary import Diagnostic, Package, TargetView, Text, Together, make_sort_key, rule
+from .clean_machine import collect_chance_doubts, is_chance
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
 
@@ -33,18 +33,18 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
     texts=Text("{use}, but `{subject}` is not declared and comes only through {sources}", DECLARE),
 )
 def dependency_by_chance(view: TargetView, package: Package):
-    declared = view.declared(package)
+    declared = view.collect_declared(package)
     for name, needs in find_undeclared(view, package).borrowed.items():
         strong = (need for need in needs if need.certain and (need.required or need.how == "program"))
-        first = next((need for need in sorted(strong, key=weight) if is_chance(view, package, need, name)), None)
+        first = next((need for need in sorted(strong, key=make_sort_key) if is_chance(view, package, need, name)), None)
         if first is not None:
-            sources = tuple(d for d in declared if view.answered(first.providers, view.transitive_dependencies([d])))
+            sources = tuple(d for d in declared if view.is_met(first.providers, view.list_transitive([d])))
             yield Diagnostic(
                 first.at,
                 name,
                 package.name,
                 {**describe_need(package, first), "sources": sources},
-                doubts=doubts_of_chance(view, package, first),
+                doubts=collect_chance_doubts(view, package, first),
                 fix=declare_need(view, package, first, name),
                 together=(Together("by chance"),),
             )

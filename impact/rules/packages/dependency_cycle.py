@@ -41,10 +41,10 @@ def dependency_cycle(view: TargetView):
     from graphlib import CycleError, TopologicalSorter
 
     needs: dict[str, set[str]] = {}
-    for package in view.everyone():
+    for package in view.list_built():
         needs[package.name] = {
             name
-            for name, kinds in view.declared(package).items()
+            for name, kinds in view.collect_declared(package).items()
             if name in view.workspace.packages and name != package.name and kinds - {"test", "doc"}
         }
     edges = sum(map(len, needs.values()))
@@ -59,7 +59,7 @@ def dependency_cycle(view: TargetView):
         first = min(names)
         names = names[names.index(first) :] + names[: names.index(first)]
         package = view.workspace.packages[first]
-        at = view.manifest_place(package, names[1])
+        at = view.find_place(package, names[1])
         if number == most:
             if view.reports_on(first):
                 yield Diagnostic(at, "further cycles", first, {"most": most}, "more", (Doubt.UNCHECKED,))

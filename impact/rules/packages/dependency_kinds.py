@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Set
 from typing import NamedTuple
 
-from ....edges.memory import kept_with
+from ....edges.memory import cache_in_derived
 from ..vocabulary import Declare, Need, Package, Remove, TargetView
-from .clean_machine import TEST_HEADERS, circular
+from .clean_machine import TEST_HEADERS, is_circular
 
 # What is exported is installed for dependants; bloom's Build-Depends of the package itself lack it.
 _FOR_BUILD = frozenset({"build", "buildtool"})
@@ -24,13 +24,13 @@ class WrongKind(NamedTuple):
     lacking: str
 
 
-@kept_with
+@cache_in_derived
 def list_wrong_kinds(view: TargetView, package: Package) -> Iterable[WrongKind]:
     """The first such need of each declared name, the weightiest first."""
-    declared = view.declared(package)
+    declared = view.collect_declared(package)
     seen: set[str] = set()
     brought: dict[Set[str], frozenset[str]] = {}
-    for need in view.weighed(package):
+    for need in view.sort_needs(package):
         own = [p.name for p in need.providers if p.name in declared]
         if not own or not need.certain or not need.required or any(name in seen for name in own):
             continue
@@ -39,10 +39,10 @@ def list_wrong_kinds(view: TargetView, package: Package) -> Iterable[WrongKind]:
         if not lacking:
             continue
         if fitting not in brought:
-            brought[fitting] = view.transitive_dependencies(
+            brought[fitting] = view.list_transitive(
                 name for name, of_name in declared.items() if of_name & fitting
             )
-        if not view.answered(need.providers, brought[fitting]):
+        if not view.is_met(need.providers, brought[fitting]):
             # Of several that may bring it, the one that is named as it is (`gmock/gmock.h`: libgmock-dev, not gtest).
             head = need.subject.partition("/")[0]
             name = next((name for name in own if head in name), own[0])
@@ -67,7 +67,7 @@ def fix_kind(view: TargetView, package: Package, name: str, tag: str, kinds: Set
     """Declares a name for more than it is declared for. What is declared for tests alone is declared anew, since
     `depend` beside `test_depend` says one thing twice."""
     path = package.digest.manifest_path
-    if circular(view, package, name):
+    if is_circular(view, package, name):
         return ()
     if kinds == {"test"} and tag == "depend":
         return (Remove(path, name, "test_depend"), Declare(path, name, tag))

@@ -20,7 +20,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.cmake.links import exported_targets, package_of, public_links
+from ...model.cmake.links import list_exported_targets, list_public_links, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .ament_exports import AmentExports, read_ament_exports
 
@@ -60,11 +60,11 @@ def _list_without_components(view: TargetView, package: Package, ament: AmentExp
         if export.how == "ament_export_dependencies" and export.item in _NONE_WITHOUT - handed - seen:
             seen.add(export.item)
             yield Diagnostic(export.at, export.item, package.name, kind="no components", doubts=(Doubt.DISTURBS,))
-    for target in exported_targets(package):
-        if not view.certain(target.conditions):
+    for target in list_exported_targets(package):
+        if not view.is_sure(target.conditions):
             continue
-        for link in public_links(target):
-            head = package_of(link.item)
+        for link in list_public_links(target):
+            head = resolve_package(link.item)
             if head not in _COMPONENTS_ALONE or head in seen or head not in ament.dependencies or head in handed:
                 continue
             asked = {name for f in package.build.found if f.name == head for name, _ in f.components}

@@ -26,7 +26,7 @@ Not reported
 
 import re
 
-from ...targets.version import at_least
+from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 
 # How packages that install find modules are called.
@@ -49,7 +49,7 @@ _BRINGS_MODULES = re.compile(r"cmake_modules?\Z")
 )
 def find_order(view: TargetView, package: Package):
     own = {name.rsplit("/", 1)[-1] for name in package.files if name.endswith(".cmake")}
-    asked = [f for f in package.build.found if f.how in ("find_package", "catkin") and view.certain(f.conditions)]
+    asked = [f for f in package.build.found if f.how in ("find_package", "catkin") and view.is_sure(f.conditions)]
     place = {}
     for number, found in enumerate(asked):
         place.setdefault(found.name, number)
@@ -59,15 +59,15 @@ def find_order(view: TargetView, package: Package):
         later = next(
             (
                 p.name
-                for p in view.cmake(found.name)
+                for p in view.find_cmake(found.name)
                 if p.kind == "ros" and _BRINGS_MODULES.search(p.name) and place.get(p.name, -1) > number
             ),
             "",
         )
         if later and not found.via:
             yield Diagnostic(found.at, later, package.name, {"found": found.name}, "module")
-    version = view.target.library("pybind11") or ""
-    if _lacks_python(view, package, place) and at_least(version or "0", "2.6"):
+    version = view.target.find_library("pybind11") or ""
+    if _lacks_python(view, package, place) and is_at_least(version or "0", "2.6"):
         yield Diagnostic(asked[place["pybind11"]].at, "Python3", package.name, {"version": version}, "python")
 
 
@@ -81,12 +81,15 @@ def _lacks_python(view: TargetView, package: Package, place: dict[str, int]) -> 
     before = min((number for name, number in place.items() if name.startswith("ament_cmake")), default=None)
     if before is None or place.get("pybind11", -1) < before or package.build.generated:
         return False
-    if not at_least(view.target.version("ament_cmake_core") or "0", _FINDS_PYTHON):
+    if not is_at_least(view.target.find_version("ament_cmake_core") or "0", _FINDS_PYTHON):
         return False
     found = package.build.found
     return (
-        any(use.name == "pybind11_add_module" and view.certain(use.conditions) for use in package.build.uses)
+        any(use.name == "pybind11_add_module" and view.is_sure(use.conditions) for use in package.build.uses)
         and not any(c.startswith("Development") for f in found for c in (*dict(f.components), *f.optional_components))
         and not any(t.kind in ("external", "fetched") and "pybind" in t.name.lower() for t in package.build.targets)
-        and ("PythonExtra" not in place or not at_least(view.target.version("python_cmake_module") or "0", "0.11"))
+        and (
+            "PythonExtra" not in place
+            or not is_at_least(view.target.find_version("python_cmake_module") or "0", "0.11")
+        )
     )

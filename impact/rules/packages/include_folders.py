@@ -10,17 +10,19 @@ OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "lib
 
 def shares_one_folder(view: TargetView) -> bool:
     """Whether the headers of all released packages lie in one folder, and go on to with all updates that are known."""
-    return all(offers.has_one_include_folder for offers in (view.offers, *(view.offers_on(a)[0] for a in view.updates)))
+    return all(
+        offers.has_one_include_folder for offers in (view.offers, *(view.make_offers(a)[0] for a in view.updates))
+    )
 
 
-def doubts_of_folder(view: TargetView, name: str, header: str) -> tuple[Doubt, ...] | None:
+def collect_folder_doubts(view: TargetView, name: str, header: str) -> tuple[Doubt, ...] | None:
     """What speaks against an error where a header's package is not given to what includes it; None where the header
     lies in the folder that packages have in common, and goes on to."""
     own = _has_own_folder(view, view.offers, name, header)
     if own is not False:
         return () if own else (Doubt.INCOMPLETE,)
     for ahead in view.updates:
-        if _has_own_folder(view, view.offers_on(ahead)[0], name, header):
+        if _has_own_folder(view, view.make_offers(ahead)[0], name, header):
             return () if ahead.soon else (Doubt.FAR if ahead.far else Doubt.UPCOMING,)
     return None
 

@@ -40,13 +40,13 @@ _APART = re.compile(
 def incomplete_metapackage(view: TargetView, package: Package):
     if not package.manifest.metapackage:
         return
-    declared = view.declared(package)
+    declared = view.collect_declared(package)
     folder = posixpath.dirname(package.path)
-    members = {p.name for p in view.everyone() if not p.manifest.metapackage and posixpath.dirname(p.path) == folder}
+    members = {p.name for p in view.list_built() if not p.manifest.metapackage and posixpath.dirname(p.path) == folder}
     missing = [name for name in members - declared.keys() if not _APART.search(name)]
     if len(missing) != 1 or len(members & declared.keys()) < _MEMBERS:
         return
-    if missing[0] in view.transitive_dependencies({package.name, *declared}):
+    if missing[0] in view.list_transitive({package.name, *declared}):
         return
     tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
     yield Diagnostic(At(package.digest.manifest_path, 1), missing[0], package.name, {"tag": tag})

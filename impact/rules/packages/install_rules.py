@@ -3,9 +3,9 @@
 import posixpath
 from collections.abc import Iterable
 
-from ....edges.memory import kept_with
+from ....edges.memory import cache_in_derived
 from ...model.cmake.build import Install
-from ...model.cmake.installed import copied_files, lets_in
+from ...model.cmake.installed import lets_in, list_copied_files
 from ..vocabulary import Package, TargetView
 
 
@@ -15,7 +15,7 @@ def read_installs(view: TargetView, package: Package) -> list[Install] | None:
         return None
     if any(f.how == "ament_auto" for f in package.build.found) and package.build.ament_package is None:
         return None
-    return [i for i in package.build.installs if view.active(i.conditions)]
+    return [i for i in package.build.installs if view.applies(i.conditions)]
 
 
 def is_installed(package: Package, installs: list[Install], path: str) -> bool:
@@ -46,7 +46,7 @@ def list_places(package: Package, installs: Iterable[Install]) -> frozenset[str]
         return None
     found: set[str] = set()
     for rule in rules:
-        for _, place in copied_files(rule, posixpath.normpath(rule.destination), package.digest.files):
+        for _, place in list_copied_files(rule, posixpath.normpath(rule.destination), package.digest.files):
             while place and place not in found:
                 found.add(place)
                 place = posixpath.dirname(place)
@@ -59,7 +59,7 @@ def list_references(view: TargetView, package: Package, *kinds: str) -> set[str]
     return set().union(*(found.get(kind, ()) for kind in kinds or found))
 
 
-@kept_with
+@cache_in_derived
 def _list_all_references(view: TargetView) -> dict[str, dict[str, set[str]]]:
     """Package to kind to names."""
     found: dict[str, dict[str, set[str]]] = {}

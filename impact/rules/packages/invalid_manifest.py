@@ -63,7 +63,7 @@ def invalid_manifest(workspace: Workspace):
                 at, data = At(path, problem.line), {"problem": problem.message}
                 yield Diagnostic(at, package.name or path, package.name, data, "problem")
         for condition, line in {d.condition: d.line for d in manifest.dependencies if d.condition}.items():
-            if not _PLAIN.match(condition) and not _readable(condition):
+            if not _PLAIN.match(condition) and not _is_readable(condition):
                 yield Diagnostic(At(path, line), condition, package.name, kind="condition")
 
 
@@ -72,7 +72,7 @@ _TERM = r"""\s*(?:\$\w+|[\w.-]+|"[^"]*"|'[^']*')\s*(?:==|!=|<=|>=|<|>)\s*(?:\$\w
 _PLAIN = re.compile(rf"{_TERM}(?:\b(?:and|or)\b{_TERM})*\Z")
 
 
-def _readable(condition: str) -> bool:
+def _is_readable(condition: str) -> bool:
     from catkin_pkg.condition import evaluate_condition
 
     try:

@@ -19,7 +19,7 @@ Use instead
 """
 
 from ...model.cmake.build import FoundPackage
-from ...targets.providers.library import gone_component
+from ...targets.providers.library import find_gone_component
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
@@ -31,20 +31,20 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 )
 def library_component(view: TargetView, package: Package):
     for found in package.build.found:
-        if found.how == "find_package" and view.active(found.conditions):
+        if found.how == "find_package" and view.applies(found.conditions):
             yield from _list_gone(view, package, found)
     for found in package.build.handed_on:
-        if view.active(found.conditions):
+        if view.applies(found.conditions):
             yield from _list_gone(view, package, found, (Doubt.DISTURBS,))
 
 
 def _list_gone(view: TargetView, package: Package, found: FoundPackage, besides: tuple[Doubt, ...] = ()):
     """Components that the target's version of the library, or that of the newest distro, does not have."""
     newest = view.newest
-    certain = view.certain(found.conditions)
+    certain = view.is_sure(found.conditions)
     for name, at in found.components:
-        gone = gone_component(view.target, found.name, name)
-        later = gone_component(newest, found.name, name) if newest is not None and not gone else None
+        gone = find_gone_component(view.target, found.name, name)
+        later = find_gone_component(newest, found.name, name) if newest is not None and not gone else None
         if later is not None:
             data = {"library": found.name, "version": later.version, "horizon": view.horizon, "advice": later.help}
             doubt = Doubt.UPCOMING if found.required and name != "system" and certain else Doubt.FAR

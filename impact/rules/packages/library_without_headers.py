@@ -39,34 +39,34 @@ from .dependency_kinds import FOR_RUN, fix_kind
     },
 )
 def library_without_headers(view: TargetView, package: Package):
-    declared = view.declared(package)
+    declared = view.collect_declared(package)
     bare = {
         name: debian
         for name in declared
-        if name.startswith("lib") and (debian := view.debian(name)) and not any(d.endswith("-dev") for d in debian)
+        if name.startswith("lib") and (debian := view.list_debs(name)) and not any(d.endswith("-dev") for d in debian)
     }
     seen = set()
-    for need in view.weighed(package) if bare else ():
+    for need in view.sort_needs(package) if bare else ():
         if need.how == "include" and need.public and need.certain:
             yield from _list_handed_on(view, package, declared, bare, need, seen)
         if need.how not in ("find_package", "component", "include", "pkg-config") or need.role != "build":
             continue
-        if not need.certain or view.answered(need.providers, declared) or need.providers[0].name in seen:
+        if not need.certain or view.is_met(need.providers, declared) or need.providers[0].name in seen:
             continue
         wanted = {
             re.sub(r"(-all)?-dev\Z", "", debian)
             for provider in need.providers
             if provider.kind == "system"
-            for debian in view.debian(provider.name)
+            for debian in view.list_debs(provider.name)
             if debian.endswith("-dev")
         }
-        name = next((n for n, debian in bare.items() if any(_same_library(d, w) for d in debian for w in wanted)), None)
-        right = next((p.name for p in need.providers if view.available(p.name)), None)
+        name = next((n for n, debian in bare.items() if any(_is_same(d, w) for d in debian for w in wanted)), None)
+        right = next((p.name for p in need.providers if view.is_available(p.name)), None)
         if name is None or right is None:
             continue
         seen.add(need.providers[0].name)
         data, doubts = {"declared": name, "header": need.subject}, (_lacks(view, package, need) or Doubt.INCOMPLETE,)
-        yield Diagnostic(view.manifest_place(package, name), right, package.name, data, "bare", doubts)
+        yield Diagnostic(view.find_place(package, name), right, package.name, data, "bare", doubts)
 
 
 def _lacks(view: TargetView, package: Package, need) -> bool:
@@ -81,9 +81,9 @@ def _list_handed_on(view: TargetView, package: Package, declared, bare, need, se
     right = next((p.name for p in need.providers if declared.get(p.name) == {"build"}), None)
     if right is None or right in seen:
         return
-    stems = {re.sub(r"(-all)?-dev\Z", "", debian) for debian in view.debian(right)}
+    stems = {re.sub(r"(-all)?-dev\Z", "", debian) for debian in view.list_debs(right)}
     name = next(
-        (n for n, installed in bare.items() if any(_same_library(d, s) for d in installed for s in stems)), None
+        (n for n, installed in bare.items() if any(_is_same(d, s) for d in installed for s in stems)), None
     )
     if name is None or name.startswith("libboost") or not declared[name] & FOR_RUN:
         return
@@ -91,12 +91,12 @@ def _list_handed_on(view: TargetView, package: Package, declared, bare, need, se
     tag = "run_depend" if package.manifest.format == 1 else "depend"
     data = {"declared": name, "header": need.subject, "tag": tag}
     fix = fix_kind(view, package, right, "depend", declared[right])
-    at = view.manifest_place(package, name)
+    at = view.find_place(package, name)
     together = (Together(f"`{name}` without headers", everywhere=True),)
     yield Diagnostic(at, right, package.name, data, "public bare", (Doubt.DISTURBS,), fix=fix, together=together)
 
 
-def _same_library(installed: str, stem: str) -> bool:
+def _is_same(installed: str, stem: str) -> bool:
     """True when a package without headers belongs to the library: `libboost-thread1.71.0` to `libboost`."""
     rest = installed[len(stem) :]
     return len(stem) > 4 and installed.startswith(stem) and (not rest or rest[0] in "-0123456789.")

@@ -30,8 +30,8 @@ import re
 from collections.abc import Iterator
 
 from ...model.cmake.build import Install
-from ...model.cmake.installed import copied_files
-from ...model.cmake.links import linked_items, package_of
+from ...model.cmake.installed import list_copied_files
+from ...model.cmake.links import list_linked_items, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .install_rules import is_installed, list_references, read_installs
 
@@ -91,9 +91,9 @@ def _list_doubled(view: TargetView, package: Package, installs) -> Iterator[Diag
 def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
     """True when another package of the workspace compiles a header of the folder, or the package exports the place
     where its headers should lie, and no other rule installs them there."""
-    if not view.certain(install.conditions) or package.build.unresolved:
+    if not view.is_sure(install.conditions) or package.build.unresolved:
         return False
-    exported = [e.item for e in package.build.exports if "include" in e.how and view.certain(e.conditions)]
+    exported = [e.item for e in package.build.exports if "include" in e.how and view.is_sure(e.conditions)]
     exported.extend(place for target in package.build.targets for place in target.installed_includes)
     if any("$" in item or item.rstrip("/").endswith("include/include") for item in exported):
         return False
@@ -105,8 +105,8 @@ def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
     if headers and any(item.rstrip("/") in ("include", install.destination.rstrip("/")) for item in exported):
         return True
     return any(
-        include.path in headers and include.role == "build" and include.targets and view.certain(include.conditions)
-        for other in view.everyone()
+        include.path in headers and include.role == "build" and include.targets and view.is_sure(include.conditions)
+        for other in view.list_built()
         if other.name != package.name
         for include in other.digest.includes
     )
@@ -119,7 +119,7 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
     for install in installs:
         among_programs = _OF_PROGRAMS.search(install.destination)
         if install.kind == "directory" and not install.executable and among_programs:
-            copied = [path for path, _ in copied_files(install, "", package.digest.files) if path in scripts]
+            copied = [path for path, _ in list_copied_files(install, "", package.digest.files) if path in scripts]
         elif install.kind == "files":
             copied = [path for item in install.items if (path := posixpath.normpath(item)) in package.digest.scripts]
         else:
@@ -133,7 +133,7 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
             if name in package.digest.interpreted:
                 continue
             sure = among_programs or _is_node(view, package, path)
-            doubts = (bool(sure) or Doubt.LATE, view.certain(install.conditions) or Doubt.CONDITIONAL)
+            doubts = (bool(sure) or Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
             if install.kind == "directory":
                 data = {"file": inside}
                 subject = posixpath.dirname(inside)
@@ -177,7 +177,7 @@ def _list_renamed(view: TargetView, package: Package, installs) -> Iterator[Diag
 
 def _list_components(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Libraries of registered components that no rule installs into lib, where the resource index says they are."""
-    components = {e.context for e in package.build.exports if e.how == "component" and view.active(e.conditions)}
+    components = {e.context for e in package.build.exports if e.how == "component" and view.applies(e.conditions)}
     by_name = {t.name for t in package.build.targets if t.kind in ("library", "module") and not t.static}
     for name in sorted(components & by_name):
         place = _find_wrong_place(installs, name, "lib")
@@ -202,7 +202,7 @@ def _list_programs(view: TargetView, package: Package, installs) -> Iterator[Dia
         if target.kind != "executable" or place is None:
             continue
         node = view.target.ros == 2 and "rclcpp" in {
-            package_of(item) for item in linked_items(package, target.name) or ()
+            resolve_package(item) for item in list_linked_items(package, target.name) or ()
         }
         if not node and (target.output_name or target.name) not in started:
             continue
@@ -216,7 +216,7 @@ def _list_other_python(view: TargetView, package: Package, installs) -> Iterator
     own = f"{view.target.python_major}.{view.target.python}"
     for install in installs:
         found = re.search(r"(?:^|/)python([23]\.\d+)/(?:site|dist)-packages", install.destination)
-        if found is not None and found.group(1) != own and view.certain(install.conditions):
+        if found is not None and found.group(1) != own and view.is_sure(install.conditions):
             data = {"version": found.group(1), "own": own}
             yield Diagnostic(install.at, install.destination, package.name, data, "python", (Doubt.LATE,))
 
@@ -237,11 +237,11 @@ def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagno
         programs = install.kind == "programs" or (install.kind == "directory" and install.executable)
         if not programs or install.rewritten or not _OF_PROGRAMS.search(install.destination):
             continue
-        for path, _ in copied_files(install, "", package.digest.files):
+        for path, _ in list_copied_files(install, "", package.digest.files):
             name = posixpath.basename(path)
             if path in package.digest.plain_scripts and name not in package.digest.interpreted:
                 data = {"platform": target.platform, "cure": cure}
-                doubts = (Doubt.LATE, view.certain(install.conditions) or Doubt.CONDITIONAL)
+                doubts = (Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
                 yield Diagnostic(install.at, name, package.name, data, "interpreter", doubts, together=_ONE_LINE)
 
 

@@ -38,19 +38,23 @@ def missing_cmake_modules(view: TargetView, package: Package):
         return
     if package.build_type != "catkin":
         return
-    names = view.roles.found_with(f.name for f in package.build.found if f.how == "catkin")
+    names = view.roles.list_found_with(f.name for f in package.build.found if f.how == "catkin")
     names |= {f.name for f in package.build.found}
     own = {p.rsplit("/", 1)[-1] for p in package.files if p.endswith(".cmake")}
     for found in package.build.found:
         if found.how != "find_package" or f"Find{found.name}.cmake" in own or not _is_brought(view, found.name):
             continue
-        if "cmake_modules" in names or view.providers.cmake_platforms(found.name) or not view.active(found.conditions):
+        if (
+            "cmake_modules" in names
+            or view.providers.list_cmake_platforms(found.name)
+            or not view.applies(found.conditions)
+        ):
             continue
         needed = found.required or (found.name == "Eigen" and _lacks_eigen(view, package))
         doubts = (
             needed or Doubt.DISPENSABLE,
             found.required or Doubt.OPTIONAL,
-            view.certain(found.conditions) or Doubt.CONDITIONAL,
+            view.is_sure(found.conditions) or Doubt.CONDITIONAL,
         )
         yield Diagnostic(found.at, "cmake_modules", package.name, {"name": found.name}, doubts=doubts)
 
@@ -61,14 +65,14 @@ def _lacks_eigen(view: TargetView, package: Package) -> bool:
     found = {f.name for f in package.build.found} - {"Eigen"}
     if any("$" in name for name in found):
         return False
-    reached = view.transitive_dependencies({*found, *(p.name for name in found for p in view.cmake(name)[:1])})
+    reached = view.list_transitive({*found, *(p.name for name in found for p in view.find_cmake(name)[:1])})
     return any(
         need.how == "include" and need.subject.startswith(("Eigen/", "unsupported/Eigen/"))
-        and need.role == "build" and need.certain and not view.answered(need.providers, reached)
-        for need in view.needs(package)
+        and need.role == "build" and need.certain and not view.is_met(need.providers, reached)
+        for need in view.list_needs(package)
     )  # fmt: skip
 
 
 def _is_brought(view: TargetView, name: str) -> bool:
     """Whether cmake_modules has a find module of this name."""
-    return any(p.kind == "ros" and p.name == "cmake_modules" for p in view.providers.cmake(name))
+    return any(p.kind == "ros" and p.name == "cmake_modules" for p in view.providers.find_cmake(name))

@@ -26,8 +26,8 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.cmake.links import exported_targets, passed_on_package, public_links
-from ...targets.version import at_least
+from ...model.cmake.links import list_exported_targets, list_public_links, resolve_passed_package
+from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
@@ -67,7 +67,7 @@ def missing_export(view: TargetView, package: Package):
         yield from _list_included(view, package, ament, seen)
 
 
-# From this version on ament_target_dependencies() links targets where it linked libraries by their paths before.
+# From this version on add_target_dependencies() links targets where it linked libraries by their paths before.
 # Source: CHANGELOG.rst of ament_cmake_target_dependencies.
 _BY_TARGET = "0.9.0"
 
@@ -77,22 +77,22 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
     theirs."""
     reach = {name.lower() for name in ament.found}
     found = {f.name.lower(): f for f in package.build.found}
-    by_target = at_least(view.target.version("ament_cmake_target_dependencies") or _BY_TARGET, _BY_TARGET)
+    by_target = is_at_least(view.target.find_version("ament_cmake_target_dependencies") or _BY_TARGET, _BY_TARGET)
     # A habit of those whose libraries are loaded; whoever links a library stops at each of them.
     together = _ONCE if is_only_loaded(view, package) else _EACH
-    for target in exported_targets(package):
-        if not view.certain(target.conditions):
+    for target in list_exported_targets(package):
+        if not view.is_sure(target.conditions):
             continue
-        for link in public_links(target):
-            name = passed_on_package(link) if by_target or link.how != "ament" else ""
+        for link in list_public_links(target):
+            name = resolve_passed_package(link) if by_target or link.how != "ament" else ""
             known = found.get(name.lower())
             if known is None or known.name in seen or known.name.lower() in reach or known.name == package.name:
                 continue
-            if not view.certain(link.conditions) or {p.name.lower() for p in view.cmake(known.name)} & reach:
+            if not view.is_sure(link.conditions) or {p.name.lower() for p in view.find_cmake(known.name)} & reach:
                 continue
             seen.add(known.name)
             item = link.item if link.how == "link" else known.name
-            doubts = _doubts_of_passed_on(view, package, target, link, known.name)
+            doubts = _collect_passed_on_doubts(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
             if package.build.ament_package is None:
                 yield Diagnostic(
@@ -102,7 +102,7 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
             yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=together)
 
 
-def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
+def _collect_passed_on_doubts(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
     if is_only_loaded(view, package) and not package.digest.public_headers:
         return (Doubt.UNCOMPILED,)  # without headers nobody links it
     if _comes_with_client_library(view, name):
@@ -116,7 +116,7 @@ def _doubts_of_passed_on(view: TargetView, package: Package, target, link, name:
 
 def _comes_with_client_library(view: TargetView, name: str) -> bool:
     """True for what comes along with the client library: dependants that build a node find it all the same."""
-    return name in view.transitive_dependencies(("rclcpp" if view.target.ros == 2 else "roscpp",))
+    return name in view.list_transitive(("rclcpp" if view.target.ros == 2 else "roscpp",))
 
 
 def _list_included(view: TargetView, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
@@ -124,15 +124,15 @@ def _list_included(view: TargetView, package: Package, ament: AmentExports, seen
     links = not ament.hows.isdisjoint(("ament_export_libraries", "ament_export_targets"))
     needed, loaded = links or package.name in view.workspace.includers, is_only_loaded(view, package)
     found = {f.name for f in package.build.found}
-    for need in view.weighed(package):
-        if need.how != "include" or not need.public or not need.certain or view.answered(need.providers, ament.found):
+    for need in view.sort_needs(package):
+        if need.how != "include" or not need.public or not need.certain or view.is_met(need.providers, ament.found):
             continue
         name = next((p.name for p in need.providers if p.name in found), "")
         if not name or name in seen or name == package.name or need.providers[0].kind != "ros":
             continue
         seen.add(name)
         # What the distro does not bring lies in a folder of its own there too.
-        overlaid = name in view.workspace.packages or view.target.version(name) is None
+        overlaid = name in view.workspace.packages or view.target.find_version(name) is None
         apart = overlaid or not shares_one_folder(view)
         missed = apart and needed and not loaded and not _comes_with_client_library(view, name)
         doubts = (Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
@@ -142,13 +142,13 @@ def _list_included(view: TargetView, package: Package, ament: AmentExports, seen
 
 def _list_of_messages(view: TargetView, package: Package):
     """Packages of messages that the package's own are made of, and that catkin_package() does not hand on."""
-    exports = [e for e in package.build.exports if view.active(e.conditions)]
+    exports = [e for e in package.build.exports if view.applies(e.conditions)]
     named = {e.item for e in exports if e.how in ("catkin_depends", "system_depends")}
     if any("$" in name for name in named):
         return
-    reach = view.roles.found_with(named)
+    reach = view.roles.list_found_with(named)
     for made in package.build.generated:
-        if made.how != "catkin" or not made.offered or not view.certain(made.conditions):
+        if made.how != "catkin" or not made.offered or not view.is_sure(made.conditions):
             continue
         for name, at in made.dependencies:
             if "$" not in name and name not in reach and name != package.name:
@@ -159,11 +159,11 @@ def _list_of_messages(view: TargetView, package: Package):
 
 def _list_of_catkin_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """A package of catkin that hands on no package at all, though headers of others are in what it exports."""
-    hows = {e.how for e in package.build.exports if view.active(e.conditions)}
+    hows = {e.how for e in package.build.exports if view.applies(e.conditions)}
     if not hows >= {"include_dirs", "libraries"} or hows & {"catkin_depends", "cfg_extras"}:
         return
     found = {f.name for f in package.build.found if f.how == "catkin"}
-    for need in view.weighed(package):
+    for need in view.sort_needs(package):
         if need.how == "include" and need.public and need.certain and any(p.name in found for p in need.providers):
             data = {"header": need.subject}
             at = package.build.catkin_package

@@ -27,12 +27,12 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.cmake.build import for_tests
+from ...model.cmake.build import is_for_tests
 from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
 from ...model.misspelling import SpellingIndex
-from ...model.view import interface_of
-from ...targets.providers.libraries import system_libraries
-from ...targets.version import at_least
+from ...model.view import find_included_interface
+from ...targets.providers.libraries import load_libraries
+from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
 from .unset_library_variable import fold
 
@@ -62,29 +62,29 @@ def missing_find_package(view: TargetView, package: Package):
     build = package.build
     if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
         return
-    yield from _only_placed(view, package)
+    yield from _find_vendored_libraries(view, package)
     found = list_found_names(view, package)
     if found is None:
         return
-    reachable = view.transitive_dependencies(found) | view.roles.found_with(found)
-    tested = {f.name for f in package.build.found if for_tests(f.conditions) and f.name in found}
-    outside = {f.name for f in package.build.found if not for_tests(f.conditions)}
+    reachable = view.list_transitive(found) | view.roles.list_found_with(found)
+    tested = {f.name for f in package.build.found if is_for_tests(f.conditions) and f.name in found}
+    outside = {f.name for f in package.build.found if not is_for_tests(f.conditions)}
     built = (
-        view.transitive_dependencies(n for n in found if n in outside or n not in tested)
+        view.list_transitive(n for n in found if n in outside or n not in tested)
         if tested - outside
         else reachable
     )
-    shipped = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
+    shipped = {t.name for t in package.build.targets if t.kind != "test" and not is_for_tests(t.conditions)}
     closure = view.build_environment(package)
     # ament_auto and ament_lint_auto find all that is declared for tests.
     finds_tested = any(f.how in ("ament_auto", "ament_lint_auto") for f in build.found)
-    near, prefixes = SpellingIndex({*view.declared(package), *found}), {f.prefix for f in package.build.found}
+    near, prefixes = SpellingIndex({*view.collect_declared(package), *found}), {f.prefix for f in package.build.found}
     seen = set()
     for at, name in list_given_names(view, package):
         if name in reachable or name in seen or name in package.digest.modules or name == package.name:
             continue
         seen.add(name)
-        if not view.is_package(name) and (name in prefixes or view.cmake(name) or near.nearest(name)):
+        if not view.is_package(name) and (name in prefixes or view.find_cmake(name) or near.find_nearest(name)):
             continue  # a library, or a name that is misspelt
         # The configuration of a library whose contents are not known may find others.
         opaque = not view.is_package(name) or any(
@@ -94,12 +94,12 @@ def missing_find_package(view: TargetView, package: Package):
         yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
     sought = {fold(f.name) for f in package.build.found if f.name in outside}
     linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
-    for need in view.weighed(package):
-        tested = need.role == "test" and bool(need.targets) and view.built("test") and not finds_tested
+    for need in view.sort_needs(package):
+        tested = need.role == "test" and bool(need.targets) and view.is_built("test") and not finds_tested
         if need.how != "include" or not (need.role == "build" or tested) or not need.certain:
             continue
         reached = built if shipped.intersection(need.targets) and not tested else reachable
-        if view.answered(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
+        if view.is_met(need.providers, reached) or need.subject.startswith(_SYSTEM_BY_DEFAULT):
             continue
         name = next((p.name for p in need.providers if p.name in closure), None)
         if name is None or name in seen or name == package.name:
@@ -110,14 +110,14 @@ def missing_find_package(view: TargetView, package: Package):
             continue
         if not ros and any(a in b or b in a for a in stems for b in linked if len(a) > 2 and len(b) > 2):
             continue
-        header_only = ros and view.target.ros == 1 and interface_of(view, need.subject) is not None
+        header_only = ros and view.target.ros == 1 and find_included_interface(view, need.subject) is not None
         named = {p.name for p in need.providers}
-        if not ros and any(p.name in named for f in found for p in view.cmake(f)):
+        if not ros and any(p.name in named for f in found for p in view.find_cmake(f)):
             continue
         seen.add(name)
-        counts = name in view.declared(package) and ros and not header_only
-        doubts = (_doubt_of_include(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
-        folder = "" if ros or not shipped.intersection(need.targets) else system_libraries().folder(need.subject)
+        counts = name in view.collect_declared(package) and ros and not header_only
+        doubts = (_find_include_doubt(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
+        folder = "" if ros or not shipped.intersection(need.targets) else load_libraries().find_folder(need.subject)
         if folder and not any(folder in item or "$" in item for item in _list_given(package, need)):
             doubts = (Doubt.INCOMPLETE,)
         yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "included", doubts)
@@ -132,7 +132,7 @@ def _list_given(package: Package, need: Need) -> Iterator[str]:
             yield from (link.item for link in target.links)
 
 
-def _doubt_of_include(view: TargetView, need) -> Doubt | None:
+def _find_include_doubt(view: TargetView, need) -> Doubt | None:
     """How surely a missing find_package stops the compiler: where the package has an include folder of its own."""
     if not (need.targets or need.public):
         return Doubt.UNCOMPILED
@@ -148,21 +148,21 @@ def _doubt_of_include(view: TargetView, need) -> Doubt | None:
 _PLACING = (("yaml_cpp_vendor", "9.0.0", "yaml-cpp", "yaml-cpp/"),)
 
 
-def _only_placed(view: TargetView, package: Package):
+def _find_vendored_libraries(view: TargetView, package: Package):
     """Libraries whose vendor package is found and no longer finds them."""
     found = {f.name: f for f in package.build.found}
     for vendor, since, library, root in _PLACING:
-        version = view.target.version(vendor)
+        version = view.target.find_version(vendor)
         asked = found.get(vendor)
-        if asked is None or library in found or not version or not at_least(version, since):
+        if asked is None or library in found or not version or not is_at_least(version, since):
             continue
         linked = {fold(link.item) for t in package.build.targets for link in t.links}
         if fold(library) in linked:
             continue
         use = next((i for i in package.digest.includes if i.path.startswith(root) and i.targets), None)
-        if use is None or not view.certain(use.conditions):
+        if use is None or not view.is_sure(use.conditions):
             continue
-        others = view.transitive_dependencies(name for name in found if name != vendor)
+        others = view.list_transitive(name for name in found if name != vendor)
         if vendor in others or library in others:
             continue  # it may come along with those
         data = {"header": use.path, "vendor": vendor, "version": version}

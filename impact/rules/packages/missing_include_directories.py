@@ -44,15 +44,15 @@ def missing_include_directories(view: TargetView, package: Package):
     if any(f"{f.name}_INCLUDE_DIRS" in given for f in build.found if f.how == "catkin"):
         return  # all of /opt/ros lies in one folder
     for target in build.targets:
-        if target.kind not in ("executable", "library") or not view.certain(target.conditions):
+        if target.kind not in ("executable", "library") or not view.is_sure(target.conditions):
             continue
         include = next(
             (
                 i
                 for i in package.digest.includes
                 if target.name in i.targets
-                and view.certain(i.conditions)
-                and any(p.kind == "ros" and p.name not in view.workspace.packages for p in view.header(i.path))
+                and view.is_sure(i.conditions)
+                and any(p.kind == "ros" and p.name not in view.workspace.packages for p in view.find_header(i.path))
             ),
             None,
         )

@@ -27,8 +27,8 @@ Not reported
 import posixpath
 import re
 
-from ...model.cmake.build import for_tests
-from ...model.package import role_of_folder
+from ...model.cmake.build import is_for_tests
+from ...model.package import find_folder_role
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .install_rules import is_installed, list_references, read_installs
 
@@ -61,8 +61,8 @@ def missing_install(view: TargetView, package: Package):
         if (
             target.name in installed
             or target.kind not in ("executable", "library", "module")
-            or not view.certain(target.conditions)
-            or for_tests(target.conditions)
+            or not view.is_sure(target.conditions)
+            or is_for_tests(target.conditions)
         ):
             continue
         name = target.output_name or target.name
@@ -94,13 +94,13 @@ def _is_to_be_installed(view: TargetView, package: Package, installs) -> bool:
     Debian package holds no others."""
     if package.build.unresolved or any("$" in item for install in installs for item in install.items):
         return False
-    return view.target.ros == 2 or view.target.ever_released(package.name)
+    return view.target.ros == 2 or view.target.was_ever_released(package.name)
 
 
 def _is_started(view: TargetView, package: Package, name: str) -> bool:
     """True when an installed launch file starts a program of the package in any case."""
-    for other in view.everyone():
-        installs = [i for i in other.build.installs if view.certain(i.conditions)]
+    for other in view.list_built():
+        installs = [i for i in other.build.installs if view.is_sure(i.conditions)]
         for use in other.digest.references:
             r = use.reference
             if (r.package, r.name, r.kind, use.role) != (package.name, name, "executable", "run") or r.conditional:
@@ -112,8 +112,8 @@ def _is_started(view: TargetView, package: Package, name: str) -> bool:
 
 def _is_aside(package: Package, target) -> bool:
     inside = lambda p: p[len(package.path) :].lstrip("/")  # noqa: E731
-    if role_of_folder(inside(target.at.path)) or re.search(
+    if find_folder_role(inside(target.at.path)) or re.search(
         r"(^|_)(test|tests|example|demo|benchmark)(_|$)", target.name
     ):
         return True
-    return bool(target.sources) and all(role_of_folder(inside(s)) for s in target.sources)
+    return bool(target.sources) and all(find_folder_role(inside(s)) for s in target.sources)

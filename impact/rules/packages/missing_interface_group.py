@@ -1,11 +1,11 @@
 """missing-interface-group: a package generates interfaces and is not a member of their group.
 
 What it does
-    Reports packages of ROS 2 that call rosidl_generate_interfaces() and whose package.xml does not have
+    Reports packages of ROS 2 that call generate_interfaces() and whose package.xml does not have
     `<member_of_group>rosidl_interface_packages</member_of_group>`.
 
 Why it breaks
-    rosidl_generate_interfaces() stops where it installs interfaces of a package that is not in the group. Packages that
+    generate_interfaces() stops where it installs interfaces of a package that is not in the group. Packages that
     depend on the group, such as ros1_bridge, are built before this one and lack its interfaces.
 
 Severity
@@ -22,12 +22,12 @@ Not reported
     Interfaces that are generated for tests, or under a condition that is not known.
 """
 
-from ...model.cmake.build import for_tests
-from ...targets.version import at_least
+from ...model.cmake.build import is_for_tests
+from ...targets.version import is_at_least
 from ..vocabulary import Declare, Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _GROUP = "rosidl_interface_packages"
-# From here on, at the latest, rosidl_generate_interfaces() asks. Source: its CMake code in rosidl_cmake, whose change
+# From here on, at the latest, generate_interfaces() asks. Source: its CMake code in rosidl_cmake, whose change
 # log has nothing about it since.
 _ASKS = "0.8.0"
 
@@ -45,8 +45,8 @@ def missing_interface_group(view: TargetView, package: Package):
     if any(d.kind == "member_of_group" and d.name == _GROUP for d in package.manifest.dependencies):
         return
     for generated in package.build.generated:
-        if generated.how == "rosidl" and view.certain(generated.conditions) and not for_tests(generated.conditions):
-            stops = generated.installed and at_least(view.target.version("rosidl_cmake") or "0", _ASKS)
+        if generated.how == "rosidl" and view.is_sure(generated.conditions) and not is_for_tests(generated.conditions):
+            stops = generated.installed and is_at_least(view.target.find_version("rosidl_cmake") or "0", _ASKS)
             doubts = (stops or Doubt.DISTURBS,)
             join = Declare(package.digest.manifest_path, _GROUP, "member_of_group")
             fix = (join,) if package.manifest.format >= 3 else ()  # groups came with it

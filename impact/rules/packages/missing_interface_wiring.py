@@ -21,7 +21,7 @@ Not reported
 import re
 
 from ....edges.reach import walk
-from ...model.view import interface_of
+from ...model.view import find_included_interface
 from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, rule
 
 
@@ -41,7 +41,7 @@ def missing_interface_wiring(view: TargetView, package: Package):
     wanted: dict[tuple[str, str], list] = {}
     for include in package.digest.includes:
         head, _, rest = include.path.partition("/")
-        if not rest or not view.active(include.conditions):
+        if not rest or not view.applies(include.conditions):
             continue
         if head == package.name:
             if configures and rest.endswith("Config.h"):
@@ -61,7 +61,7 @@ def missing_interface_wiring(view: TargetView, package: Package):
             target = targets.get(name)
             if (
                 target is None
-                or not view.active(target.conditions)
+                or not view.applies(target.conditions)
                 or _waits(orders.get(name, ()), head, kind, package.name)
             ):
                 continue
@@ -75,7 +75,7 @@ def missing_interface_wiring(view: TargetView, package: Package):
         maker = "${PROJECT_NAME}" if by_variable else head
         names = tuple(sorted({t.name for _, t in uses}))
         data = {"header": include.path, "targets": names, "target": names[0], "variable": variable}
-        fix = _add_dependencies(package, [t for _, t in uses], variable) if own or _component(package, head) else ()
+        fix = _add_dependencies(package, [t for _, t in uses], variable) if own or _is_component(package, head) else ()
         yield Diagnostic(target.at, f"{maker}_{kind}", package.name, data, "", (Doubt.LATE,), fix=fix)
 
 
@@ -93,12 +93,12 @@ def _is_built_beside(view: TargetView, package: Package, header: str) -> bool:
     """True for the header of an interface whose package is not released here, so that it is built along with this one
     from elsewhere."""
     head, _, rest = header.partition("/")
-    if view.available(head) or "/" in rest or not rest.endswith(".h") or not _component(package, head):
+    if view.is_available(head) or "/" in rest or not rest.endswith(".h") or not _is_component(package, head):
         return False
-    return interface_of(view, header) is not None
+    return find_included_interface(view, header) is not None
 
 
-def _component(package: Package, name: str) -> bool:
+def _is_component(package: Package, name: str) -> bool:
     """True when catkin looks for a package, so that catkin_EXPORTED_TARGETS holds what it generates."""
     return any(f.how == "catkin" and f.name == name for f in package.build.found)
 

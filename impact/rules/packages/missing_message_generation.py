@@ -33,16 +33,16 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 def missing_message_generation(view: TargetView, package: Package):
     if package.build_type != "catkin":
         return
-    generated = [g for g in package.build.generated if g.how == "catkin" and view.active(g.conditions)]
+    generated = [g for g in package.build.generated if g.how == "catkin" and view.applies(g.conditions)]
     found = {f.name for f in package.build.found}
     if not generated or "message_generation" in found:
         return
     # What message_generation hands on makes messages for one language each; genmsg looks for all that is installed.
-    generators = {*view.roles.exports("message_generation")} - {"genmsg"}
-    if found & generators or generators & view.transitive_dependencies(found & {"genmsg"}):
+    generators = {*view.roles.list_exports("message_generation")} - {"genmsg"}
+    if found & generators or generators & view.list_transitive(found & {"genmsg"}):
         return
     through = next(
-        (f for f in sorted(found) if {"message_generation", "genmsg"} & view.transitive_dependencies([f])), ""
+        (f for f in sorted(found) if {"message_generation", "genmsg"} & view.list_transitive([f])), ""
     )
     doubts = (
         (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.unknown_contents.may_come_along(package) else ()

@@ -29,8 +29,8 @@ from collections.abc import Iterator
 
 from ...model.cmake.links import stops_at_names
 from ...model.cmake.names import MODULES
-from ...model.misspelling import SpellingIndex, folded, is_slip
-from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, doubts_of_place, rule
+from ...model.misspelling import SpellingIndex, fold_name, is_slip
+from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, list_place_doubts, rule
 
 _PLAIN = re.compile(r"[A-Za-z_][\w.+-]+")
 # Letters of a library's name: shorter ones are alike by chance.
@@ -45,31 +45,38 @@ _SHORTEST = 6
     },
 )
 def misspelt_cmake_name(view: TargetView, package: Package):
-    declared = view.declared(package)
+    declared = view.collect_declared(package)
     found = {f.name for f in package.build.found}
     prefixes = {f.prefix for f in package.build.found if f.prefix}
     near = None
     for at, name, required, conditions, exported in _list_named(view, package):
         if package.name in view.workspace.find_modules.get(name, ()):
             continue
-        if not view.active(conditions) or view.cmake(name) or name in declared or (name in found and not required):
+        if (
+            not view.applies(conditions)
+            or view.find_cmake(name)
+            or name in declared
+            or (name in found and not required)
+        ):
             continue
         if name in prefixes or f"Find{name}" in MODULES:
             continue
         if near is None:
-            near = SpellingIndex(set(declared) | {f for f in found if view.cmake(f)} | set(view.workspace.packages))
+            near = SpellingIndex(
+                set(declared) | {f for f in found if view.find_cmake(f)} | set(view.workspace.packages)
+            )
         halves = _run_together(name, near.names)
         if halves:
-            sure = required or (exported and view.certain(conditions))
+            sure = required or (exported and view.is_sure(conditions))
             data = {"first": halves[0], "second": halves[1]}
             fix = (Replace(at.path, at.line, at.column, name, " ".join(halves)),)
             yield Diagnostic(at, name, package.name, data, "run together", (sure or Doubt.OPTIONAL,), fix=fix)
             continue
-        meant = near.nearest(name)
+        meant = near.find_nearest(name)
         if meant is not None and _may_install_any(view, meant, name):
             continue
-        if meant is not None and meant != name and view.target.ever_released(name) is False:
-            doubts = (required or Doubt.OPTIONAL, view.certain(conditions) or Doubt.CONDITIONAL)
+        if meant is not None and meant != name and view.target.was_ever_released(name) is False:
+            doubts = (required or Doubt.OPTIONAL, view.is_sure(conditions) or Doubt.CONDITIONAL)
             fix = (Replace(at.path, at.line, at.column, name, meant),)
             yield Diagnostic(at, name, package.name, {"replacement": meant}, "near", doubts, fix=fix)
 
@@ -88,9 +95,9 @@ def _list_libraries(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             if link.how != "link" or name in names or name in found or not _PLAIN.fullmatch(name):
                 continue
             meant = [library for library in libraries if is_slip(name, library)]
-            if len(meant) == 1 and view.active(conditions) and not view.cmake(name) and not view.is_package(name):
+            if len(meant) == 1 and view.applies(conditions) and not view.find_cmake(name) and not view.is_package(name):
                 data = {"target": target.name, "replacement": meant[0]}
-                doubts = (not target.static or Doubt.DISTURBS, *doubts_of_place(view, "build", conditions))
+                doubts = (not target.static or Doubt.DISTURBS, *list_place_doubts(view, "build", conditions))
                 yield Diagnostic(link.at, name, package.name, data, "library", doubts)
 
 
@@ -99,13 +106,13 @@ def _may_install_any(view: TargetView, meant: str, name: str) -> bool:
     target is not known to have (openarm_can installs `OpenArmCAN`); of the released ones, one of plain CMake, or built
     by what is not known (protobuf_comm installs `ProtobufComm`); of ament, a name with other separators
     (kuka_external_control_sdk installs `kuka-external-control-sdk`)."""
-    if meant in view.workspace.packages or view.providers.cmake(meant):
+    if meant in view.workspace.packages or view.providers.find_cmake(meant):
         return False
-    if view.target.version(meant) is None:
+    if view.target.find_version(meant) is None:
         return True
     if view.target.build_type(meant) in ("cmake", ""):
         return True
-    return view.offers.package(meant) is None and folded(meant) == folded(name)
+    return view.offers.find_package(meant) is None and fold_name(meant) == fold_name(name)
 
 
 def _list_named(view: TargetView, package: Package):

@@ -22,7 +22,7 @@ Not reported
 import re
 
 from ...model.misspelling import is_slip
-from ...targets.providers.library import variables
+from ...targets.providers.library import list_variables
 from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, Together, rule
 
 _VARIABLE = re.compile(
@@ -47,7 +47,7 @@ def misspelt_cmake_variable(view: TargetView, package: Package):
     prefixes = {f.prefix for f in package.build.found}  # of variables, in calls other than find_package()
     seen = set()
     for use in package.build.uses:
-        if use.name in seen or use.kind != "variable" or not view.active(use.conditions):
+        if use.name in seen or use.kind != "variable" or not view.applies(use.conditions):
             continue
         if use.alike:
             seen.add(use.name)
@@ -60,14 +60,14 @@ def misspelt_cmake_variable(view: TargetView, package: Package):
             continue
         stem, suffix = match.groups()
         meant = next((name for name in found if name.isidentifier() and _is_misspelt(stem, name)), None)
-        if meant is not None and not view.cmake(stem) and stem not in prefixes:
+        if meant is not None and not view.find_cmake(stem) and stem not in prefixes:
             seen.add(use.name)
             yield _diagnose_variable(package, use, meant, f"{meant}{suffix}", "variable")
             continue
-        if stem.lower() not in folded or (stem in found and variables(stem) is None):
+        if stem.lower() not in folded or (stem in found and list_variables(stem) is None):
             continue
         meant = folded[stem.lower()]
-        sets = variables(meant)
+        sets = list_variables(meant)
         if meant == "Eigen3" and "eigen3_cmake_module" in found:
             continue  # it sets the variables in both spellings
         if sets is None or use.name in sets:

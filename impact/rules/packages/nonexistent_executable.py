@@ -27,7 +27,7 @@ from collections.abc import Iterator
 from fnmatch import fnmatchcase
 
 from ...model.python.programs import list_programs
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 
 
 @rule(
@@ -55,7 +55,7 @@ def nonexistent_executable(view: TargetView, package: Package) -> Iterator[Diagn
         own = f"lib/{owner.name}"
         if own in folders or "" in folders or any("$" in folder for folder in folders):
             continue
-        doubts = (*doubts_of_place(view, use.role), not reference.conditional or Doubt.CONDITIONAL)
+        doubts = (*list_place_doubts(view, use.role), not reference.conditional or Doubt.CONDITIONAL)
         plain = [one for one in programs if "*" not in one] if not folders else []
         close = difflib.get_close_matches(posixpath.basename(name), plain, 1)
         data = {"upstream": owner.name, "alike": close[0] if close else "", "folder": min(folders, default="")}

@@ -31,7 +31,7 @@ import re
 from collections.abc import Iterator
 
 from ...model.misspelling import SpellingIndex
-from ...targets.providers.library import variables
+from ...targets.providers.library import list_variables
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .ament_exports import list_installed_targets, read_ament_exports
 from .install_rules import is_installed
@@ -88,7 +88,7 @@ def nonexistent_export(view: TargetView, package: Package):
 def _list_directories(view: TargetView, package: Package):
     made = {posixpath.normpath(i.destination) for i in package.build.installs}
     for export in package.build.exports:
-        if export.how != "include_dirs" or "$" in export.item or not view.certain(export.conditions):
+        if export.how != "include_dirs" or "$" in export.item or not view.is_sure(export.conditions):
             continue
         if export.item.startswith("/") or export.item in made:
             continue
@@ -107,8 +107,8 @@ _OF_LIBRARIES = frozenset({"ament_export_libraries", "libraries"})
 
 def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Include directories of the source space that have headers, none of which an install rule takes."""
-    installs = [i for i in package.build.installs if view.active(i.conditions)]
-    exports = [e for e in package.build.exports if view.certain(e.conditions)]
+    installs = [i for i in package.build.installs if view.applies(i.conditions)]
+    exports = [e for e in package.build.exports if view.is_sure(e.conditions)]
     libraries = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
     offers = any(e.how in _OF_LIBRARIES and e.item in libraries for e in exports)
     if not offers and package.name not in view.workspace.includers:
@@ -134,23 +134,23 @@ def _list_of_catkin(view: TargetView, package: Package):
     targets = {name: t for t in package.build.targets for name in (t.output_name, t.name)}
     found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
     for export in package.build.exports:
-        if not view.active(export.conditions) or "$" in export.item:
+        if not view.applies(export.conditions) or "$" in export.item:
             continue
         target = targets.get(export.item)
         if export.how == "libraries" and target is not None:
-            if target.kind == "executable" and target.name == export.item and view.certain(export.conditions):
+            if target.kind == "executable" and target.name == export.item and view.is_sure(export.conditions):
                 yield Diagnostic(export.at, export.item, package.name, kind="program", doubts=(Doubt.DISTURBS,))
         elif export.how == "libraries" and not package.build.unresolved:
             if (
                 "/" in export.item
                 or export.item.startswith("-")
                 or export.item.endswith((".so", ".a"))
-                or (view.cmake(export.item) and export.item != package.name)
+                or (view.find_cmake(export.item) and export.item != package.name)
             ):
                 continue
             # Some export their own name by habit, and nobody asks for it.
             asked = export.item != package.name
-            sure = asked and view.certain(export.conditions) and _is_own(view, package, export.item)
+            sure = asked and view.is_sure(export.conditions) and _is_own(view, package, export.item)
             doubts = () if sure else (Doubt.AMBIGUOUS,)
             yield Diagnostic(export.at, export.item, package.name, kind="no target", doubts=doubts)
         elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
@@ -163,7 +163,11 @@ def _list_of_catkin(view: TargetView, package: Package):
 
 def _is_own(view: TargetView, package: Package, library: str) -> bool:
     """True for the name of a library that can only be one of the package's own: CMake finds those of the system."""
-    if library.startswith("boost_") or view.providers.pkgconfig(library) or view.providers.pkgconfig(f"lib{library}"):
+    if (
+        library.startswith("boost_")
+        or view.providers.find_pkgconfig(library)
+        or view.providers.find_pkgconfig(f"lib{library}")
+    ):
         return False
     return all(link.item != library for target in package.build.targets for link in target.links)
 
@@ -171,7 +175,7 @@ def _is_own(view: TargetView, package: Package, library: str) -> bool:
 def _sets(package: Package, stem: str) -> bool:
     """True when a find_package of the package sets variables that begin with the stem."""
     for found in package.build.found:
-        names = variables(found.name)
+        names = list_variables(found.name)
         if names is None and found.name.lower() == stem.lower():
             return True
         if names and any(
@@ -195,12 +199,12 @@ def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diag
         item = export.item
         if export.how != "ament_export_libraries" or re.search(r"[$/.:]|^-", item):
             continue
-        if not view.certain(export.conditions):
+        if not view.is_sure(export.conditions):
             continue
         target = targets.get(item)
         if target is not None and target.kind == "library" and item not in installed and not target.alias_of:
             yield Diagnostic(export.at, item, package.name, kind="not installed")
-        elif item not in names and (not view.cmake(item) or item == package.name):
+        elif item not in names and (not view.find_cmake(item) or item == package.name):
             yield Diagnostic(export.at, item, package.name, kind="not built", doubts=(Doubt.DISTURBS,))
 
 
@@ -208,14 +212,14 @@ def _list_unknown_packages(view: TargetView, package: Package, dependencies: fro
     """Packages that dependants look for and nothing else speaks of."""
     if package.build.unresolved:
         return
-    known = {package.name, *view.declared(package), *(f.name for f in package.build.found)}
+    known = {package.name, *view.collect_declared(package), *(f.name for f in package.build.found)}
     known |= {*view.workspace.find_modules, *(i for r in package.build.installs if r.kind == "export" for i in r.items)}
     near = SpellingIndex(known)
     for name in sorted(dependencies - known):
-        if view.is_package(name) or view.cmake(name) or view.private(name) or view.target.known_key(name):
+        if view.is_package(name) or view.find_cmake(name) or view.is_private(name) or view.target.knows_key(name):
             continue  # what has the name of a system package may bring it
-        if near.nearest(name) or any(name.startswith(first) and name[len(first) :] in known for first in known):
+        if near.find_nearest(name) or any(name.startswith(first) and name[len(first) :] in known for first in known):
             continue  # misspelt-cmake-name says it
         export = next(e for e in package.build.exports if e.item == name and e.how == "ament_export_dependencies")
-        if view.certain(export.conditions):
+        if view.is_sure(export.conditions):
             yield Diagnostic(export.at, name, package.name, kind="no package", doubts=(Doubt.DISTURBS,))

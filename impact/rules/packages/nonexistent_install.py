@@ -63,7 +63,7 @@ def nonexistent_install(view: TargetView, package: Package):
 
 def _list_absent(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     for install in installs:
-        if install.kind not in ("files", "programs", "directory") or not view.certain(install.conditions):
+        if install.kind not in ("files", "programs", "directory") or not view.is_sure(install.conditions):
             continue
         if not install.destination:
             yield Diagnostic(install.at, "DESTINATION", package.name, {"kind": install.kind.upper()}, "no destination")
@@ -91,11 +91,11 @@ def _list_absent_targets(view: TargetView, package: Package, installs) -> Iterat
         return  # what is not read may add it
     added = [t for t in build.targets if t.kind != "unknown"]
     for install in installs:
-        if install.kind != "targets" or not view.certain(install.conditions):
+        if install.kind != "targets" or not view.is_sure(install.conditions):
             continue
         for item in install.items:
             own = [t for t in added if t.name == item]
-            if re.search(r"[$*<]", item) or any(view.active(t.conditions) for t in own):
+            if re.search(r"[$*<]", item) or any(view.applies(t.conditions) for t in own):
                 continue
             yield Diagnostic(install.at, item, package.name, kind="target")
 
@@ -138,7 +138,7 @@ def _calls_unknown(package: Package) -> bool:
 def _list_unset(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Catkin's variables for places, misspelt or of a time before Groovy."""
     others = {found.name for found in package.build.found} - {"catkin"} - view.workspace.packages.keys()
-    if any(view.offers.package(name) is None for name in others if view.is_package(name)):
+    if any(view.offers.find_package(name) is None for name in others if view.is_package(name)):
         return  # a package whose CMake is not known may set variables of its own that are called so
     seen = set()
     for use in package.build.uses:
@@ -148,7 +148,7 @@ def _list_unset(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             continue
         if use.name in seen or package.build_type != "catkin" or package.name == "catkin":
             continue
-        if not view.certain(use.conditions):
+        if not view.is_sure(use.conditions):
             continue
         kind = "unset, build" if use.name == "CATKIN_BUILD_PREFIX" else "unset"
         if use.name in _OF_CATKIN_PACKAGE:

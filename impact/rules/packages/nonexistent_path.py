@@ -35,7 +35,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ...facts.condition import Condition
-from ...model.cmake.build import BuildTarget, for_tests
+from ...model.cmake.build import BuildTarget, is_for_tests
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .absent_paths import is_absent
 from .install_rules import list_places
@@ -67,18 +67,18 @@ def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]
     seen: set[str] = set()
     for use in _list_paths(package):
         kind, subject = _find_fault(view, package, use)
-        if not kind or not view.active(use.conditions):
+        if not kind or not view.applies(use.conditions):
             continue
-        certain = view.certain(use.conditions)
+        certain = view.is_sure(use.conditions)
         if kind in ("outside", "machine", "read") and (subject in seen or not certain):
             continue  # it may be asked for first
         seen.add(subject)
-        tests = kind == "test" or for_tests(use.conditions)
+        tests = kind == "test" or is_for_tests(use.conditions)
         doubts = (
             Doubt.DISTURBS if kind in ("above", "outside", "machine") else None,
             certain or Doubt.CONDITIONAL,
-            kind != "outside" or view.target.ever_released(package.name) or Doubt.DISPENSABLE,
-            not tests or (view.built("test") and view.roles.farm_makes_tests) or Doubt.TEST,
+            kind != "outside" or view.target.was_ever_released(package.name) or Doubt.DISPENSABLE,
+            not tests or (view.is_built("test") and view.roles.farm_makes_tests) or Doubt.TEST,
             all(t.kind not in ("external", "fetched") for t in package.build.targets) or Doubt.INCOMPLETE,
         )
         yield Diagnostic(use.at, subject, package.name, {"by": use.by}, kind, doubts)
@@ -137,7 +137,7 @@ def _find_fault(view: TargetView, package: Package, use: _Path) -> tuple[str, st
         return "", ""
     if path.startswith("../") or (package.path and not f"{path}/".startswith(f"{package.path}/")):
         # What lies in another package has to be there; of what lies in none, the packages cannot tell.
-        owner = next((other for other in view.everyone() if path.startswith(f"{other.path}/")), None)
+        owner = next((other for other in view.list_built() if path.startswith(f"{other.path}/")), None)
         if owner is not None and path not in owner.files and path not in owner.folders:
             return "", ""
         return "outside", posixpath.relpath(path, package.path or ".")

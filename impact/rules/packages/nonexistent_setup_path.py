@@ -76,4 +76,4 @@ def _list_paths(setup: SetupFile) -> Iterator[tuple[str, str, int, str]]:
             yield path, path, 1, "file"
     for name in setup.packages:
         if name != "*":
-            yield name, posixpath.dirname(setup.places_of("", name)[1]), 1, "package"
+            yield name, posixpath.dirname(setup.list_module_paths("", name)[1]), 1, "package"

@@ -28,7 +28,7 @@ from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule
 )
 def other_generation(view: TargetView):
     packages = [p for p in view.workspace if not p.manifest.metapackage]
-    foreign = [p for p in packages if _other(view, p)]
+    foreign = [p for p in packages if _is_other_generation(view, p)]
     if not packages or len(foreign) < len(packages):
         return
     first = packages[0]
@@ -38,12 +38,12 @@ def other_generation(view: TargetView):
     yield Diagnostic(At(first.digest.manifest_path, first.manifest.line), first.name, first.name, data)
 
 
-def _other(view: TargetView, package: Package) -> bool:
+def _is_other_generation(view: TargetView, package: Package) -> bool:
     """True for packages that say they build with the other generation's tools; plain CMake and Python build in both."""
     tool = "catkin" if view.target.ros == 2 else "ament"
     build_type = build_type_of(package.manifest, view.target.ros)
     return build_type.startswith(tool) and any(
-        d.name.startswith(tool) and view.active_manifest(d.condition)
+        d.name.startswith(tool) and view.is_declaration_active(d.condition)
         for d in package.manifest.dependencies
         if d.kind in ("buildtool", "build")
     )

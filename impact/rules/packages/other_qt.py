@@ -20,7 +20,7 @@ Not reported
     Packages that find Qt 5 too.
 """
 
-from ...targets.version import at_least
+from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
@@ -31,13 +31,13 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
     ),
 )
 def other_qt(view: TargetView, package: Package):
-    rviz = view.target.version("rviz") or ""
-    if not rviz or not at_least(rviz, "1.12"):
+    rviz = view.target.find_version("rviz") or ""
+    if not rviz or not is_at_least(rviz, "1.12"):
         return
-    found = {f.name: f for f in package.build.found if f.how == "find_package" and view.active(f.conditions)}
+    found = {f.name: f for f in package.build.found if f.how == "find_package" and view.applies(f.conditions)}
     qt4 = found.get("Qt4")
     if qt4 is None or found.keys() & {"Qt5Widgets", "Qt5"}:
         return
-    if view.declared(package).keys() & {"rviz", "rqt_gui_cpp"}:
-        doubts = (qt4.required or Doubt.OPTIONAL, view.certain(qt4.conditions) or Doubt.CONDITIONAL)
+    if view.collect_declared(package).keys() & {"rviz", "rqt_gui_cpp"}:
+        doubts = (qt4.required or Doubt.OPTIONAL, view.is_sure(qt4.conditions) or Doubt.CONDITIONAL)
         yield Diagnostic(qt4.at, "Qt4", package.name, {"version": rviz}, doubts=doubts)

@@ -1,7 +1,7 @@
 """package-linked-by-name: a target links the bare name of a package that has no library.
 
 What it does
-    Reports names of found packages in target_link_libraries() where the package has no compiled library and exports no
+    Reports names of found packages in link_target_libraries() where the package has no compiled library and exports no
     target of that name.
 
 Why it breaks
@@ -20,7 +20,7 @@ Not reported
     Packages of catkin; packages whose exports are not known; names that a system library may have.
 """
 
-from ..vocabulary import Diagnostic, Package, TargetView, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
 
 
 @rule(
@@ -40,7 +40,7 @@ def package_linked_by_name(view: TargetView, package: Package):
             continue
         for link in target.links:
             name, conditions = link.item, (*target.conditions, *link.conditions)
-            if link.how != "link" or name not in found or name in seen or not view.active(conditions):
+            if link.how != "link" or name not in found or name in seen or not view.applies(conditions):
                 continue
             exported = _list_exported(view, name)
             if exported is None or name in exported:
@@ -49,18 +49,18 @@ def package_linked_by_name(view: TargetView, package: Package):
             role = "test" if target.kind == "test" or any("TESTING" in c.text for c in conditions) else "build"
             known = tuple(c for c in conditions if "TESTING" not in c.text)
             data = {"target": target.name, "replacement": exported[0] if len(exported) == 1 else ""}
-            yield Diagnostic(link.at, name, package.name, data, doubts=doubts_of_place(view, role, known))
+            yield Diagnostic(link.at, name, package.name, data, doubts=list_place_doubts(view, role, known))
 
 
 def _list_exported(view: TargetView, name: str) -> list[str] | None:
     """The targets that a package without compiled libraries has for others; None for any other package."""
-    if view.target.resolve(name) is not None or view.providers.installed_cmake(name):
+    if view.target.resolve(name) is not None or view.providers.find_installed_cmake(name):
         return None
     own = view.workspace.packages.get(name)
     if own is not None:
         compiled = own.build.unresolved or any(t.kind not in ("interface", "custom", "test") for t in own.build.targets)
         return None if compiled else [t.export_name or t.name for t in own.build.targets if t.kind == "interface"]
-    offer = view.offers.package(name)
+    offer = view.offers.find_package(name)
     if offer is None or not offer.exact or any(part in ("targets", "libraries") for part, _ in offer.build.unknown):
         return None
     compiled = offer.build.libraries or any(target.kind != "interface" for target in offer.build.targets)

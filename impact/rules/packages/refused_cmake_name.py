@@ -5,7 +5,7 @@ What it does
     target with the same name, a name that is given include directories or libraries and is no target, or not yet, a
     project that is not called as package.xml calls the package, a target that is linked with keywords and without, a
     property of a target whose value is an unset version, commands that are misspelt by a letter, and target names with
-    a slash, including those that ament_python_install_package() makes from its argument.
+    a slash, including those that install_python_package() makes from its argument.
 
 Why it breaks
     CMake finds no package `a::b` or `liba-dev`, since no configuration file has such a name. It stops at a second
@@ -29,14 +29,14 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.cmake.build import RefusedName
-from ...model.cmake.conditions import version_key
+from ...model.cmake.conditions import make_version_key
 from ...model.cmake.interpreter import HANDLERS, WRAPPERS
 from ...model.cmake.names import COMMANDS
 from ...model.misspelling import is_slip
-from ...targets.version import at_least
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
+from ...targets.version import is_at_least
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 
-# From here on ament_python_install_package() makes custom targets. Source: commit 42b972e of ament_cmake.
+# From here on install_python_package() makes custom targets. Source: commit 42b972e of ament_cmake.
 _MAKES_TARGETS = "1.1.0"
 _KNOWN = (COMMANDS, HANDLERS, WRAPPERS)
 # Letters of a command: shorter ones are alike by chance.
@@ -76,26 +76,29 @@ _SHORTEST = 8
 def refused_cmake_name(view: TargetView, package: Package):
     build = package.build
     for found in build.found:
-        if found.how not in ("find_package", "catkin") or not view.active(found.conditions):
+        if found.how not in ("find_package", "catkin") or not view.applies(found.conditions):
             continue
         kind = "target" if "::" in found.name else "debian" if _is_of_debian(view, package, found.name) else ""
         if kind:
-            doubts = (*doubts_of_place(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
+            doubts = (*list_place_doubts(view, "build", found.conditions), found.required or Doubt.OPTIONAL)
             yield Diagnostic(found.at, found.name, package.name, kind=kind, doubts=doubts)
     seen = set()
     for kind, refused in _list_refused(package):
-        if refused.name not in seen and view.active(refused.conditions):
+        if refused.name not in seen and view.applies(refused.conditions):
             seen.add(refused.name)
-            doubts = doubts_of_place(view, "build", refused.conditions)
+            doubts = list_place_doubts(view, "build", refused.conditions)
             yield Diagnostic(refused.at, refused.name, package.name, {"package": package.name}, kind, doubts)
     yield from _list_misspelt(view, package)
     refused = ("custom", "executable", "library") if _find_policy_version(package) >= (3,) else ("custom",)
     slashed = [(target.name, target.at, target.conditions) for target in build.targets if target.kind in refused]
-    if at_least(view.target.version("ament_cmake_python") or "0", _MAKES_TARGETS) and package.build_type != "catkin":
+    if (
+        is_at_least(view.target.find_version("ament_cmake_python") or "0", _MAKES_TARGETS)
+        and package.build_type != "catkin"
+    ):
         slashed += [(i.destination, i.at, i.conditions) for i in build.installs if i.kind == "python"]
     for name, at, conditions in slashed:
-        if "/" in name and "$" not in name and view.active(conditions):
-            yield Diagnostic(at, name, package.name, kind="slash", doubts=doubts_of_place(view, "build", conditions))
+        if "/" in name and "$" not in name and view.applies(conditions):
+            yield Diagnostic(at, name, package.name, kind="slash", doubts=list_place_doubts(view, "build", conditions))
 
 
 def _list_misspelt(view: TargetView, package: Package) -> Iterator[Diagnostic]:
@@ -107,9 +110,9 @@ def _list_misspelt(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             continue
         seen.add(use.name)
         meant = {name for known in (*_KNOWN, of_packages) for name in known if is_slip(use.name, name)}
-        if len(use.name) >= _SHORTEST and len(meant) == 1 and view.active(use.conditions):
+        if len(use.name) >= _SHORTEST and len(meant) == 1 and view.applies(use.conditions):
             complete = not build.unresolved and not view.unknown_contents.list_unknown_found(package)
-            doubts = (*doubts_of_place(view, "build", use.conditions), complete or Doubt.INCOMPLETE)
+            doubts = (*list_place_doubts(view, "build", use.conditions), complete or Doubt.INCOMPLETE)
             yield Diagnostic(use.at, use.name, package.name, {"replacement": meant.pop()}, "command", doubts)
 
 
@@ -129,11 +132,11 @@ def _is_of_debian(view: TargetView, package: Package, name: str) -> bool:
     """Whether a name is that of a Debian package which is not known to have a configuration of this name."""
     if not (name.endswith("-dev") or name.startswith("python3-")) or name in view.workspace.find_modules:
         return False
-    known = view.target.known_key(name) or view.providers.knows_system((name,))
-    return known and not view.cmake(name) and not view.is_package(name) and not package.build.unresolved
+    known = view.target.knows_key(name) or view.providers.knows_system((name,))
+    return known and not view.find_cmake(name) and not view.is_package(name) and not package.build.unresolved
 
 
 def _find_policy_version(package: Package) -> tuple[int, ...]:
     """The version whose policies CMake follows; from 3.0 on it refuses a slash in any name (CMP0037)."""
     lower, _, upper = (package.build.minimum or ("", None))[0].partition("...")
-    return version_key(upper or lower)
+    return make_version_key(upper or lower)

@@ -38,14 +38,14 @@ def system_library_component(view: TargetView, package: Package):
         name = found.name
         if found.how == "find_package":
             before.add(name)
-        if found.how != "catkin" or name == "catkin" or name in before or not view.certain(found.conditions):
+        if found.how != "catkin" or name == "catkin" or name in before or not view.is_sure(found.conditions):
             continue
         if found.quiet and not found.required:
             continue
-        if name in view.workspace.packages or view.target.version(name) is not None or view.private(name):
+        if name in view.workspace.packages or view.target.find_version(name) is not None or view.is_private(name):
             continue
         key = view.target.resolve(name) is not None
-        if not key and not any(p.kind == "system" and view.target.resolve(p.name) for p in view.cmake(name)):
+        if not key and not any(p.kind == "system" and view.target.resolve(p.name) for p in view.find_cmake(name)):
             continue
         doubts = (found.required or Doubt.OPTIONAL, not view.underlaid or Doubt.INCOMPLETE)
         yield Diagnostic(found.at, name, package.name, {"distro": view.target.distro}, doubts=doubts)

@@ -33,18 +33,18 @@ _HANDED_ON = frozenset({"build_export", "buildtool_export", "exec"})
 def undeclared_by_script(view: TargetView, package: Package):
     if not package.build.handed_on:
         return
-    declared = view.declared(package)
+    declared = view.collect_declared(package)
     # Who finds the package builds with the same tool.
-    closure = view.transitive_dependencies(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
+    closure = view.list_transitive(n for n, kinds in declared.items() if kinds & _HANDED_ON or n in _TOOLS)
     reported = {package.name}
     for found in package.build.handed_on:
-        if not found.required or not view.certain(found.conditions) or found.name in reported or "$" in found.name:
+        if not found.required or not view.is_sure(found.conditions) or found.name in reported or "$" in found.name:
             continue
         reported.add(found.name)
-        providers = view.cmake(found.name)
+        providers = view.find_cmake(found.name)
         ros = bool(providers) and all(p.kind == "ros" for p in providers)
         own = any(p.name == package.name for p in providers)  # it brings a library that others find by another name
-        if not ros or own or view.answered(providers, closure) or view.unknown_contents.may_come_along(package):
+        if not ros or own or view.is_met(providers, closure) or view.unknown_contents.may_come_along(package):
             continue
         name = providers[0].name
         data = {"found": found.name, "manifest": package.digest.manifest_path}

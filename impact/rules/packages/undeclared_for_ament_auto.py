@@ -39,6 +39,6 @@ def undeclared_for_ament_auto(view: TargetView, package: Package):
     for found in package.build.found:
         if found.how != "ament_auto" or not found.required or found.name in named or "$" in found.name:
             continue
-        if view.active(found.conditions):
-            doubts = () if view.certain(found.conditions) else (Doubt.CONDITIONAL,)
+        if view.applies(found.conditions):
+            doubts = () if view.is_sure(found.conditions) else (Doubt.CONDITIONAL,)
             yield Diagnostic(found.at, found.name, package.name, doubts=doubts)

@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from ....edges.memory import kept_with
-from ...model.misspelling import folded, one_edit
+from ....edges.memory import cache_in_derived
+from ...model.misspelling import fold_name, is_one_edit
 from ..vocabulary import Declare, Need, Package, TargetView
-from .clean_machine import TEST_HEADERS, circular
+from .clean_machine import TEST_HEADERS, is_circular
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 DECLARE = "add `<{tag}>{subject}</{tag}>` to {manifest}"
@@ -20,36 +20,36 @@ class Undeclared(NamedTuple):
     borrowed: dict[str, list[Need]]
 
 
-@kept_with
+@cache_in_derived
 def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     """The needs of a package that no dependency of its manifest answers."""
-    closure, declared = view.build_environment(package), view.declared(package)
+    closure, declared = view.build_environment(package), view.collect_declared(package)
     found = Undeclared({}, {})
-    elsewhere = {d.name for d in package.manifest.dependencies if not view.available(d.name)}  # for other distros
-    for need in view.needs(package):
-        if view.answered(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
+    elsewhere = {d.name for d in package.manifest.dependencies if not view.is_available(d.name)}  # for other distros
+    for need in view.list_needs(package):
+        if view.is_met(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
-        name = _name_to_declare(view, need)
+        name = _choose_name(view, need)
         if name is None or name == package.name or name in elsewhere:
             continue
         carried = need.providers[0].kind == "system" and need.how != "import"
         if not (carried and view.unknown_contents.is_likely(package, need.subject)):
-            kind = found.borrowed if view.answered(need.providers, closure) else found.missing
+            kind = found.borrowed if view.is_met(need.providers, closure) else found.missing
             kind.setdefault(name, []).append(need)
     return found
 
 
-def _name_to_declare(view: TargetView, need: Need) -> str | None:
+def _choose_name(view: TargetView, need: Need) -> str | None:
     """The name a person would put into the manifest for a need: the first provider that can be had on the target, or
     the package that is named by its form, wherever it comes from."""
     other = "python3-" if view.target.python_major == 2 else "python-"
     for provider in sorted(need.providers, key=lambda p: p.name.startswith(other)):
-        if provider.name and view.available(provider.name):
+        if provider.name and view.is_available(provider.name):
             return provider.name
     first = need.providers[0]
     if need.how not in ("launch", "find_package", "component", "import") or first.kind != "ros" or not first.sure:
         return None
-    meant = first.name == need.subject.partition(".")[0] and not view.target.other_generation(first.name)
+    meant = first.name == need.subject.partition(".")[0] and not view.target.is_other_generation(first.name)
     return first.name if meant else None
 
 
@@ -82,9 +82,12 @@ def _describe_use(need: Need) -> str:
 def declare_need(view: TargetView, package: Package, need: Need, name: str) -> tuple[Declare, ...]:
     """Declares what answers a need; nothing where the manifest has the name with a letter wrong, which another rule
     repairs."""
-    if any((folded(d) == folded(name) or one_edit(d, name)) and not view.available(d) for d in view.declared(package)):
+    if any(
+        (fold_name(d) == fold_name(name) or is_one_edit(d, name)) and not view.is_available(d)
+        for d in view.collect_declared(package)
+    ):
         return ()
-    if circular(view, package, name) or not view.available(name):
+    if is_circular(view, package, name) or not view.is_available(name):
         return ()
     return (Declare(package.digest.manifest_path, name, _tag(need, 2)),)
 

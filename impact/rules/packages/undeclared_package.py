@@ -33,8 +33,8 @@ Not reported
     provide (they are counted as unresolved), unless the form of the use says that a package is meant.
 """
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule, severity, weight
-from .clean_machine import ASKED, doubts_of_missing
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, limit_severity, make_sort_key, rule
+from .clean_machine import ASKED, collect_missing_doubts
 from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
 
 _FEW = {1: 1, 2: 5}
@@ -54,10 +54,10 @@ runs ROS 1 has most of it at hand, and its manifests were rarely complete."""
 def undeclared_package(view: TargetView, package: Package):
     missing = find_undeclared(view, package).missing
     # Of more things that a package runs with and does not declare, the first is reported, best such as the target has.
-    firsts = [(min(needs, key=weight), name) for name, needs in missing.items()]
-    firsts.sort(key=lambda first: (not view.available(first[1]), weight(first[0])))
+    firsts = [(min(needs, key=make_sort_key), name) for name, needs in missing.items()]
+    firsts.sort(key=lambda first: (not view.is_available(first[1]), make_sort_key(first[0])))
     for first, name in firsts:
-        doubts = doubts_of_missing(view, package, first, name)
+        doubts = collect_missing_doubts(view, package, first, name)
         # Launch files and modules are used one by one, and whoever declares the first looks for the others.
         cause = "import" if first.how == "import" and view.target.ros > 1 else "started"
         at_run_time = () if first.how in (*ASKED, "include") else (Together(cause, few=_FEW[view.target.ros]),)
@@ -71,6 +71,6 @@ def undeclared_package(view: TargetView, package: Package):
             {**describe_need(package, first), "condition": condition},
             "condition" if condition else "",
             doubts,
-            fix=declare_need(view, package, first, name) if severity(*doubts) != "note" and not condition else (),
+            fix=declare_need(view, package, first, name) if limit_severity(*doubts) != "note" and not condition else (),
             together=at_run_time,
         )

@@ -21,7 +21,7 @@ Not reported
     Commands whose package is found by name, or along with another one.
 """
 
-from ....edges.memory import kept_with
+from ....edges.memory import cache_in_derived
 from ...targets.target import Provider
 from ..vocabulary import Declare, Diagnostic, Doubt, Package, TargetView, Text, rule
 
@@ -42,10 +42,10 @@ def undeclared_test_command(view: TargetView, package: Package):
     reported = set()
     for use in package.build.uses:
         name = find_test_commands(view).get(use.name) if use.kind == "command" else None
-        if name in (None, package.name, *reported) or not view.active(use.conditions) or not view.available(name):
+        if name in (None, package.name, *reported) or not view.applies(use.conditions) or not view.is_available(name):
             continue
         reported.add(name)
-        if name in view.build_environment(package) or name in view.transitive_dependencies(
+        if name in view.build_environment(package) or name in view.list_transitive(
             f.name for f in package.build.found
         ):
             continue
@@ -55,12 +55,12 @@ def undeclared_test_command(view: TargetView, package: Package):
             name,
             package.name,
             {"command": use.name, "manifest": path},
-            doubts=_doubts(view, package, name, use.conditions),
-            fix=() if view.declared(package).get(name) else (Declare(path, name, "test_depend"),),
+            doubts=_collect_doubts(view, package, name, use.conditions),
+            fix=() if view.collect_declared(package).get(name) else (Declare(path, name, "test_depend"),),
         )
 
 
-@kept_with
+@cache_in_derived
 def find_test_commands(view: TargetView) -> dict[str, str]:
     """Commands that make tests, and the packages they come from: those of ament's packages for CMake that are made of
     ament_cmake_test."""
@@ -69,11 +69,11 @@ def find_test_commands(view: TargetView) -> dict[str, str]:
         for command, owners in view.providers.commands.get(view.target.ros, {}).items()
         for name in owners.split()
         if "ament_cmake" in name
-        and any(d.name == _TESTS and d.kind != "test" for d in view.target.dependencies(name) or ())
+        and any(d.name == _TESTS and d.kind != "test" for d in view.target.list_dependencies(name) or ())
     }
 
 
-def _doubts(view: TargetView, package: Package, name: str, conditions) -> tuple[Doubt, ...]:
+def _collect_doubts(view: TargetView, package: Package, name: str, conditions) -> tuple[Doubt, ...]:
     if view.unknown_contents.may_come_along(package, name, (Provider("ros", name),)):
         return (Doubt.INCOMPLETE,)
     sure = conditions and all("TESTING" in c.text for c in conditions)

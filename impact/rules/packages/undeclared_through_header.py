@@ -22,10 +22,10 @@ Not reported
     does not have; code that is not built.
 """
 
-from ....edges.memory import kept_with
+from ....edges.memory import cache_in_derived
 from ...targets.target import Provider
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
-from .clean_machine import doubts_of_compiled
+from .clean_machine import collect_compile_doubts
 
 
 @rule(
@@ -39,13 +39,13 @@ def undeclared_through_header(view: TargetView, package: Package):
         return
     closure = view.may_bring(package)
     reported: set[str] = {package.name}
-    for need in view.weighed(package):
-        if need.how != "include" or not need.certain or not view.built(need.role) or not need.targets:
+    for need in view.sort_needs(package):
+        if need.how != "include" or not need.certain or not view.is_built(need.role) or not need.targets:
             continue
-        if not view.answered(need.providers, closure):
+        if not view.is_met(need.providers, closure):
             continue  # undeclared-package reports that
         for name, header in _follow(view, need.subject, need.providers[0]):
-            if name in reported or view.answered(view.header(header), closure):
+            if name in reported or view.is_met(view.find_header(header), closure):
                 continue
             reported.add(name)
             yield Diagnostic(
@@ -53,11 +53,11 @@ def undeclared_through_header(view: TargetView, package: Package):
                 name,
                 package.name,
                 {"include": need.subject, "header": header, "manifest": package.digest.manifest_path},
-                doubts=doubts_of_compiled(view, package, need),
+                doubts=collect_compile_doubts(view, package, need),
             )
 
 
-@kept_with
+@cache_in_derived
 def _follow(view: TargetView, start: str, owner: Provider) -> list[tuple[str, str]]:
     """The packages of ROS that a released header of a package leads to, besides its own, each with the first header of
     it."""
@@ -70,13 +70,13 @@ def _follow(view: TargetView, start: str, owner: Provider) -> list[tuple[str, st
             seen.add(header)
             if name == owner.name:
                 waiting.append(header)
-            elif view.target.version(name):
+            elif view.target.find_version(name):
                 found.setdefault(name, header)
     return list(found.items())
 
 
-@kept_with
+@cache_in_derived
 def _list_owned(view: TargetView, header: str) -> list[tuple[str, str]]:
     """What a released header always includes of packages of ROS, each with the one package that has it."""
-    asked = ((path, view.header(path)) for path in view.machine.always_included(header) if "/" in path)
+    asked = ((path, view.find_header(path)) for path in view.machine.list_always_included(header) if "/" in path)
     return [(path, has[0].name) for path, has in asked if len(has) == 1 and has[0].kind == "ros" and has[0].sure]

@@ -50,30 +50,30 @@ def _tag(package: Package) -> str:
 
 def _list_linked(view: TargetView, package: Package):
     """System libraries that an exported library hands on to whoever links it, declared for building only."""
-    declared = view.declared(package)
+    declared = view.collect_declared(package)
     installed = {item for rule_ in package.build.installs if rule_.kind == "targets" for item in rule_.items}
     linked = {
         link.item: link
         for target in package.build.targets
         if target.name in installed and target.kind in ("library", "interface")
         for link in target.links
-        if link.how == "link" and link.visibility != "PRIVATE" and view.active((*target.conditions, *link.conditions))
+        if link.how == "link" and link.visibility != "PRIVATE" and view.applies((*target.conditions, *link.conditions))
     }
     exported = None
     for name, kinds in declared.items():
         if "build" not in kinds or kinds & {"build_export", "exec"}:
             continue
-        item = next((i for i in linked if view.debian(name) & {f"lib{i}-dev", f"{i}-dev"}), None)
+        item = next((i for i in linked if view.list_debs(name) & {f"lib{i}-dev", f"{i}-dev"}), None)
         if item is None:
             continue
         exported = (
             exported
             if exported is not None
-            else view.transitive_dependencies(n for n, k in declared.items() if k & FOR_RUN)
+            else view.list_transitive(n for n, k in declared.items() if k & FOR_RUN)
         )
         if name in exported:
             continue
         data = {"library": item, "tag": _tag(package)}
         fix = fix_kind(view, package, name, "depend", kinds)
-        at = view.manifest_place(package, name)
+        at = view.find_place(package, name)
         yield Diagnostic(at, name, package.name, data, "linked", (Doubt.DISTURBS,), fix=fix, together=_ONCE)

@@ -28,10 +28,10 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ...model.cmake.installed import installed_headers
-from ...model.cmake.links import linked_items
+from ...model.cmake.installed import collect_installed_headers
+from ...model.cmake.links import list_linked_items
 from ...model.package import IncludeUse
-from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 from .ament_exports import list_installed_targets
 
 
@@ -58,18 +58,18 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
         return
     headers = _list_written(package)
     kind = _find_kind(view, package)
-    installed = installed_headers(package)
+    installed = collect_installed_headers(package)
     libraries = _list_libraries(package) if kind == "library" else {}
     if not headers or not kind or (kind == "not installed" and not installed.known):
         return
     for name in sorted(view.workspace.includers[package.name]):
         other = view.workspace.packages[name]
-        found = {one.name for one in other.build.found if view.certain(one.conditions)}
+        found = {one.name for one in other.build.found if view.is_sure(one.conditions)}
         if package.name not in found:
             continue  # missing-find-package reports it
         for include in other.digest.includes:
             path = headers.get(include.path)
-            if path is None or not include.targets or not view.certain(include.conditions):
+            if path is None or not include.targets or not view.is_sure(include.conditions):
                 continue
             if kind == "not installed" and path in installed.headers:
                 continue
@@ -81,7 +81,7 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
             data = {"by": name, "owner": package.name, "folder": folder, "library": libraries.get(path, "")}
             build = package.build
             at = build.catkin_package or build.ament_package or At(build.files[0], 1)
-            doubts = doubts_of_place(view, include.role, include.conditions)
+            doubts = list_place_doubts(view, include.role, include.conditions)
             lasting = {"include dirs": Doubt.DISTURBS, "library": Doubt.INCOMPLETE}.get(kind)
             yield Diagnostic(at, include.path, package.name, data, kind, (*doubts, lasting))
             return
@@ -114,7 +114,7 @@ def _find_kind(view: TargetView, package: Package) -> str:
         return "not installed"
     if build.catkin_package is None or view.target.ros == 2:
         return ""
-    offered = {e.how for e in build.exports if view.active(e.conditions)}
+    offered = {e.how for e in build.exports if view.applies(e.conditions)}
     return "include dirs" if "include_dirs" not in offered else "library" if "libraries" not in offered else ""
 
 
@@ -128,7 +128,7 @@ def _is_unlinked(package: Package, include: IncludeUse, library: str) -> bool:
     """Whether a program whose own source includes a header links nothing that is called like its library."""
     for target in package.build.targets:
         if target.kind == "executable" and target.name in include.targets and include.at.path in target.sources:
-            items = linked_items(package, target.name)
+            items = list_linked_items(package, target.name)
             if items is not None and not any(library in item for item in items):
                 return True
     return False

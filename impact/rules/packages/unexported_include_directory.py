@@ -26,7 +26,7 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.cmake.build import CMakeExport
-from ...model.cmake.links import exported_targets
+from ...model.cmake.links import list_exported_targets
 from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
 from .ament_exports import AmentExports, exports_something, list_installed_targets, read_ament_exports
 from .include_folders import OFF_PATH
@@ -67,14 +67,14 @@ def unexported_include_directory(view: TargetView, package: Package):
         yield from _list_without_folder(view, package, ament)
         yield from _list_without_library(view, package, ament.exports)
     elif package.build.catkin_package is not None:
-        exports = [e for e in package.build.exports if view.active(e.conditions)]
+        exports = [e for e in package.build.exports if view.applies(e.conditions)]
         yield from _list_without_library(view, package, exports)
 
 
 def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Headers that are installed, with a library or alone, and nothing that tells dependants where."""
     first = package.build.ament_package
-    exports = [e for e in package.build.exports if view.active(e.conditions)]
+    exports = [e for e in package.build.exports if view.applies(e.conditions)]
     if exports_something(exports):
         return
     if not package.digest.public_headers or any(f.how == "ament_auto" for f in package.build.found) or first is None:
@@ -98,7 +98,7 @@ def _list_without_folder(view: TargetView, package: Package, ament: AmentExports
     build = package.build
     if "ament_export_include_directories" in ament.hows or "cfg_extras" in ament.hows or build.unresolved:
         return
-    targets = list(exported_targets(package))
+    targets = list(list_exported_targets(package))
     headers = [path for path in package.digest.public_headers if "/include/" in f"/{path}"]
     if not targets or not headers or any("$" in link.item for t in targets for link in t.links if link.how != "ament"):
         return
@@ -107,7 +107,7 @@ def _list_without_folder(view: TargetView, package: Package, ament: AmentExports
         return
     compiled = {name for path, names in package.digest.source_targets if path in headers for name in names}
     for target in targets:
-        if (target.name in compiled or target.kind == "interface") and view.certain(target.conditions):
+        if (target.name in compiled or target.kind == "interface") and view.is_sure(target.conditions):
             yield Diagnostic(target.at, target.name, package.name, kind="folder", doubts=(Doubt.DISTURBS,))
             return
 
@@ -117,7 +117,7 @@ def _has_headers_alone(view: TargetView, package: Package) -> bool:
     build = package.build
     if build.unresolved or build.generated or any(t.kind != "test" for t in build.targets):
         return False
-    installs = [i for i in build.installs if view.active(i.conditions)]
+    installs = [i for i in build.installs if view.applies(i.conditions)]
     return bool(installs) and all(i.destination.lstrip("/").partition("/")[0] == "include" for i in installs)
 
 
@@ -138,7 +138,7 @@ def _list_without_library(view: TargetView, package: Package, exports: list[CMak
     # Those who find a package of catkin in the devel space ask for no install rule.
     made = headers if catkin else headers & list_installed_targets(package)
     for target in package.build.targets:
-        if target.kind == "library" and target.name in made and view.certain(target.conditions):
+        if target.kind == "library" and target.name in made and view.is_sure(target.conditions):
             kind = "catkin library" if catkin else "library"
             yield Diagnostic(target.at, target.name, package.name, kind=kind, doubts=(Doubt.DISTURBS,))
 
@@ -155,21 +155,21 @@ def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> I
     if any(e.how == "cfg_extras" for e in ament.exports) or list_installed_targets(package):
         return
     if not any("$" in e.item for e in ament.exports if "include" in e.how):
-        public = [need for need in view.weighed(package) if need.public]
+        public = [need for need in view.sort_needs(package) if need.public]
         yield from _list_missed(view, package, public, ament.found)
 
 
 def _list_of_catkin(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """System libraries off the compiler's path that exported headers of a catkin package with a library include."""
-    exports = [e for e in package.build.exports if view.active(e.conditions)]
+    exports = [e for e in package.build.exports if view.applies(e.conditions)]
     if not package.build.catkin_package or any("$" in e.item for e in exports):
         return
     if not {"include_dirs", "libraries"} <= {e.how for e in exports}:
         return
-    reach = view.roles.found_with({e.item for e in exports if e.how in ("catkin_depends", "system_depends")})
+    reach = view.roles.list_found_with({e.item for e in exports if e.how in ("catkin_depends", "system_depends")})
     handed = {e.item.lower() for e in exports if e.how == "system_depends"}
     folders = tuple(f"{e.item.rstrip('/')}/" for e in exports if e.how == "include_dirs")
-    public = [need for need in view.weighed(package) if need.at.path.startswith(folders)]
+    public = [need for need in view.sort_needs(package) if need.at.path.startswith(folders)]
     for missed in _list_missed(view, package, public, reach):
         if not any(item.startswith(missed.subject[:5]) for item in handed):  # EIGEN3 is what CMake calls eigen
             yield missed
@@ -184,7 +184,7 @@ def _list_missed(
         name = need.providers[0].name
         if need.how != "include" or not need.certain or name not in OFF_PATH or name in seen:
             continue
-        if not view.answered(need.providers, reach):
+        if not view.is_met(need.providers, reach):
             seen.add(name)
             data = {"header": need.subject}
             yield Diagnostic(need.at, name, package.name, data, "include directory", (Doubt.DISTURBS,))

@@ -26,7 +26,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.cmake.build import BuildTarget, Link
-from ...model.cmake.links import exported_targets
+from ...model.cmake.links import list_exported_targets
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _EXPORT = "put `{target}` into an export set with install(TARGETS ... EXPORT ...), and call ament_export_targets()"
@@ -42,7 +42,7 @@ _EXPORT = "put `{target}` into an export set with install(TARGETS ... EXPORT ...
 )
 def unexported_target(view: TargetView) -> Iterator[Diagnostic]:
     seen = set()
-    for package in view.everyone():
+    for package in view.list_built():
         own = {target.name for target in package.build.targets}
         for target in package.build.targets:
             for link in target.links:
@@ -72,14 +72,14 @@ def _list_names(view: TargetView, owner: Package) -> set[str] | None:
     sets = [e for e in build.exports if e.how == "ament_export_targets"]
     if any("$" in e.item or e.context not in ("", f"{owner.name}::") for e in sets):
         return None
-    return {target.export_name or target.name for target in exported_targets(owner)}
+    return {target.export_name or target.name for target in list_exported_targets(owner)}
 
 
 def _diagnose(
     view: TargetView, package: Package, target: BuildTarget, link: Link, owner: Package
 ) -> Iterator[Diagnostic]:
     name = link.item.partition("::")[2]
-    certain = view.certain((*target.conditions, *link.conditions))
+    certain = view.is_sure((*target.conditions, *link.conditions))
     doubts = (certain or Doubt.CONDITIONAL,)
     data = {"by": package.name, "owner": owner.name, "target": name}
     made = next((t for t in owner.build.targets if name in (t.name, t.export_name, t.output_name)), None)

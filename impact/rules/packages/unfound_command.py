@@ -27,10 +27,10 @@ Not reported
 
 import re
 
-from ....edges.memory import kept_with
-from ...model.cmake.build import for_tests
+from ....edges.memory import cache_in_derived
+from ...model.cmake.build import is_for_tests
 from ...model.unknown_contents import FINDING
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 from .undeclared_test_command import find_test_commands
 
 
@@ -50,7 +50,7 @@ from .undeclared_test_command import find_test_commands
 def unfound_command(view: TargetView, package: Package):
     for use in package.build.uses:
         written = use.name == "find_dependency" and re.search(r"onfig\.cmake(?:\.in)?\Z", use.at.path)
-        if use.kind == "command" and written and view.active(use.conditions):
+        if use.kind == "command" and written and view.applies(use.conditions):
             data = {"owner": use.context}
             yield Diagnostic(use.at, use.name, package.name, data, "configuration", (Doubt.DISTURBS,))
             break
@@ -64,35 +64,35 @@ def unfound_command(view: TargetView, package: Package):
     seen = set()
     for use in calls:
         owners = commands[use.name].split()
-        if not view.active(use.conditions):
+        if not view.applies(use.conditions):
             continue
-        testing = for_tests(use.conditions)
-        names = frozenset(f.name for f in found if testing or not for_tests(f.conditions))
+        testing = is_for_tests(use.conditions)
+        names = frozenset(f.name for f in found if testing or not is_for_tests(f.conditions))
         reached = _list_reached(view, package, names)
-        if not reached.isdisjoint(owners) or not any(view.available(owner) for owner in owners):
+        if not reached.isdisjoint(owners) or not any(view.is_available(owner) for owner in owners):
             continue
         if owners == ["genmsg"] and build.generated:
             continue  # missing-message-generation reports it
         if use.name in find_test_commands(view) and view.build_environment(package).isdisjoint(owners):
             continue
-        owner = _name_to_find(view, package, owners)
+        owner = _choose_name(view, package, owners)
         if owner not in seen:
             seen.add(owner)
             known = not build.unresolved and not view.unknown_contents.list_unknown(reached)
-            doubts = (*doubts_of_place(view, "build", use.conditions), known or Doubt.INCOMPLETE)
+            doubts = (*list_place_doubts(view, "build", use.conditions), known or Doubt.INCOMPLETE)
             together = view.target.ros == 2 or Doubt.LUCKY
             yield Diagnostic(use.at, use.name, package.name, {"owner": owner}, doubts=(*doubts, together))
 
 
-@kept_with
+@cache_in_derived
 def _list_reached(view: TargetView, package: Package, names: frozenset[str]) -> frozenset[str]:
     """What finding packages may bring."""
-    return view.widest_dependencies(names) | view.roles.found_with(names) | {package.name}
+    return view.list_widest_dependencies(names) | view.roles.list_found_with(names) | {package.name}
 
 
-def _name_to_find(view: TargetView, package: Package, owners: list[str]) -> str:
+def _choose_name(view: TargetView, package: Package, owners: list[str]) -> str:
     """The package that one would look for: an owner, or what is declared and brings it (ament_cmake)."""
-    declared = list(view.declared(package))
-    near = [name for name in declared if not view.transitive_dependencies([name]).isdisjoint(owners)]
+    declared = list(view.collect_declared(package))
+    near = [name for name in declared if not view.list_transitive([name]).isdisjoint(owners)]
     near.sort(key=lambda name: (name not in owners, name != package.build_type))
     return near[0] if near else owners[0]

@@ -2,7 +2,7 @@
 
 What it does
     Compares the files in the folders msg, srv and action of a package that generates interfaces with those that its
-    CMake gives to rosidl_generate_interfaces(), or to add_message_files() and its kin.
+    CMake gives to generate_interfaces(), or to add_message_files() and its kin.
 
 Why it breaks
     The interface does not exist: whoever includes its header, imports its type or embeds it in a message stops.
@@ -32,7 +32,7 @@ _FOLDERS = frozenset({"msg", "srv", "action"})
     texts=Text("`{subject}` is not given to the generator of interfaces", "add it to the generator's files"),
 )
 def ungenerated_interface(view: TargetView, package: Package) -> Iterator[Diagnostic]:
-    made = [one for one in package.build.generated if one.how in ("rosidl", "catkin") and view.active(one.conditions)]
+    made = [one for one in package.build.generated if one.how in ("rosidl", "catkin") and view.applies(one.conditions)]
     given = {path for one in made for path in one.files} | {path for path, _ in package.build.message_files}
     if not given or package.build.unresolved or any("$" in path or "*" in path for path in given):
         return

@@ -29,9 +29,9 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Set
 from functools import cache, partial
 
-from ...model.cmake.links import may_hide, package_of, reached_targets
+from ...model.cmake.links import list_reached_targets, may_hide, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .include_folders import OFF_PATH, doubts_of_folder, shares_one_folder
+from .include_folders import OFF_PATH, collect_folder_doubts, shares_one_folder
 
 _FindGiven = Callable[[str], set[str] | None]
 _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
@@ -46,7 +46,7 @@ def ungiven_package(view: TargetView, package: Package):
         return
     # Many files of a target include the same headers.
     includes = dict.fromkeys(
-        (i.path, i.targets, i.role) for i in package.digest.includes if i.targets and view.certain(i.conditions)
+        (i.path, i.targets, i.role) for i in package.digest.includes if i.targets and view.is_sure(i.conditions)
     )
     targets = {t.name: t for t in package.build.targets}
     find_given = cache(partial(_find_given, targets))
@@ -54,7 +54,7 @@ def ungiven_package(view: TargetView, package: Package):
     if shares_one_folder(view):
         return
     everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
-    everywhere |= {package_of(link.item) for link in package.build.links}
+    everywhere |= {resolve_package(link.item) for link in package.build.links}
     all_found = {f.name for f in package.build.found}
     found = all_found - {package.name}
     if any("$" in name for name in found) or any(f.how == "ament_auto" for f in package.build.found):
@@ -62,12 +62,12 @@ def ungiven_package(view: TargetView, package: Package):
     seen = set()
     reach: dict[str, tuple[frozenset[str], set[str]] | None] = {}
     for path, including, role in includes:
-        providers = view.header(path)
+        providers = view.find_header(path)
         owners = {p.name for p in providers}
         if not owners.isdisjoint(("", package.name)) or (
             (system := tuple(p for p in providers if p.kind != "ros"))
             and (
-                view.unknown_contents.may_come_along(package) or view.answered(system, view.build_environment(package))
+                view.unknown_contents.may_come_along(package) or view.is_met(system, view.build_environment(package))
             )
         ):
             continue  # the compiler finds it by itself
@@ -77,7 +77,7 @@ def ungiven_package(view: TargetView, package: Package):
         (name,) = names
         if name in seen or name.endswith("_vendor"):
             continue
-        of_folder = doubts_of_folder(view, name, path)
+        of_folder = collect_folder_doubts(view, name, path)
         if of_folder is None or (len(providers) > 1 and Doubt.INCOMPLETE in of_folder):
             continue
         for target in including:
@@ -88,22 +88,24 @@ def ungiven_package(view: TargetView, package: Package):
                 hiding = {item for item in items or () if "$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item)}
                 # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
                 # A target of the package may be called like the package, and brings none of what that declares.
-                given = {package_of(item) for item in items or () if item not in hiding and item not in targets}
+                given = {resolve_package(item) for item in items or () if item not in hiding and item not in targets}
                 given = (given | everywhere) - {package.name}
-                if view.unknown_contents.list_unknown(frozenset(given & (view.declared(package).keys() | all_found))):
+                if view.unknown_contents.list_unknown(
+                    frozenset(given & (view.collect_declared(package).keys() | all_found))
+                ):
                     items = None  # what one of them brings is not known
                 if any(item in targets and targets[item].kind == "generated" for item in items or ()):
                     given.update(name for made in package.build.generated for name, _ in made.dependencies)
                 reach[target] = (
                     None
                     if items is None
-                    else (view.transitive_dependencies(s for n in given if n for s in (n, n.lower())), hiding)
+                    else (view.list_transitive(s for n in given if n for s in (n, n.lower())), hiding)
                 )
             brought = reach[target]
             if brought is None or not owners.isdisjoint(brought[0]) or any(may_hide(item, name) for item in brought[1]):
                 continue
             seen.add(name)
-            certain = view.certain(targets[target].conditions)
+            certain = view.is_sure(targets[target].conditions)
             doubts = (role == "build" or Doubt.TEST, certain or Doubt.CONDITIONAL, *of_folder)
             data = {"target": target, "header": path}
             yield Diagnostic(targets[target].at, name, package.name, data, doubts=doubts)
@@ -120,25 +122,27 @@ def _list_off_path(
     everywhere = [item for item, _ in build.include_dirs] + [link.item for link in build.links]
     seen = set()
     for path, including, role in includes:
-        providers = view.header(path)[:1]
+        providers = view.find_header(path)[:1]
         if not providers or providers[0].name not in OFF_PATH or _NAMES_FOLDER.match(path):
             continue
-        found = ((f.name, view.cmake(f.name)) for f in build.found if f.how == "find_package")
+        found = ((f.name, view.find_cmake(f.name)) for f in build.found if f.how == "find_package")
         name, bringing = next(((n, by) for n, by in found if by and by[0].name == providers[0].name), ("", ()))
         if not name or name in seen:
             continue
         for target in including:
             items = find_given(target)
-            if items is None or not view.certain(targets[target].conditions):
+            if items is None or not view.is_sure(targets[target].conditions):
                 continue
             items = {item for item in (*items, *everywhere) if item not in targets}
             if any("$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item) for item in items):
                 continue
-            given = {package_of(item) for item in items}
-            known = {n: {p.name for p in view.cmake(n)[:1]} for n in given if "/" not in n and n not in package.folders}
-            brought = view.transitive_dependencies({key for n, keys in known.items() for key in (n, *keys)})
+            given = {resolve_package(item) for item in items}
+            known = {
+                n: {p.name for p in view.find_cmake(n)[:1]} for n in given if "/" not in n and n not in package.folders
+            }
+            brought = view.list_transitive({key for n, keys in known.items() for key in (n, *keys)})
             alike = any(name.lower()[:3] in item.lower() for item in items)
-            if alike or not all(known.values()) or view.answered(bringing, brought):
+            if alike or not all(known.values()) or view.is_met(bringing, brought):
                 continue
             seen.add(name)
             data = {"target": target, "header": path}
@@ -165,7 +169,7 @@ def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:
 def _find_given(targets, name: str) -> set[str] | None:
     """All that a target is given, itself or through targets of its package; None when that cannot be seen."""
     items: set[str] = set()
-    for target in reached_targets(targets, [name]):
+    for target in list_reached_targets(targets, [name]):
         if target.kind in ("unknown", "external", "fetched"):
             return None
         items.update(link.item for link in target.links)

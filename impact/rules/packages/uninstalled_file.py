@@ -27,7 +27,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 
-from ...model.package import role_of_folder
+from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .data_files import list_copied
 from .install_rules import is_installed, list_places, list_references, read_installs
@@ -170,7 +170,7 @@ def _list_scripts(package: Package, installs, scripts: set[str]) -> Iterator[Dia
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
     for path in (*package.digest.scripts, *package.digest.shells):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
-        beside = folder in folders and folder != package.path and "." not in name and role_of_folder(name) is None
+        beside = folder in folders and folder != package.path and "." not in name and find_folder_role(name) is None
         node = path in nodes
         if (name in scripts or beside or node) and name not in others and not is_installed(package, installs, path):
             how = "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"
@@ -183,7 +183,7 @@ def _list_scripts(package: Package, installs, scripts: set[str]) -> Iterator[Dia
 def _list_nodes(package: Package, installs) -> frozenset[str]:
     """The nodes in Python of a package that installs something: all of ROS 2, and of ROS 1, where a launch file in the
     source space starts them as well, those of a package that makes and installs no program at all.
-    catkin_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.
+    install_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.
     """
     made = any(t.kind == "executable" for t in package.build.targets)
     has_programs = made or any(i.kind == "programs" or i.executable for i in installs)
@@ -191,4 +191,4 @@ def _list_nodes(package: Package, installs) -> frozenset[str]:
         return frozenset()
     nodes = {use.at.path for use in package.digest.imports if use.module.partition(".")[0] in _OF_NODES}
     inside = {path: path[len(package.path) :].lstrip("/") for path in package.digest.scripts if path in nodes}
-    return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_PROGRAMS and role_of_folder(i) is None)
+    return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_PROGRAMS and find_folder_role(i) is None)

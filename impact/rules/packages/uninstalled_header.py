@@ -26,10 +26,10 @@ Not reported
 import posixpath
 import re
 
-from ...model.cmake.installed import installed_headers
-from ...model.package import IncludeUse, role_of_folder
+from ...model.cmake.installed import collect_installed_headers
+from ...model.package import IncludeUse, find_folder_role
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
-from .dependants import compiled_elsewhere
+from .dependants import is_compiled_elsewhere
 
 _ONCE = (Together("header not installed", few=2),)
 _DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
@@ -44,7 +44,7 @@ _DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
 def uninstalled_header(view: TargetView, package: Package):
     if not package.build.files or not package.digest.public_headers:
         return
-    installed = installed_headers(package)
+    installed = collect_installed_headers(package)
     if not installed.known:
         return
     made = set(package.build.made)
@@ -52,25 +52,25 @@ def uninstalled_header(view: TargetView, package: Package):
     written = dict(package.digest.written_inner)
     for path, inner in package.digest.inner:
         place = installed.headers.get(path)
-        if place is None or role_of_folder(path[len(package.path) :].lstrip("/")):
+        if place is None or find_folder_role(path[len(package.path) :].lstrip("/")):
             continue
         lost = [to for to in inner if to not in installed.headers and to not in reported and not to.endswith(".in")]
         for to in lost if lost else ():
             include = _include_of(view, written.get(path, ()), to)
-            if include is None or to in made or _answered(installed.headers, place, include.path):
+            if include is None or to in made or _is_answered(installed.headers, place, include.path):
                 continue
             reported.add(to)
             data = {"header": posixpath.basename(path), "file": to[len(package.path) :].lstrip("/")}
-            doubts = _doubts(view, package, path)
+            doubts = _collect_doubts(view, package, path)
             yield Diagnostic(include.at, include.path, package.name, data, doubts=doubts, together=_ONCE)
 
 
-def _doubts(view: TargetView, package: Package, path: str) -> tuple[Doubt, ...]:
+def _collect_doubts(view: TargetView, package: Package, path: str) -> tuple[Doubt, ...]:
     """Of an installed header that lacks one of its own package: whoever includes it stops."""
     if _DETAIL.search(path) and package.name not in view.workspace.includers:
         return (Doubt.UNCOMPILED,)
     # Catkin's devel space shows dependants the folder of the sources.
-    stops = view.target.ros == 2 and compiled_elsewhere(view, package, path)
+    stops = view.target.ros == 2 and is_compiled_elsewhere(view, package, path)
     return () if stops else (Doubt.DISTURBS,)
 
 
@@ -78,12 +78,12 @@ def _include_of(view: TargetView, includes: tuple[IncludeUse, ...], to: str) -> 
     """The include that names another file of the package and stands under no condition."""
     name = posixpath.basename(to)
     for include in includes:
-        if posixpath.basename(include.path) == name and view.certain(include.conditions):
+        if posixpath.basename(include.path) == name and view.is_sure(include.conditions):
             return include
     return None
 
 
-def _answered(headers: dict[str, str], place: str, include: str) -> bool:
+def _is_answered(headers: dict[str, str], place: str, include: str) -> bool:
     """Whether an installed header answers an include of the header that lies at a place of the prefix."""
     beside = posixpath.normpath(posixpath.join(posixpath.dirname(place), include))
     ending = "/" + include.lstrip("./")

@@ -6,7 +6,7 @@ What it does
 
 Why it breaks
     pluginlib reads the description from the install space, and finds its path in package.xml (ROS 2: in the index
-    that pluginlib_export_plugin_description_file() writes). Without it, loading any plugin of the package fails.
+    that export_plugin_description() writes). Without it, loading any plugin of the package fails.
 
 Severity
     error where a library that the description names is installed, so that others expect its plugins; warning otherwise.
@@ -24,7 +24,7 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ...model.package import role_of_folder
+from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 from .install_rules import is_installed, read_installs
 
@@ -75,7 +75,7 @@ def _is_shipped(view: TargetView, package: Package, installs, description: str) 
     libraries = (posixpath.basename(c.library) for path, c in package.digest.plugins if path == description)
     names = {name.removeprefix("lib").removesuffix(".so") for name in libraries}
     return any(
-        item in names and view.certain(i.conditions) for i in installs if i.kind == "targets" for item in i.items
+        item in names and view.is_sure(i.conditions) for i in installs if i.kind == "targets" for item in i.items
     )
 
 
@@ -90,8 +90,8 @@ def _list_not_exported(view: TargetView, package: Package, installs) -> Iterator
         target = libraries.get(name)
         if plugin.type in seen or path in seen or target is None or is_installed(package, installs, path):
             continue
-        aside = role_of_folder(path[len(package.path) :].lstrip("/"))
-        if aside or not path.endswith(".xml") or not view.certain(target.conditions):
+        aside = find_folder_role(path[len(package.path) :].lstrip("/"))
+        if aside or not path.endswith(".xml") or not view.is_sure(target.conditions):
             continue
         seen.add(path)
         base = plugin.base.partition("::")[0] or "BASE_PACKAGE"

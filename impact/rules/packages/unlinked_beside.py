@@ -17,10 +17,10 @@ Not reported
     Targets that are given something that cannot be seen; libraries.
 """
 
-from ...model.cmake.links import linked_items
+from ...model.cmake.links import list_linked_items
 from ...model.package import IncludeUse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import PACKAGE_VARIABLE, plain
+from .catkin_links import PACKAGE_VARIABLE, normalize
 from .unlinked_library import COMPILED
 
 # Beside those that are always linked, libraries of which some headers can be used alone: another target has to show
@@ -45,7 +45,7 @@ def unlinked_beside(view: TargetView, package: Package):
     targets = {t.name: t for t in package.build.targets}
     links: dict[str, set[str] | None] = {}
     seen = set()
-    includes = [i for i in package.digest.includes if i.path.startswith(_ROOTS) and view.certain(i.conditions)]
+    includes = [i for i in package.digest.includes if i.path.startswith(_ROOTS) and view.is_sure(i.conditions)]
     for root, word in _LIBRARIES if includes else ():
         users: dict[str, IncludeUse] = {}
         for include in includes:
@@ -54,13 +54,13 @@ def unlinked_beside(view: TargetView, package: Package):
         if len(users) < 2:
             continue
         for name in users.keys() - links.keys():
-            links[name] = linked_items(package, name) if name in targets else None
-        own = {n for n in users if any(word in plain(item) for item in links[n] or ())}
+            links[name] = list_linked_items(package, name) if name in targets else None
+        own = {n for n in users if any(word in normalize(item) for item in links[n] or ())}
         for name, include in users.items():
             target, items = targets.get(name), links[name]
             if not own or name in own or target is None or items is None or word in seen:
                 continue
-            if target.kind not in ("executable", "test") or not view.certain(
+            if target.kind not in ("executable", "test") or not view.is_sure(
                 c for c in target.conditions if "TESTING" not in c.text
             ):
                 continue

@@ -29,10 +29,10 @@ from collections.abc import Iterator, Mapping, Set
 from typing import NamedTuple
 
 from ...model.cmake.build import BuildTarget
-from ...model.cmake.links import linked_items
-from ...targets.providers.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP, compiled_component
+from ...model.cmake.links import list_linked_items
+from ...targets.providers.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP, find_compiled_component
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import BRING_NOTHING, PACKAGE_VARIABLE, CatkinExports, linked_packages, list_linked, stem_of
+from .catkin_links import BRING_NOTHING, PACKAGE_VARIABLE, CatkinExports, find_linked_packages, get_stem, list_linked
 
 _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component `{component}`"
 
@@ -72,7 +72,7 @@ def _list_not_asked_for(view: TargetView, package: Package, asked: Set[str]) -> 
             head, _, component = link.item.partition("::")
             if head != "Boost" or component in seen or component not in BOOST_COMPILED:
                 continue
-            if view.active((*target.conditions, *link.conditions)):
+            if view.applies((*target.conditions, *link.conditions)):
                 seen.add(component)
                 subject, doubts = f"Boost::{component}", (Doubt.INCOMPLETE,)
                 yield Diagnostic(link.at, subject, package.name, {"component": component}, "not asked for", doubts)
@@ -80,18 +80,18 @@ def _list_not_asked_for(view: TargetView, package: Package, asked: Set[str]) -> 
 
 def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Iterator[Diagnostic]:
     """Headers of compiled Boost libraries in targets that nothing given to them links the component to."""
-    boost = view.target.library("boost") or ""
+    boost = view.target.find_library("boost") or ""
     targets = {t.name: t for t in package.build.targets}
     given: dict[str, _BoostComponents | None] = {}
     seen = set()
     for include in package.digest.includes:
-        component = compiled_component(include.path, boost)
-        if component is None or component in seen or include.role == "aside" or not view.certain(include.conditions):
+        component = find_compiled_component(include.path, boost)
+        if component is None or component in seen or include.role == "aside" or not view.is_sure(include.conditions):
             continue
         if include.idle:
             continue
         for name in include.targets:
-            if name not in targets or not view.certain(targets[name].conditions):
+            if name not in targets or not view.is_sure(targets[name].conditions):
                 continue
             if name not in given:
                 given[name] = _find_linked_components(view, package, targets, name, asked)
@@ -123,7 +123,7 @@ def _list_doubts(view: TargetView, include, target, known: _BoostComponents) -> 
 def _list_asked_components(view: TargetView, package: Package) -> Set[str] | None:
     """The components of Boost that find_package() is given; None where no find_package() asks for Boost."""
     found = [
-        f for f in package.build.found if f.how == "find_package" and f.name == "Boost" and view.active(f.conditions)
+        f for f in package.build.found if f.how == "find_package" and f.name == "Boost" and view.applies(f.conditions)
     ]
     components = (name for f in found for name in (*(name for name, _ in f.components), *f.optional_components))
     return frozenset(components) if found else None
@@ -133,7 +133,7 @@ def _find_linked_components(
     view: TargetView, package: Package, targets: Mapping[str, BuildTarget], name: str, asked: Set[str]
 ) -> _BoostComponents | None:
     """What a target is linked to, itself or through targets of its package; None when that cannot be seen."""
-    items = linked_items(package, name)
+    items = list_linked_items(package, name)
     if items is None:
         return None
     components: set[str] = set()
@@ -157,7 +157,7 @@ def _find_linked_components(
         packages |= {f.name for f in package.build.found if f.how == "catkin"}
     if any(found.name in _BRING_BOOST for found in package.build.found):
         return None
-    brought = view.transitive_dependencies(packages - set(targets))
+    brought = view.list_transitive(packages - set(targets))
     if view.target.ros == 1 and "roscpp" in brought:
         components |= BOOST_OF_ROSCPP
     components |= {c for c in BOOST_COMPILED if f"libboost-{c.replace('_', '-')}-dev" in brought}
@@ -181,10 +181,10 @@ def _lacks_boost(view: TargetView, package: Package, target: BuildTarget, compon
     linked = list_linked(package, target.name)
     if linked is None or any("$" in f.name for f in package.build.found):
         return False
-    if not all(stem_of(item) in BRING_NOTHING or view.is_package(stem_of(item)) for item in linked if "$" in item):
+    if not all(get_stem(item) in BRING_NOTHING or view.is_package(get_stem(item)) for item in linked if "$" in item):
         return False
     exported = CatkinExports(view)
-    brought = exported.transitive_dependencies(linked_packages(view, package, linked))
+    brought = exported.list_transitive(find_linked_packages(view, package, linked))
     return brought is not None and all(
         name in _WITH_BOOST_OF_THE_CORE or not exported.may_bring(name, "boost") for name in brought
     )

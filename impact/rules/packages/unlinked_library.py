@@ -25,9 +25,9 @@ Not reported
 """
 
 from ...model.cmake.build import BuildTarget
-from ...model.cmake.links import package_of
+from ...model.cmake.links import resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import BRING_NOTHING, CatkinExports, linked_packages, list_linked, plain, stem_of
+from .catkin_links import BRING_NOTHING, CatkinExports, find_linked_packages, get_stem, list_linked, normalize
 
 COMPILED = (
     ("yaml-cpp/", "yamlcpp"),
@@ -60,7 +60,7 @@ def unlinked_library(view: TargetView, package: Package):
         for i in package.digest.includes
         if i.targets and i.path.startswith(_STARTS)
         for start, word in _COMPILED
-        if i.path.startswith(start) and view.certain(i.conditions)
+        if i.path.startswith(start) and view.is_sure(i.conditions)
     ]
     if not includes or any("$" in f.name for f in package.build.found):
         return
@@ -74,17 +74,17 @@ def unlinked_library(view: TargetView, package: Package):
                 continue
             if target.kind != "executable" and (target.kind != "library" or target.static or name not in installed):
                 continue
-            if not view.certain(target.conditions):
+            if not view.is_sure(target.conditions):
                 continue
             if _is_brought(view, package, name, include.path, word):
                 continue
             seen.add((word, name))
             subject = include.path.partition("/")[0].removesuffix(".h")
             data = {"target": name, "header": include.path}
-            yield Diagnostic(include.at, subject, package.name, data, doubts=_doubts(target, word))
+            yield Diagnostic(include.at, subject, package.name, data, doubts=_collect_doubts(target, word))
 
 
-def _doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:
+def _collect_doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:
     """A program that includes a header for tests defines tests, which the library runs; of other headers it may use
     what needs no library."""
     if target.kind != "executable" or word not in ("gtest", "gmock"):
@@ -95,24 +95,24 @@ def _doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:
 def _is_brought(view: TargetView, package: Package, target: str, header: str, word: str) -> bool:
     """Whether anything that a target is given links the library of a header, or may."""
     items = list_linked(package, target)
-    if items is None or any(word.removesuffix("2") in plain(item) for item in items):
+    if items is None or any(word.removesuffix("2") in normalize(item) for item in items):
         return True
-    if word == "gmock" and any("gtest" in plain(item) for item in items):
+    if word == "gmock" and any("gtest" in normalize(item) for item in items):
         return False
     if any(_may_bring_anything(view, package, item) for item in items):
         return True
-    packages = linked_packages(view, package, items)
+    packages = find_linked_packages(view, package, items)
     if view.target.ros == 2:
-        return view.answered(view.header(header), view.transitive_dependencies(packages))
+        return view.is_met(view.find_header(header), view.list_transitive(packages))
     exported = CatkinExports(view)
-    brought = exported.transitive_dependencies(packages)
+    brought = exported.list_transitive(packages)
     return brought is None or any(exported.may_bring(name, word) for name in brought)
 
 
 def _may_bring_anything(view: TargetView, package: Package, item: str) -> bool:
     """Whether it cannot be seen what an item brings: it is of no package of ROS and of no library that is known to come
     alone. A variable that no package found can set is empty."""
-    name = stem_of(item) if "$" in item else package_of(item)
+    name = get_stem(item) if "$" in item else resolve_package(item)
     if name in BRING_NOTHING or view.is_package(name) or name.startswith(("Qt5", "Qt6")):
         return False
     if "$" not in item:

@@ -18,10 +18,10 @@ Not reported
     Programs that are linked to something of which it cannot be seen what it brings; ROS 2.
 """
 
-from ...model.cmake.build import for_tests
+from ...model.cmake.build import is_for_tests
 from ...targets.providers.library import OPENCV_FUNCTIONS
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
-from .catkin_links import BRING_NOTHING, CatkinExports, linked_packages, list_linked, stem_of
+from .catkin_links import BRING_NOTHING, CatkinExports, find_linked_packages, get_stem, list_linked
 
 # Distros whose cv_bridge hands on every library of OpenCV.
 _WITH_ALL_OF_OPENCV = frozenset({"groovy", "hydro", "indigo", "jade"})
@@ -41,21 +41,23 @@ def unlinked_opencv(view: TargetView, package: Package):
     calls = [
         use
         for use in package.digest.names
-        if use.text in OPENCV_FUNCTIONS and use.role == "build" and view.certain(use.conditions)
+        if use.text in OPENCV_FUNCTIONS and use.role == "build" and view.is_sure(use.conditions)
     ]
     if not calls or any("$" in f.name for f in build.found):
         return
     exported = CatkinExports(view)
     for target in build.targets:
-        if target.kind != "executable" or for_tests(target.conditions) or not view.certain(target.conditions):
+        if target.kind != "executable" or is_for_tests(target.conditions) or not view.is_sure(target.conditions):
             continue
         linked = list_linked(package, target.name)
         if linked is None or any("opencv" in item.lower() for item in linked):
             continue
-        if not all(stem_of(item) in BRING_NOTHING or view.is_package(stem_of(item)) for item in linked if "$" in item):
+        if not all(
+            get_stem(item) in BRING_NOTHING or view.is_package(get_stem(item)) for item in linked if "$" in item
+        ):
             continue
         call = next((use for use in calls if use.at.path in target.sources), None)
-        brought = exported.transitive_dependencies(linked_packages(view, package, linked)) if call is not None else None
+        brought = exported.list_transitive(find_linked_packages(view, package, linked)) if call is not None else None
         if call is None or brought is None:
             continue
         bringing = {name for name in brought if name != "OpenCV" and exported.may_bring(name, "opencv")}

@@ -24,9 +24,9 @@ Not reported
 
 from collections.abc import Collection
 
-from ...model.cmake.links import linked_items
+from ...model.cmake.links import list_linked_items
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
-from .catkin_links import PACKAGE_VARIABLE, plain
+from .catkin_links import PACKAGE_VARIABLE, normalize
 
 
 @rule(
@@ -50,7 +50,7 @@ def unlinked_own_library(view: TargetView, package: Package):
     for target in package.build.targets:
         for source in target.sources:
             compiling.setdefault(source, []).append(target.name)
-    links = {name: linked_items(package, name) for name in targets} if package.digest.own_calls else {}
+    links = {name: list_linked_items(package, name) for name in targets} if package.digest.own_calls else {}
     known = {name for f in package.build.found for name in (f.name, f.prefix)} | {"catkin"}
     seen = set()
     for source, other, function in package.digest.own_calls:
@@ -61,7 +61,7 @@ def unlinked_own_library(view: TargetView, package: Package):
                 continue
             libraries = sorted(n for n in definers if targets[n].kind == "library" and n != name)
             programs = not libraries and all(targets[n].kind == "executable" for n in definers)
-            if not (libraries or programs) or not view.certain(c for c in target.conditions if "TESTING" not in c.text):
+            if not (libraries or programs) or not view.is_sure(c for c in target.conditions if "TESTING" not in c.text):
                 continue
             items = links[name]
             if items is None or any(
@@ -70,7 +70,7 @@ def unlinked_own_library(view: TargetView, package: Package):
             ):
                 continue
             reached = {name, *items, *(targets[n].alias_of for n in items & targets.keys())}
-            if not definers.isdisjoint(reached) or any(plain(n) in plain(i) for n in libraries for i in items):
+            if not definers.isdisjoint(reached) or any(normalize(n) in normalize(i) for n in libraries for i in items):
                 continue
             users = [given for given in links.values() if given is not None and name in given]
             if definers and users and not any(definers.isdisjoint(given) for given in users):

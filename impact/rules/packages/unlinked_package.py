@@ -24,10 +24,10 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.cmake.build import for_tests
+from ...model.cmake.build import is_for_tests
 from ...model.package import IncludeUse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import CatkinExports, linked_packages, list_linked, plain
+from .catkin_links import CatkinExports, find_linked_packages, list_linked, normalize
 
 
 @rule(
@@ -65,11 +65,11 @@ def _list_without_client(view: TargetView, package: Package):
         t.name: t
         for t in build.targets
         if (t.kind == "executable" or (t.kind == "library" and not t.static and t.name in offered))
-        and t.name not in linked and t.sources and view.certain(t.conditions)
+        and t.name not in linked and t.sources and view.is_sure(t.conditions)
     }  # fmt: skip
     for include in package.digest.includes if programs else ():
         client, item = _CLIENTS.get(include.path, ("", ""))
-        if not client or client in view.workspace.packages or not view.certain(include.conditions):
+        if not client or client in view.workspace.packages or not view.is_sure(include.conditions):
             continue
         if include.role != "build":
             continue  # such as a test's program that `make all` leaves out
@@ -97,31 +97,31 @@ def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     exported = CatkinExports(view)
     includes: dict[str, list[IncludeUse]] = {}
     for include in package.digest.includes:
-        if include.role == "build" and view.certain(include.conditions):
+        if include.role == "build" and view.is_sure(include.conditions):
             for name in include.targets:
                 includes.setdefault(name, []).append(include)
     seen = set()
     for target in build.targets:
-        if target.kind != "executable" or for_tests(target.conditions) or not view.certain(target.conditions):
+        if target.kind != "executable" or is_for_tests(target.conditions) or not view.is_sure(target.conditions):
             continue
         linked = list_linked(package, target.name)
         if linked is None:
             continue
-        brought = exported.transitive_dependencies(linked_packages(view, package, linked))
+        brought = exported.list_transitive(find_linked_packages(view, package, linked))
         if brought is None:
             continue
-        words = [plain(item) for item in linked]
+        words = [normalize(item) for item in linked]
         for include in includes.get(target.name, ()):
             if not include.path.startswith(_COMPILED) or include.at.path not in target.sources:
                 continue  # a header may be included for what another source uses
-            providers = view.header(include.path)
+            providers = view.find_header(include.path)
             if len(providers) != 1 or providers[0].kind != "ros" or not providers[0].sure:
                 continue
             name = providers[0].name
             if name in brought or name in seen or name == package.name:
                 continue
-            libraries = exported.libraries(name)
-            if not libraries or any(plain(lib) in word for lib in (*libraries, name) for word in words):
+            libraries = exported.list_libraries(name)
+            if not libraries or any(normalize(lib) in word for lib in (*libraries, name) for word in words):
                 continue
             seen.add(name)
             data = {"target": target.name, "header": include.path}

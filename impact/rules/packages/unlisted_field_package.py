@@ -21,7 +21,7 @@ Not reported
     generator is given.
 """
 
-from ...facts.interface import PRIMITIVES, TIMES, full_name
+from ...facts.interface import PRIMITIVES, TIMES, make_full_name
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _FROM_ROS1 = TIMES | {"Header"}
@@ -46,7 +46,7 @@ _ROS1_PRIMITIVE = PRIMITIVES | _FROM_ROS1 | {"float", "double"}
     },
 )
 def unlisted_field_package(view: TargetView, package: Package):
-    generated = [g for g in package.build.generated if g.how in ("rosidl", "catkin") and view.active(g.conditions)]
+    generated = [g for g in package.build.generated if g.how in ("rosidl", "catkin") and view.applies(g.conditions)]
     if not generated:
         return
     listed = {file for g in generated for file in g.files}
@@ -69,7 +69,7 @@ def unlisted_field_package(view: TargetView, package: Package):
                     names = {i.name for i in package.digest.interfaces}
                     if field.type not in names and field.type not in seen:
                         seen.add(field.type)
-                        data = {"replacement": full_name(field.type, "") if field.type in _FROM_ROS1 else ""}
+                        data = {"replacement": make_full_name(field.type, "") if field.type in _FROM_ROS1 else ""}
                         yield Diagnostic(_place_of(interface, field), field.type, package.name, data, "own type")
                     continue
                 if not owner or owner == package.name or owner in seen:
@@ -81,7 +81,7 @@ def unlisted_field_package(view: TargetView, package: Package):
                         at, data = _place_of(interface, field), {"owner": owner, "name": name}
                         yield Diagnostic(at, f"{owner}/{name}", package.name, data, "other type")
                     continue
-                if owner in view.transitive_dependencies(given):
+                if owner in view.list_transitive(given):
                     continue
                 seen.add(owner)
                 rosidl = generated[0].how == "rosidl"
@@ -96,7 +96,7 @@ def _list_implied(view: TargetView, files: set[str]) -> set[str]:
     Source: rosidl_generate_interfaces.cmake."""
     kinds = {file.rpartition(".")[2] for file in files}
     names = {"action_msgs", "service_msgs"} if "action" in kinds else {"service_msgs"} if "srv" in kinds else set()
-    return {name for name in names if view.target.ros == 2 and view.available(name)}
+    return {name for name in names if view.target.ros == 2 and view.is_available(name)}
 
 
 def _place_of(interface, field) -> At:

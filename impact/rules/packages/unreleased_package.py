@@ -38,24 +38,24 @@ _HELP = "bring its source into the workspace, or put a condition on the dependen
 def unreleased_package(view: TargetView, package: Package):
     target = view.target
     beside = view.underlaid or view.workspace.outside.lists_repositories
-    gone = {c.old or c.package for c in view.changes("package-removed", "package-renamed") if c.state == "removed"}
+    gone = {c.old or c.package for c in view.list_changes("package-removed", "package-renamed") if c.state == "removed"}
     seen = set()
-    for dependency in view.dependencies(package):
+    for dependency in view.list_dependencies(package):
         name = dependency.name
-        if name in seen or name in gone or view.available(name):
+        if name in seen or name in gone or view.is_available(name):
             continue
-        if not target.ever_released(name) or view.private(name) or view.successor(name):
+        if not target.was_ever_released(name) or view.is_private(name) or view.find_successor(name):
             continue
         if view.unknown_contents.is_of_submodule(name):
             continue
         seen.add(name)
         used = any(
             need.certain and need.required and need.role == "build" and any(p.name == name for p in need.providers)
-            for need in view.needs(package)
+            for need in view.list_needs(package)
         )
-        last = target.last_distro(name)
+        last = target.find_last_distro(name)
         yield Diagnostic(
-            view.manifest_place(package, dependency),
+            view.find_place(package, dependency),
             name,
             package.name,
             {"distro": target.distro, "last": last},

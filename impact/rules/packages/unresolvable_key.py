@@ -76,29 +76,29 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
 def unresolvable_key(view: TargetView, package: Package):
     target = view.target
     seen = set()
-    for dependency in view.dependencies(package):
+    for dependency in view.list_dependencies(package):
         name = dependency.name
-        if name in seen or name in view.workspace.packages or target.version(name) is not None:
+        if name in seen or name in view.workspace.packages or target.find_version(name) is not None:
             continue
         seen.add(name)
-        if view.private(name) or view.unknown_contents.is_of_submodule(name):
+        if view.is_private(name) or view.unknown_contents.is_of_submodule(name):
             continue
-        at = view.manifest_place(package, dependency)
+        at = view.find_place(package, dependency)
         resolution = target.resolve(name)
         if resolution is not None:
             yield from _list_unfit(view, package, at, name, resolution)
-        elif target.ever_released(name):
+        elif target.was_ever_released(name):
             continue  # unreleased-package says it
-        elif target.known_key(name):
+        elif target.knows_key(name):
             if not target.has_rosdep_rules():
                 continue
-            instead = next(iter(target.keys_instead(name)), "")
+            instead = next(iter(target.find_replacement_keys(name)), "")
             data = {"platform": target.platform, "replacement": instead}
             yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if instead else "no rule")
-        elif (guess := view.known_names.nearest(name)) and view.available(guess):
-            fix = _fix(view, package, name, guess)
+        elif (guess := view.known_names.find_nearest(name)) and view.is_available(guess):
+            fix = _make_fix(view, package, name, guess)
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
-        elif longer := _parts_of(view, name):
+        elif longer := _find_parts(view, name):
             yield Diagnostic(at, name, package.name, {"packages": tuple(longer[:2])}, kind="repository")
         elif relative := _find_namesake(view, package, name) or _find_reworded(view, name):
             data = {"replacement": relative}
@@ -110,7 +110,7 @@ def unresolvable_key(view: TargetView, package: Package):
 def _list_unfit(view: TargetView, package: Package, at, name: str, found: Resolution) -> Iterator[Diagnostic]:
     """A key that is installed, and does not serve: the module of another Python, or what no Debian package may need."""
     target = view.target
-    if found.manager == "pip" and target.ever_released(package.name):
+    if found.manager == "pip" and target.was_ever_released(package.name):
         yield Diagnostic(at, name, package.name, kind="pip", doubts=(Doubt.DISTURBS,))
     instead = name.replace("python-", "python3-", 1)
     of_python2 = found.manager == "apt" and found.packages and all(p.startswith("python-") for p in found.packages)
@@ -144,7 +144,7 @@ def _find_namesake(view: TargetView, package: Package, name: str) -> str:
     name = name.rstrip(".0123456789")
     key = f"lib{name}-dev" if package.build.targets else f"python3-{name}"
     found = [f"{name}_vendor", f"ros_{name}", key] if len(name) > 3 else []
-    found = [known for known in found if view.available(known)]
+    found = [known for known in found if view.is_available(known)]
     return found[0] if len(found) == 1 else ""
 
 
@@ -164,35 +164,35 @@ def _find_reworded(view: TargetView, name: str) -> str:
     return found[0] if len(found) == 1 else ""
 
 
-def _parts_of(view: TargetView, name: str) -> list[str]:
+def _find_parts(view: TargetView, name: str) -> list[str]:
     """Released packages that are called after a name, two at least, where all are of one repository, or its name is
     that."""
     if len(name) < 4:
         return []
-    alike = [n for n in sorted(view.target.released_names()) if n.startswith(f"{name}_") and view.available(n)]
-    homes = {n: _plain_repository(view, n) for n in alike}
+    alike = [n for n in sorted(view.target.list_released()) if n.startswith(f"{name}_") and view.is_available(n)]
+    homes = {n: _find_repository_stem(view, n) for n in alike}
     found = [n for n in alike if homes[n] == name] if len(set(homes.values())) > 1 else alike
     return found if len(found) > 1 else []
 
 
-def _plain_repository(view: TargetView, package: str) -> str:
+def _find_repository_stem(view: TargetView, package: str) -> str:
     """The name of the repository that releases a package, without what only tells the generation (`moveit2`)."""
-    repository = view.target.repository(package)
+    repository = view.target.find_repository(package)
     return re.sub(r"[-_]*(?:ros)?\d?\Z", "", repository[0]).replace("-", "_") if repository is not None else ""
 
 
-def _fix(view: TargetView, package: Package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
+def _make_fix(view: TargetView, package: Package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
     """Writes the name that was surely meant, or takes the wrong one out where that is declared beside it."""
     # A digit tells versions apart.
-    if _plain(name) != _plain(guess) and not (len(name) > 5 and is_slip(name, guess)):
+    if _normalize(name) != _normalize(guess) and not (len(name) > 5 and is_slip(name, guess)):
         return ()
     path = package.digest.manifest_path
-    declared = view.declared(package)
+    declared = view.collect_declared(package)
     if guess in declared:
         return (Remove(path, name),) if declared[name] <= declared[guess] else ()
     places = dict.fromkeys((d.line, d.column) for d in package.manifest.dependencies if d.name == name)
     return tuple(Replace(path, line, column, name, guess) for line, column in places)
 
 
-def _plain(name: str) -> str:
+def _normalize(name: str) -> str:
     return re.sub(r"[-_.\s]", "", name.lower())

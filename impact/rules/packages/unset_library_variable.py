@@ -1,9 +1,9 @@
 """unset-library-variable: a target links the variable of a library that nothing finds.
 
 What it does
-    Reports `${X_LIBRARIES}` in target_link_libraries() that no find_package or pkg_check_modules of the package sets,
+    Reports `${X_LIBRARIES}` in link_target_libraries() that no find_package or pkg_check_modules of the package sets,
     where X is a library that is known; `${QT_LIBRARIES}` of Qt 4 where a later Qt alone is found; and
-    pkg_check_modules() whose first argument, the prefix of its variables, is REQUIRED.
+    check_pkgconfig_modules() whose first argument, the prefix of its variables, is REQUIRED.
 
 Why it breaks
     CMake takes an unknown variable as empty, and the linker misses the library.
@@ -26,7 +26,7 @@ import re
 from functools import lru_cache
 
 from ...model.cmake.names import MODULES
-from ...targets.providers.library import variables
+from ...targets.providers.library import list_variables
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _LIBRARIES = re.compile(r"(.+)_(?:LIBRARIES|LIBRARY|LIBS)\Z")
@@ -67,14 +67,14 @@ def _list_unset(view: TargetView, package: Package):
     if build.unresolved or any("$" in f.name for f in build.found):
         return
     sought = {fold(n) for f in build.found for n in (f.name, f.prefix) if n}
-    reachable = {fold(name) for name in view.transitive_dependencies(f.name for f in build.found)}
+    reachable = {fold(name) for name in view.list_transitive(f.name for f in build.found)}
     qt = {f.name for f in build.found if f.name.startswith("Qt")}
     seen = set()
     for use in build.uses:
         match = (
             _LIBRARIES.match(use.name) if use.kind == "variable" and use.context == "target_link_libraries" else None
         )
-        if match is None or use.name in seen or not view.certain(use.conditions):
+        if match is None or use.name in seen or not view.is_sure(use.conditions):
             continue
         stem = match.group(1)
         folded = fold(stem)
@@ -89,30 +89,30 @@ def _list_unset(view: TargetView, package: Package):
         if any(folded in other or other in folded for other in (*sought, *reachable) if len(other) > 2):
             continue
         seen.add(use.name)
-        module = next((m for m in (stem, f"lib{stem}") if view.providers.pkgconfig(m)), "")
-        known = module or (stem if view.cmake(stem) else "")
+        module = next((m for m in (stem, f"lib{stem}") if view.providers.find_pkgconfig(m)), "")
+        known = module or (stem if view.find_cmake(stem) else "")
         if not known:
             continue
         if view.unknown_contents.may_hold(package, stem):
             continue
-        doubts = _doubts(view, package, use.name, module, stem)
+        doubts = _collect_doubts(view, package, use.name, module, stem)
         data = {"variable": use.name, "stem": stem}
         yield Diagnostic(use.at, known, package.name, data, "unset module" if module else "unset", doubts)
 
 
-def _doubts(view: TargetView, package: Package, variable: str, module: str, stem: str) -> tuple[Doubt, ...]:
+def _collect_doubts(view: TargetView, package: Package, variable: str, module: str, stem: str) -> tuple[Doubt, ...]:
     """What speaks against a linker that misses the library of an empty variable."""
-    providers = view.providers.pkgconfig(module) if module else view.cmake(stem)
+    providers = view.providers.find_pkgconfig(module) if module else view.find_cmake(stem)
     owners = {p.package or p.name for p in providers}
-    if not _compiled_with(view, package, variable, stem, owners) or _sets_others(view, package):
+    if not _is_compiled_with(view, package, variable, stem, owners) or _sets_others(view, package):
         return (Doubt.INCOMPLETE,)
     return (Doubt.LUCKY,) if _brings(view, package, providers[0].package) else ()
 
 
 def _brings(view: TargetView, package: Package, library: str) -> bool:
     """True where the package of another library that is found depends on this one's, so that it may pass it on."""
-    found = {p.package for f in package.build.found for p in view.cmake(f.name)[:1] if p.kind == "system"}
-    return any(library in view.apt.brought_by(name) for name in found - {library, ""})
+    found = {p.package for f in package.build.found for p in view.find_cmake(f.name)[:1] if p.kind == "system"}
+    return any(library in view.apt.list_added(name) for name in found - {library, ""})
 
 
 def _sets_others(view: TargetView, package: Package) -> bool:
@@ -122,22 +122,22 @@ def _sets_others(view: TargetView, package: Package) -> bool:
         f.how == "find_package"
         and f"Find{f.name}" not in MODULES
         and not view.is_package(f.name)
-        and variables(f.name) is None
+        and list_variables(f.name) is None
         for f in package.build.found
     )
 
 
-def _compiled_with(view: TargetView, package: Package, variable: str, stem: str, owners: set[str]) -> bool:
+def _is_compiled_with(view: TargetView, package: Package, variable: str, stem: str, owners: set[str]) -> bool:
     """True when a target that links the empty variable, and nothing that could stand for it, compiles the library's
     headers."""
     for target in package.build.targets:
         items = [link.item for link in target.links if link.how == "link"]
-        if f"${{{variable}}}" not in items or not view.certain(target.conditions):
+        if f"${{{variable}}}" not in items or not view.is_sure(target.conditions):
             continue
         if any("$" not in item and fold(stem) in fold(item) for item in items):
             continue
-        includes = (i for i in package.digest.includes if target.name in i.targets and view.certain(i.conditions))
-        if any((p.package or p.name) in owners for i in includes for p in view.header(i.path)[:1]):
+        includes = (i for i in package.digest.includes if target.name in i.targets and view.is_sure(i.conditions))
+        if any((p.package or p.name) in owners for i in includes for p in view.find_header(i.path)[:1]):
             return True
     return False
 

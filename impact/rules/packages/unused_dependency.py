@@ -56,9 +56,9 @@ def unused_dependency(view: TargetView, package: Package):
     if not shows_uses(package):
         return
     used = list_used_names(view, package)
-    debian = {p.package for need in view.needs(package) for p in need.providers}
+    debian = {p.package for need in view.list_needs(package) for p in need.providers}
     found = {f.name for f in package.build.found}
-    for name, kinds in view.declared(package).items():
+    for name, kinds in view.collect_declared(package).items():
         if name in used or not kinds & {"build", "exec"} or name.startswith(_SILENT) or name.endswith(_SILENT):
             continue
         if (
@@ -67,6 +67,8 @@ def unused_dependency(view: TargetView, package: Package):
             and any(name in link.item for t in package.build.targets for link in t.links)
         ):
             continue
-        if view.debian(name) & debian or (view.target.version(name) is None and name not in view.workspace.packages):
+        if view.list_debs(name) & debian or (
+            view.target.find_version(name) is None and name not in view.workspace.packages
+        ):
             continue
-        yield Diagnostic(view.manifest_place(package, name), name, package.name)
+        yield Diagnostic(view.find_place(package, name), name, package.name)

@@ -16,7 +16,7 @@ def list_used_names(view: TargetView, package: Package) -> frozenset[str]:
     exports, commands of CMake, or words of YAML and robot descriptions."""
     digest, build = package.digest, package.build
     return frozenset((
-        *(provider.name for need in view.needs(package) for provider in need.providers),
+        *(provider.name for need in view.list_needs(package) for provider in need.providers),
         *(name for made in build.generated for name, _ in made.dependencies),
         *(export.item for export in build.exports),
         *(f.type.split("/")[0] for i in digest.interfaces for s in i.definition.sections for f in s.fields),

@@ -24,7 +24,7 @@ Not reported
 """
 
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .clean_machine import doubts_of_chance
+from .clean_machine import collect_chance_doubts
 from .dependency_kinds import WrongKind, fix_kind, list_wrong_kinds
 
 _AS_DEPEND = "declare it as `<{tag}>`"
@@ -53,7 +53,7 @@ def _diagnose_build(view: TargetView, package: Package, wrong: WrongKind) -> Dia
     # rosdep installs run dependencies along, so only the order of a clean build suffers
     comes = (old or kinds <= {"exec", "build_export"}) and name not in view.workspace.packages and kinds != {"test"}
     doubts = (Doubt.DISPENSABLE if comes else Doubt.LATE,)
-    chance = doubts_of_chance(view, package, need)
+    chance = collect_chance_doubts(view, package, need)
     if Doubt.LUCKY not in chance:
         doubts = chance  # the build farm does not install it
     kind = "for tests" if kinds == {"test"} else "to run" if "exec" in kinds else "for dependants"

@@ -20,20 +20,20 @@ Not reported
 
 from ...model.workspace import Workspace
 from ..rule import rule
-from .offers import incompatible, meetings, qos_text
+from .offers import build_qos_text, iterate_qos_pairs, make_diagnostic
 
 
 @rule(
     scope="flow",
     severity="warning",
     preview=True,
-    texts=qos_text(
+    texts=build_qos_text(
         "asks for a deadline of {asked:g} s",
         "offers {offered:g} s",
         help="give the publisher a deadline of at most {asked:g} s",
     ),
 )
 def qos_deadline(workspace: Workspace):
-    for pair, offered, asked in meetings(workspace):
+    for pair, offered, asked in iterate_qos_pairs(workspace):
         if offered.deadline is not None and asked.deadline is not None and offered.deadline > asked.deadline:
-            yield incompatible(pair, offered=offered.deadline, asked=asked.deadline)
+            yield make_diagnostic(pair, offered=offered.deadline, asked=asked.deadline)

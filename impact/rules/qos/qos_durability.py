@@ -22,20 +22,20 @@ Not reported
 
 from ...model.workspace import Workspace
 from ..rule import rule
-from .offers import incompatible, meetings, qos_text
+from .offers import build_qos_text, iterate_qos_pairs, make_diagnostic
 
 
 @rule(
     scope="flow",
     severity="warning",
     preview=True,
-    texts=qos_text(
+    texts=build_qos_text(
         "asks for transient local durability",
         "is volatile",
         help="make the publisher transient local, or the subscriber volatile",
     ),
 )
 def qos_durability(workspace: Workspace):
-    for pair, offered, asked in meetings(workspace):
+    for pair, offered, asked in iterate_qos_pairs(workspace):
         if offered.durability == "volatile" and asked.durability == "transient_local":
-            yield incompatible(pair)
+            yield make_diagnostic(pair)

@@ -20,7 +20,7 @@ Not reported
 
 from ...model.workspace import Workspace
 from ..rule import rule
-from .offers import incompatible, meetings, qos_text
+from .offers import build_qos_text, iterate_qos_pairs, make_diagnostic
 
 
 @rule(
@@ -28,12 +28,12 @@ from .offers import incompatible, meetings, qos_text
     severity="warning",
     preview=True,
     texts={
-        "kind": qos_text(
+        "kind": build_qos_text(
             "asks for liveliness `manual_by_topic`",
             "offers `automatic`",
             help="make the publisher assert its liveliness (`manual_by_topic`), or the subscriber `automatic`",
         ),
-        "lease": qos_text(
+        "lease": build_qos_text(
             "asks for a liveliness lease of {asked:g} s",
             "offers {offered:g} s",
             help="give the publisher a lease of at most {asked:g} s",
@@ -41,8 +41,8 @@ from .offers import incompatible, meetings, qos_text
     },
 )
 def qos_liveliness(workspace: Workspace):
-    for pair, offered, asked in meetings(workspace):
+    for pair, offered, asked in iterate_qos_pairs(workspace):
         if offered.liveliness == "automatic" and asked.liveliness == "manual_by_topic":
-            yield incompatible(pair, "kind")
+            yield make_diagnostic(pair, "kind")
         elif offered.lease is not None and asked.lease is not None and offered.lease > asked.lease:
-            yield incompatible(pair, "lease", offered=offered.lease, asked=asked.lease)
+            yield make_diagnostic(pair, "lease", offered=offered.lease, asked=asked.lease)

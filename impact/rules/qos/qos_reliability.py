@@ -21,20 +21,20 @@ Not reported
 
 from ...model.workspace import Workspace
 from ..rule import rule
-from .offers import incompatible, meetings, qos_text
+from .offers import build_qos_text, iterate_qos_pairs, make_diagnostic
 
 
 @rule(
     scope="flow",
     severity="warning",
     preview=True,
-    texts=qos_text(
+    texts=build_qos_text(
         "asks for reliable delivery",
         "offers best effort",
         help="make the subscriber best effort (`SensorDataQoS`), or the publisher reliable",
     ),
 )
 def qos_reliability(workspace: Workspace):
-    for pair, offered, asked in meetings(workspace):
+    for pair, offered, asked in iterate_qos_pairs(workspace):
         if offered.reliability == "best_effort" and asked.reliability == "reliable":
-            yield incompatible(pair)
+            yield make_diagnostic(pair)

@@ -31,10 +31,10 @@ Not reported
     that a file of the workspace defines; packages with target_precompile_headers().
 """
 
-from ...model.cmake.build import for_tests
+from ...model.cmake.build import is_for_tests
 from ...model.cpp.lost_headers import LostHeader, LostHeaders
 from ...model.package import NeededHeader
-from ...targets.providers.message_headers import type_in
+from ...targets.providers.message_headers import parse_type
 from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, Together, rule
 
 _LOST = "`{name}` is used without `<{subject}>`, "
@@ -62,7 +62,7 @@ def missing_include(view: TargetView):
         precompiled = any(use.name == "target_precompile_headers" for use in package.build.uses)
         reported: set[tuple[str, str]] = set()
         for need in package.digest.needed_headers:
-            if need.role == "aside" or need.name in defined or not view.active(need.conditions):
+            if need.role == "aside" or need.name in defined or not view.applies(need.conditions):
                 continue
             if owner := _find_lacking_owner(view, package, need):
                 if ("", need.name) not in reported:
@@ -73,7 +73,7 @@ def missing_include(view: TargetView):
             lost = headers.find(need)
             if lost is None or precompiled or (need.at.path, lost.header) in reported:
                 continue
-            sure = places.compiles(need) and lost.sure and need.role == "build" and view.certain(need.conditions)
+            sure = places.compiles(need) and lost.sure and need.role == "build" and view.is_sure(need.conditions)
             if lost.standard and not lost.once and not (sure and lost.now):
                 continue
             reported.add((need.at.path, lost.header))
@@ -93,7 +93,7 @@ def missing_include(view: TargetView):
 
 def _find_lacking_owner(view: TargetView, package: Package, need: NeededHeader) -> str:
     """The other package of the workspace that has interfaces alone, and not the one that a type would be made from."""
-    made, workspace = type_in(need.name), view.workspace
+    made, workspace = parse_type(need.name), view.workspace
     owner = workspace.packages.get(made.package) if made is not None and made.ros == view.target.ros else None
     if made is None or owner is None or owner.name == package.name or not workspace.interface_names.get(owner.name):
         return ""
@@ -111,7 +111,7 @@ class _Places:
 
     def __init__(self, package: Package):
         sources = package.digest.source_targets
-        built = {t.name for t in package.build.targets if t.kind != "test" and not for_tests(t.conditions)}
+        built = {t.name for t in package.build.targets if t.kind != "test" and not is_for_tests(t.conditions)}
         self._compiled = {path for path, targets in sources if built.intersection(targets)}
         self._public = package.digest.public_headers
         self._offered = {path for path, _ in sources}.intersection(self._public)

@@ -24,7 +24,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...targets.version import at_least, compare
+from ...targets.version import compare, is_at_least
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 
 
@@ -45,7 +45,7 @@ from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
     },
 )
 def cmake_version(view: TargetView, package: Package):
-    cmake = view.target.library("cmake")
+    cmake = view.target.find_library("cmake")
     if not cmake:
         return
     text, at = package.build.minimum or ("", None)
@@ -54,7 +54,7 @@ def cmake_version(view: TargetView, package: Package):
     if low[:1].isdigit() and compare(low, cmake) > 0:
         yield Diagnostic(at, low, package.name, data, kind="newer")
         return
-    if low[:1].isdigit() and at_least(cmake, "4.0") and not at_least(high or low, "3.5"):
+    if low[:1].isdigit() and is_at_least(cmake, "4.0") and not is_at_least(high or low, "3.5"):
         yield Diagnostic(at, low, package.name, data, kind="older")
     yield from _list_features(view, package, cmake)
 
@@ -62,12 +62,12 @@ def cmake_version(view: TargetView, package: Package):
 def _list_features(view: TargetView, package: Package, cmake: str) -> Iterator[Diagnostic]:
     seen = set()
     for use in package.build.uses:
-        if use.kind != "feature" or use.name in seen or at_least(cmake, use.context):
+        if use.kind != "feature" or use.name in seen or is_at_least(cmake, use.context):
             continue
-        if not view.certain(use.conditions):
+        if not view.is_sure(use.conditions):
             continue
         name = use.name.removeprefix("Find")
-        if name != use.name and (view.providers.installed_cmake(name) or view.workspace.find_modules.get(name)):
+        if name != use.name and (view.providers.find_installed_cmake(name) or view.workspace.find_modules.get(name)):
             continue
         seen.add(use.name)
         yield Diagnostic(use.at, use.name, package.name, {"version": cmake, "since": use.context}, kind="feature")

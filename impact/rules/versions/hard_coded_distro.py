@@ -28,11 +28,11 @@ import re
 from collections.abc import Iterator
 
 from ...facts.distros import DistroFile
-from ...model.package import role_of_folder
+from ...model.package import find_folder_role
 from ...targets.changes import DISTROS
-from ...targets.distro.known import known_distros
+from ...targets.distro.known import list_known_distros
 from ...tree.paths import is_vendored
-from ..vocabulary import At, Diagnostic, Doubt, TargetView, Text, doubts_of_place, rule
+from ..vocabulary import At, Diagnostic, Doubt, TargetView, Text, list_place_doubts, rule
 
 
 @rule(
@@ -47,16 +47,16 @@ from ..vocabulary import At, Diagnostic, Doubt, TargetView, Text, doubts_of_plac
 def hard_coded_distro(view: TargetView) -> Iterator[Diagnostic]:
     for package in view:
         for path, file in package.digest.distros:
-            role = role_of_folder(path[len(package.path) :].lstrip("/")) or "run"
+            role = find_folder_role(path[len(package.path) :].lstrip("/")) or "run"
             yield from _list_uses(view, path, file, package.name, role)
     for path, file in view.workspace.outside.distro_scripts.items():
-        yield from _list_uses(view, path, file, "", role_of_folder(path) or "run")
+        yield from _list_uses(view, path, file, "", find_folder_role(path) or "run")
 
 
 def _list_uses(view: TargetView, path: str, file: DistroFile, package: str, role: str) -> Iterator[Diagnostic]:
     """The first use of each distro in a file."""
     own = view.target.distro
-    others = {known.name for known in known_distros() if known.ros == view.target.ros and known.name != own}
+    others = {known.name for known in list_known_distros() if known.ros == view.target.ros and known.name != own}
     if own not in DISTROS or own in file.words.split() or is_vendored(path) or role == "test":
         return
     # What lies beside a Dockerfile is copied into its image, whose distro is not the target's.
@@ -68,5 +68,5 @@ def _list_uses(view: TargetView, path: str, file: DistroFile, package: str, role
     for use in file.uses:
         if use.distro in others and not use.tested and use.distro not in reported:
             reported.add(use.distro)
-            doubts = (*doubts_of_place(view, role), Doubt.LATE)
+            doubts = (*list_place_doubts(view, role), Doubt.LATE)
             yield Diagnostic(At(path, use.line, use.column), use.text, package, {"distro": own}, doubts=doubts)

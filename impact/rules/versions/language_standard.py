@@ -25,9 +25,9 @@ Not reported
 """
 
 from ...model.standards import find_standards, may_be_raised, may_be_set_elsewhere
-from ...targets.providers.library import NeededStandard, default_standard, needed_standard, standard_year
+from ...targets.providers.library import NeededStandard, find_default_standard, find_needed_standard, get_year
 from ...targets.providers.standard import HEADER_SINCE
-from ...targets.version import at_least
+from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _HELP = "set(CMAKE_CXX_STANDARD {needed})"
@@ -45,35 +45,35 @@ _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{n
     },
 )
 def language_standard(view: TargetView):
-    default = default_standard(view.target)
+    default = find_default_standard(view.target)
     for package in view:
         if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto") or not package.digest.includes:
             continue
         if view.target.ros == 1:
-            yield from _ros1(view, package, default)
+            yield from _check_ros1(view, package, default)
         else:
-            yield from _ros2(view, package, default)
+            yield from _check_ros2(view, package, default)
 
 
-def _ros1(view: TargetView, package: Package, default: int | None):
+def _check_ros1(view: TargetView, package: Package, default: int | None):
     """What the package sets, else the compiler's default, against what is included."""
-    fixed = view.standard(package)
-    year = standard_year(fixed[0]) if fixed else default
+    fixed = view.find_standard(package)
+    year = get_year(fixed[0]) if fixed else default
     if year is None:
         return
     if not fixed and may_be_set_elsewhere(view, package):
         return
     told = set()
     # Qt's targets ask for C++11 themselves, as Qt does since 5.7 (its release notes).
-    raised = at_least(view.target.library("qt") or "5.7", "5.7")
+    raised = is_at_least(view.target.find_library("qt") or "5.7", "5.7")
     sure = bool(fixed) or not (raised and any(f.name.startswith(("Qt5", "Qt6")) for f in package.build.found))
     standards = find_standards(view, package)
     for include in package.digest.includes:
         have = max([year, *(standards[t] for t in include.targets if t in standards)])
-        if have >= 2020 or include.role != "build" or not include.targets or not view.certain(include.conditions):
+        if have >= 2020 or include.role != "build" or not include.targets or not view.is_sure(include.conditions):
             continue
-        need = needed_standard(view.target, include.path) or _of_library(include.path)
-        if need is None or need.package in told or standard_year(need.standard) <= have:
+        need = find_needed_standard(view.target, include.path) or _find_library_need(include.path)
+        if need is None or need.package in told or get_year(need.standard) <= have:
             continue
         if not need.package and (need.standard == 17 and not fixed):
             continue  # often beside std::experimental, under a test of the compiler
@@ -81,51 +81,51 @@ def _ros1(view: TargetView, package: Package, default: int | None):
         own = need.package in view.workspace.packages
         known = need.sure and sure and not own and not may_be_raised(view, package, include.targets)
         doubts = (known or Doubt.INCOMPLETE,)
-        data = _data(include.path, need, fixed[0] if fixed else have)
+        data = _build_data(include.path, need, fixed[0] if fixed else have)
         if fixed:
-            yield Diagnostic(fixed[1], _flag(fixed[0]), package.name, data, "set", doubts)
+            yield Diagnostic(fixed[1], _format_flag(fixed[0]), package.name, data, "set", doubts)
         else:
             data["platform"] = view.target.platform
-            yield Diagnostic(include.at, _flag(need.standard), package.name, data, "default", doubts)
+            yield Diagnostic(include.at, _format_flag(need.standard), package.name, data, "default", doubts)
 
 
-def _ros2(view: TargetView, package: Package, default: int | None):
+def _check_ros2(view: TargetView, package: Package, default: int | None):
     """A -std= flag stands where the compiler's default is all that linked targets ask for."""
-    fixed = view.standard(package)
+    fixed = view.find_standard(package)
     if not fixed or not package.build.standard_by_flag or default is None:
         return
-    have = standard_year(fixed[0])
-    own = {t.name: standard_year(t.standard) for t in package.build.targets if t.standard}
+    have = get_year(fixed[0])
+    own = {t.name: get_year(t.standard) for t in package.build.targets if t.standard}
     standards = find_standards(view, package)
     newest = view.newest
     for include in package.digest.includes:
-        if include.role != "build" or not include.targets or not view.certain(include.conditions):
+        if include.role != "build" or not include.targets or not view.is_sure(include.conditions):
             continue
         if any(own.get(t, 0) > have or standards.get(t, 0) > max(have, default) for t in include.targets):
             continue  # CMake writes a flag of its own behind
-        need = needed_standard(view.target, include.path)
+        need = find_needed_standard(view.target, include.path)
         if need is None or need.package in view.workspace.packages:
             continue
-        if standard_year(need.standard) > have and default >= standard_year(need.standard):
+        if get_year(need.standard) > have and default >= get_year(need.standard):
             doubts = (need.sure or Doubt.INCOMPLETE,)
             horizon = ""
         elif (
             newest is not None
-            and (later := needed_standard(newest, include.path))
+            and (later := find_needed_standard(newest, include.path))
             and (
-                standard_year(later.standard) > have
-                and (default_standard(newest) or 0) >= standard_year(later.standard)
+                get_year(later.standard) > have
+                and (find_default_standard(newest) or 0) >= get_year(later.standard)
             )
         ):
             need, doubts, horizon = later, (Doubt.UPCOMING,), view.horizon
         else:
             continue
-        data = _data(include.path, need, fixed[0], horizon)
-        yield Diagnostic(fixed[1], _flag(fixed[0]), package.name, data, "flag", doubts)
+        data = _build_data(include.path, need, fixed[0], horizon)
+        yield Diagnostic(fixed[1], _format_flag(fixed[0]), package.name, data, "flag", doubts)
         return
 
 
-def _data(path: str, need: NeededStandard, standard: int, horizon: str = "") -> dict[str, str | int]:
+def _build_data(path: str, need: NeededStandard, standard: int, horizon: str = "") -> dict[str, str | int]:
     """What the texts name. standard: as CMake writes it (98, 11), or its year."""
     return {
         "header": path if need.package else f"<{path}>",
@@ -137,11 +137,11 @@ def _data(path: str, need: NeededStandard, standard: int, horizon: str = "") -> 
     }
 
 
-def _flag(standard: int) -> str:
+def _format_flag(standard: int) -> str:
     return f"-std=c++{standard % 100:02d}"
 
 
-def _of_library(path: str) -> NeededStandard | None:
+def _find_library_need(path: str) -> NeededStandard | None:
     """What a header of the standard library needs; empty as a package."""
     standard = HEADER_SINCE.get(path)
     return NeededStandard(standard, "", "", True) if standard else None

@@ -22,7 +22,7 @@ Not reported
 """
 
 from ...model.cmake.build import FoundPackage
-from ...targets.providers.library import satisfies
+from ...targets.providers.library import check_version
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
@@ -35,7 +35,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 def library_version(view: TargetView, package: Package):
     for found in package.build.found:
         version = _find_refused(view, found)
-        if not version or not view.active(found.conditions) or found.name in view.workspace.packages:
+        if not version or not view.applies(found.conditions) or found.name in view.workspace.packages:
             continue
         # A second, weaker request beside it (`find_package(OpenCV 4 QUIET)` then 3) means that both are handled.
         others = [f for f in package.build.found if f.name == found.name and f is not found]
@@ -44,7 +44,7 @@ def library_version(view: TargetView, package: Package):
         data = {"version": version, "requested": found.version}
         doubts = (
             found.required or Doubt.DISPENSABLE,
-            view.certain(found.conditions) or Doubt.CONDITIONAL,
+            view.is_sure(found.conditions) or Doubt.CONDITIONAL,
             not view.unknown_contents.is_likely(package, found.name) or Doubt.INCOMPLETE,
         )
         yield Diagnostic(found.at, found.name, package.name, data, doubts=doubts)
@@ -52,5 +52,5 @@ def library_version(view: TargetView, package: Package):
 
 def _find_refused(view: TargetView, found: FoundPackage) -> str:
     """The version of a library that the target has, where it is not what is asked for."""
-    answer = satisfies(view.target, found.name, found.version, found.exact) if found.version else None
+    answer = check_version(view.target, found.name, found.version, found.exact) if found.version else None
     return "" if answer is None or answer.holds else answer.version

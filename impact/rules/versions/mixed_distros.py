@@ -30,7 +30,7 @@ from functools import cache
 
 from ...facts.distros import ContainerPart, DistroUse
 from ...targets.distro.distro import DistroTarget
-from ...targets.distro.known import known_distros
+from ...targets.distro.known import list_known_distros
 from ...targets.resolve import parse_image
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
@@ -45,7 +45,7 @@ from ..vocabulary import At, Diagnostic, Text, Workspace, rule
     },
 )
 def mixed_distros(workspace: Workspace) -> Iterator[Diagnostic]:
-    names = {known.name for known in known_distros()}
+    names = {known.name for known in list_known_distros()}
     for path, file in workspace.outside.containers.items():
         reported: set[str] = set()
         for part in file.parts:
@@ -61,9 +61,9 @@ def _find_distro(part: ContainerPart) -> str:
     """The one distro that a part runs with; empty where that is not known."""
     if part.open:
         return ""
-    images = (parse_image(image, known_distros()) for image in part.images)
+    images = (parse_image(image, list_known_distros()) for image in part.images)
     found = {image[0] for image in images if image is not None}
-    names = {known.name for known in known_distros()}
+    names = {known.name for known in list_known_distros()}
     distros = {distro for distro in part.distros if distro in names}
     both = found | distros
     return next(iter(both)) if len(both) == 1 and (found or not part.images) else ""
@@ -71,23 +71,23 @@ def _find_distro(part: ContainerPart) -> str:
 
 def _check_use(path: str, use: DistroUse, own: str) -> Iterator[Diagnostic]:
     at = At(path, use.line, use.column)
-    if own and use.distro != own and _target(use.distro).platform != _target(own).platform:
+    if own and use.distro != own and _make_target(use.distro).platform != _make_target(own).platform:
         data = {"distro": own, "instead": use.text.replace(use.distro, own, 1)}
         yield Diagnostic(at, use.text, data=data)
     elif use.text.startswith("ros-") and use.distro != "rolling":
         name = use.text.removeprefix(f"ros-{use.distro}-")
-        target = _target(use.distro)
+        target = _make_target(use.distro)
         underscored = name.replace("-", "_")
-        last = target.last_distro(underscored)
-        if last and name not in _debian_names(use.distro):
+        last = target.find_last_distro(underscored)
+        if last and name not in _list_debian_names(use.distro):
             yield Diagnostic(at, use.text, data={"distro": use.distro, "name": underscored, "last": last}, kind="never")
 
 
 @cache
-def _target(distro: str) -> DistroTarget:
+def _make_target(distro: str) -> DistroTarget:
     return DistroTarget(distro)
 
 
 @cache
-def _debian_names(distro: str) -> frozenset[str]:
-    return frozenset(name.replace("_", "-") for name in _target(distro).released_names())
+def _list_debian_names(distro: str) -> frozenset[str]:
+    return frozenset(name.replace("_", "-") for name in _make_target(distro).list_released())

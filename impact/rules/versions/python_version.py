@@ -28,7 +28,7 @@ from collections.abc import Iterator
 from ...facts.python.source import NO_PYTHON
 from ...targets.distro.distro import DistroTarget
 from ..python_files import Refused, report_refused
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, doubts_of_place, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 
 
 @rule(
@@ -70,7 +70,7 @@ def python_version(view: TargetView):
     for package in view if view.target.python_major == 2 else ():
         others = set(package.digest.scripts) - set(package.digest.plain_scripts)  # which may be for Python 3
         for use in package.digest.syntax:
-            doubts = doubts_of_place(view, use.role)
+            doubts = list_place_doubts(view, use.role)
             if use.needs not in (2, NO_PYTHON) and use.plain:
                 yield Diagnostic(use.at, use.what, package.name, kind="python 3", doubts=doubts)
             elif use.needs == 0 and use.what.startswith("`print`") and not others:

@@ -34,6 +34,6 @@ from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 def refused_distro(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     for at, message, conditions in package.build.stops:
         asks = any("ROS_DISTRO" in condition.text for condition in conditions)
-        if asks and view.certain(conditions):
+        if asks and view.is_sure(conditions):
             data = {"distro": view.target.distro, "message": f"`{message}`" if message else "message(FATAL_ERROR)"}
             yield Diagnostic(at, "FATAL_ERROR", package.name, data)

@@ -25,7 +25,7 @@ Not reported
 from collections.abc import Iterator
 
 from ...targets.distro.distro import DistroTarget
-from ...targets.providers.stdlib import ever_stdlib, stdlib, stood_in_for, successor_of
+from ...targets.providers.stdlib import find_successor, has_substitute, is_in_stdlib, was_ever_in_stdlib
 from ..python_files import Refused, report_refused
 from ..vocabulary import Doubt, Package, TargetView, Text, rule
 
@@ -41,11 +41,11 @@ from ..vocabulary import Doubt, Package, TargetView, Text, rule
 def removed_python_module(view: TargetView):
     def find(package: Package, target: DistroTarget) -> Iterator[Refused]:
         for item in package.digest.imports:
-            if not view.certain(item.conditions) or item.module.split(".")[0] in view.workspace.modules:
+            if not view.is_sure(item.conditions) or item.module.split(".")[0] in view.workspace.modules:
                 continue
-            if ever_stdlib(item.module) and not stdlib(item.module, target.python, 3):
-                doubts = (Doubt.LATE,) if item.lazy or stood_in_for(item.module) else ()
-                new = successor_of(item.module)
+            if was_ever_in_stdlib(item.module) and not is_in_stdlib(item.module, target.python, 3):
+                doubts = (Doubt.LATE,) if item.lazy or has_substitute(item.module) else ()
+                new = find_successor(item.module)
                 yield Refused(item, item.module, replacement=new, doubts=doubts, conditions=item.conditions)
 
     yield from report_refused(view, find)

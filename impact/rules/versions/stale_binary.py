@@ -35,7 +35,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from ....edges.console import counted
+from ....edges.console import format_count
 from ...model.build_order import build_order
 from ..vocabulary import At, Diagnostic, TargetView, Text, rule
 
@@ -76,7 +76,7 @@ def stale_binary(view: TargetView, installed: InstallSpace, shelf: Shelf):
     for binary in installed.binaries:
         if shelf.machine and binary.elf.machine != shelf.machine:
             continue
-        for missing in _missing(view, binary, installed, shelf):
+        for missing in _find_missing(view, binary, installed, shelf):
             askers.setdefault(missing, {}).setdefault(binary.package, []).append(binary)
     stale = {package for by_package in askers.values() for package in by_package if package}
     order = {package: place for place, package in enumerate(build_order(view))} if len(stale) > 1 else {}
@@ -85,14 +85,14 @@ def stale_binary(view: TargetView, installed: InstallSpace, shelf: Shelf):
     for missing, by_package in askers.items():
         packages = [package for package in ordered if package in by_package]
         for package, binaries in by_package.items():
-            at = _place(view, package, binaries, installed)
-            data = {**_data(missing, binaries, shelf), **_remedy(missing, packages, shelf)}
+            at = _find_place(view, package, binaries, installed)
+            data = {**_build_data(missing, binaries, shelf), **_build_remedy(missing, packages, shelf)}
             gone = shelf.gone and missing.there
             kind = "symbol" if missing.symbols >= 0 else "gone" if gone else "missing"
             yield Diagnostic(at, missing.subject, package, data, kind)
 
 
-def _missing(view: TargetView, binary: Binary, installed: InstallSpace, shelf: Shelf) -> Iterator[_Missing]:
+def _find_missing(view: TargetView, binary: Binary, installed: InstallSpace, shelf: Shelf) -> Iterator[_Missing]:
     needed = [soname for soname in binary.elf.needed if soname not in installed.libraries]
     absent = set()
     for soname in needed:
@@ -101,34 +101,34 @@ def _missing(view: TargetView, binary: Binary, installed: InstallSpace, shelf: S
             view.unresolved.setdefault("shared library", set()).add(soname)
         elif not there:
             absent.add(soname)
-            yield _Missing(soname, soname, shelf.instead(soname))
+            yield _Missing(soname, soname, shelf.describe_others(soname))
     for asked in binary.elf.asked:
         if asked.library in absent or asked.library not in needed:
             continue
         lacks = shelf.lacks(asked, binary.elf, binary.folder)
         if lacks:
             yield _Missing(lacks[-1].version, asked.library, f"`{lacks[-1].there}`" if lacks[-1].there else "")
-    for lost in () if absent else shelf.lost(binary.elf, binary.folder, installed.places) or ():
+    for lost in () if absent else shelf.find_lost_symbols(binary.elf, binary.folder, installed.places) or ():
         yield _Missing(lost.name, lost.library, "", lost.more)
 
 
-def _data(missing: _Missing, binaries: list[Binary], shelf: Shelf) -> dict[str, str]:
+def _build_data(missing: _Missing, binaries: list[Binary], shelf: Shelf) -> dict[str, str]:
     more = len(binaries) - 1
     return {
         "file": min(binary.path for binary in binaries),
-        "files": counted(more, "more file") if more else "",
+        "files": format_count(more, "more file") if more else "",
         "library": missing.library if missing.library != missing.subject else "",
-        "symbols": counted(missing.symbols, "more symbol") if missing.symbols > 0 else "",
+        "symbols": format_count(missing.symbols, "more symbol") if missing.symbols > 0 else "",
         "there": f"{shelf.name} has {missing.there}" if missing.there else shelf.nothing,
     }
 
 
-def _remedy(missing: _Missing, packages: list[str], shelf: Shelf) -> dict[str, str]:
+def _build_remedy(missing: _Missing, packages: list[str], shelf: Shelf) -> dict[str, str]:
     order = " in this order" if len(packages) > 1 else ""
-    return {"debian": shelf.package(missing.subject) or "", "rebuilt": f"{', '.join(packages) or 'it'}{order}"}
+    return {"debian": shelf.find_package(missing.subject) or "", "rebuilt": f"{', '.join(packages) or 'it'}{order}"}
 
 
-def _place(view: TargetView, package: str, binaries: list[Binary], installed: InstallSpace) -> At:
+def _find_place(view: TargetView, package: str, binaries: list[Binary], installed: InstallSpace) -> At:
     """The package's manifest; of a package that is not in the workspace, the first file itself."""
     known = view.workspace.packages.get(package)
     if known is not None:

@@ -50,21 +50,21 @@ _BOUNDS = {
 )
 def unsatisfied_version(view: TargetView, package: Package):
     seen = set()
-    for dependency in view.dependencies(package):
+    for dependency in view.list_dependencies(package):
         if not dependency.bounds or dependency.name in seen:
             continue
         here = view.workspace.packages.get(dependency.name)
         version = (
             here.manifest.version
             if here
-            else view.target.version(dependency.name) or view.target.library(dependency.name)
+            else view.target.find_version(dependency.name) or view.target.find_library(dependency.name)
         )
         if not version:
             continue
         if bound := _find_broken(dependency, version):
             seen.add(dependency.name)
             data, doubts = {"version": version, "bound": bound}, (Doubt.DISTURBS,) if here else ()
-            yield Diagnostic(view.manifest_place(package, dependency), dependency.name, package.name, data, "", doubts)
+            yield Diagnostic(view.find_place(package, dependency), dependency.name, package.name, data, "", doubts)
         elif not here and (later := _find_later(view, package, dependency)) is not None:
             seen.add(dependency.name)
             yield later
@@ -80,10 +80,10 @@ def _find_broken(dependency: Dependency, version: str) -> str:
 def _find_later(view: TargetView, package: Package, dependency: Dependency) -> Upcoming | None:
     """The first update of the distro whose version a bound does not allow."""
     for ahead in view.updates:
-        version = ahead.target.version(dependency.name) or ""
+        version = ahead.target.find_version(dependency.name) or ""
         if version and (bound := _find_broken(dependency, version)):
             data = {"version": version, "bound": bound, "horizon": ahead.name}
-            at = view.manifest_place(package, dependency)
+            at = view.find_place(package, dependency)
             found = Diagnostic(at, dependency.name, package.name, data, "upcoming")
             return Upcoming(found, dependency.name, ahead, (at.path, at.line))
     return None

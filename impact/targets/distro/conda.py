@@ -14,24 +14,24 @@ _Rows = dict[str, dict[str, str]]
 
 
 @cache
-def _table() -> dict[str, _Rows]:
+def _load_table() -> dict[str, _Rows]:
     return read_table(DATA / "conda.json", dict[str, _Rows])
 
 
-def libraries_of(platform: str, distro: str, day: str) -> dict[str, tuple[str, str]]:
+def find_libraries(platform: str, distro: str, day: str) -> dict[str, tuple[str, str]]:
     """The version of each library on a day, with the channel that states it; empty for other platforms. Raises
     SnapshotError."""
     if platform not in CHANNELS:
         return {}
     found: dict[str, tuple[str, str]] = {}
     for channel in ("conda-forge", distro) if platform == "robostack" else ("conda-forge",):
-        for name, rows in _table().get(channel, {}).items():
-            version = _last(rows, day)
+        for name, rows in _load_table().get(channel, {}).items():
+            version = _find_last_version(rows, day)
             if version:
                 found[name] = version, channel
     return found
 
 
-def _last(rows: Mapping[str, str], day: str) -> str:
+def _find_last_version(rows: Mapping[str, str], day: str) -> str:
     """The version that stands on a day, of versions by the first day of each, oldest first."""
     return next((version for since, version in reversed([*rows.items()]) if since <= day), "")

@@ -16,18 +16,26 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ....edges.console import UserError
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...conditions import Environment
 from ...conditions.manifest import evaluate
 from .. import snapshot as snapshots
-from ..platform import library_name, normal_platform, python_minor
+from ..platform import normalize_library_name, normalize_platform, parse_python_minor
 from ..snapshot import KINDS, Snapshot
 from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution
-from ..version import number_of
-from .conda import CHANNELS, libraries_of
-from .known import _upstream, day_of, did_you_mean, end_of_day, find_distro, known_distros, systems_of_rosdep
-from .rosdep import decode_rule, resolve_rule, split_platform, texts_of
+from ..version import parse_number
+from .conda import CHANNELS, find_libraries
+from .known import (
+    _strip_packaging,
+    did_you_mean,
+    end_of_day,
+    find_distro,
+    format_day,
+    list_known_distros,
+    list_rosdep_systems,
+)
+from .rosdep import decode_rule, iterate_texts, resolve_rule, split_platform
 
 if TYPE_CHECKING:
     from ..availability import Availabilities, Availability, Symbol
@@ -63,9 +71,9 @@ class _Released(NamedTuple):
 _WITH_KINDS = ("build_export", "buildtool_export", "exec")
 
 
-def version_key(version: str) -> list[int]:
+def make_version_key(version: str) -> list[int]:
     """Numbers of a version, for ordering: `2.10.1-1` → [2, 10, 1, 1]."""
-    return [number_of(part) for part in re.findall(r"\d+", version)]
+    return [parse_number(part) for part in re.findall(r"\d+", version)]
 
 
 # Letters of KINDS for what is installed along with a package.
@@ -82,7 +90,7 @@ def _read_released(data: Snapshot, distro: int, cut: int) -> Mapping[str, _Relea
     """The packages that a distro has at a time, by name. Targets of one process that ask for the same share it. Raises
     SnapshotError."""
     found: dict[str, _Released] = {}
-    for repository, ts, version, names in data.rows(
+    for repository, ts, version, names in data.fetch(
         "SELECT r.repository, max(r.ts), r.version, p.names FROM release r"
         " LEFT JOIN packages p ON p.id = r.packages WHERE r.distro = ? AND r.ts <= ? GROUP BY r.repository",
         (distro, cut),
@@ -131,22 +139,22 @@ class DistroTarget:
         data: Snapshot | None = None,
         rules: Mapping[str, Any] | None = None,
     ):
-        self._data = data or snapshots.default()
+        self._data = data or snapshots.load_snapshot()
         self._neighbours: dict[str, DistroTarget] = {}
         self._asked = _Recipe(distro, date, platform, dict(versions or {}), name)
         self._rules = dict(rules or {})
         known = find_distro(distro, self._data)
         if known is None:
-            raise TargetError(_unknown_distro(distro, self._data))
+            raise TargetError(_describe_unknown_distro(distro, self._data))
         self._id, self.ros, self.python_major = known.number, known.ros, known.python
         self.distro = distro
         self.data_date = self._data.date
         self._overrides = {key: str(value) for key, value in (versions or {}).items()}
-        self._own_libraries = {library_name(key): value for key, value in self._overrides.items()}
+        self._own_libraries = {normalize_library_name(key): value for key, value in self._overrides.items()}
         self._facts, self.end_of_life, self.lts = known.facts, known.end_of_life, known.lts
         notes: list[str] = []
         self.date = self._place_date(date, notes)
-        self._cut, self.approximate = self._availability()
+        self._cut, self.approximate = self._find_commit_time()
         self._rule_ts = end_of_day(self.date)
         self.platform = self._choose_platform(platform, notes)
         self.notes = tuple(notes)
@@ -157,12 +165,12 @@ class DistroTarget:
         # A target travels to worker processes as its recipe; each opens the shared cache file itself.
         return DistroTarget, (*self._asked, None, self._rules)
 
-    def identity(self) -> str:
+    def compute_identity(self) -> str:
         """Differs whenever the target, or the data that answers for it, does."""
         known = (self.name, self.distro, self.date, self._cut, self.platform, self._overrides, self._rules)
-        return repr((tuple(self._asked), *known, snapshots.data_stamp()))
+        return repr((tuple(self._asked), *known, snapshots.compute_data_stamp()))
 
-    def changed(
+    def copy_with_changes(
         self,
         date: str | None = None,
         platform: str | None = None,
@@ -175,7 +183,7 @@ class DistroTarget:
         recipe = _Recipe(own.distro, date or own.date, platform or own.platform, mixed, name or own.name)
         return DistroTarget(*recipe, self._data, self._rules)
 
-    def surrounded(self, versions: Mapping[str, str], rules: Mapping[str, Any]) -> DistroTarget:
+    def add_surroundings(self, versions: Mapping[str, str], rules: Mapping[str, Any]) -> DistroTarget:
         """This target with packages and rosdep rules that its machine has besides the public ones. A version that the
         target itself gives for a package stays."""
         recipe = self._asked._replace(versions={**versions, **self._asked.versions})
@@ -188,18 +196,18 @@ class DistroTarget:
             day = datetime.date.fromisoformat(str(date)).isoformat()
         except ValueError:
             raise TargetError(f"`{str(date)[:40]}` is no date: write it as in `{self.distro}@2024-03-01`") from None
-        first = self._data.row("SELECT min(ts) FROM release WHERE distro = ?", (self._id,))
-        if first and first[0] is not None and day < day_of(first[0]):
-            moved = day_of(first[0])
+        first = self._data.query_row("SELECT min(ts) FROM release WHERE distro = ?", (self._id,))
+        if first and first[0] is not None and day < format_day(first[0]):
+            moved = format_day(first[0])
             notes.append(f"{self.distro} had no release on {day}: moved to its first, {moved}")
             return moved
         if day > self.data_date:
             notes.append(f"the distro data ends on {self.data_date}: {day} is answered as of then")
         return day
 
-    def _availability(self) -> tuple[int, bool]:
+    def _find_commit_time(self) -> tuple[int, bool]:
         """The rosdistro commit time that stands on this day, and whether that is approximate."""
-        sync = self._data.row(
+        sync = self._data.query_row(
             "SELECT cut FROM sync WHERE distro = ? AND day <= ? ORDER BY day DESC LIMIT 1", (self._id, self.date)
         )
         return (sync[0], False) if sync else (end_of_day(self.date), True)
@@ -207,39 +215,39 @@ class DistroTarget:
     def _choose_platform(self, platform: str | None, notes: list[str]) -> str:
         """The platform asked for, else the main one that the synced packages were built for."""
         if platform:
-            return normal_platform(platform)
-        built_for, now = self._main_platform(self._cut), self._main_platform(end_of_day(self.date))
+            return normalize_platform(platform)
+        built_for, now = self._find_main_platform(self._cut), self._find_main_platform(end_of_day(self.date))
         if built_for != now:
             notes.append(
                 f"{self.distro} had moved to {now}, not yet synced there: answered as of its last on {built_for}"
             )
         return built_for
 
-    def _main_platform(self, ts: int) -> str:
-        row = self._data.row(
+    def _find_main_platform(self, ts: int) -> str:
+        row = self._data.query_row(
             "SELECT names FROM platforms WHERE distro = ? AND ts <= ? ORDER BY ts DESC LIMIT 1", (self._id, ts)
-        ) or self._data.row("SELECT names FROM platforms WHERE distro = ? ORDER BY ts LIMIT 1", (self._id,))
+        ) or self._data.query_row("SELECT names FROM platforms WHERE distro = ? ORDER BY ts LIMIT 1", (self._id,))
         supported = row[0].split(",") if row and row[0] else []
         if self._facts and (self._facts.platform in supported or not supported):
             return self._facts.platform
         return supported[0] if supported else ""
 
-    @cached_method
-    def _packages(self) -> Mapping[str, _Released]:
+    @cache_method
+    def _load_packages(self) -> Mapping[str, _Released]:
         return _read_released(self._data, self._id, self._cut)
 
-    @cached_method
-    def version(self, package: str) -> str | None:
+    @cache_method
+    def find_version(self, package: str) -> str | None:
         """Version of a released ROS package on this target (`2.0.1`), None when it is not there."""
         if package in self._overrides and self._is_package(package):
             return self._overrides[package] or None
-        released = self._packages().get(package)
-        return _upstream(released.version) if released else None
+        released = self._load_packages().get(package)
+        return _strip_packaging(released.version) if released else None
 
-    @cached_method
-    def released_names(self) -> frozenset[str]:
+    @cache_method
+    def list_released(self) -> frozenset[str]:
         """All packages released here, overrides included."""
-        names = set(self._packages())
+        names = set(self._load_packages())
         for name, version in self._overrides.items():
             if self._is_package(name):
                 names.add(name) if version else names.discard(name)
@@ -247,48 +255,48 @@ class DistroTarget:
 
     def _is_package(self, name: str) -> bool:
         """Whether an override means a ROS package: one released ever, or a name of no platform library."""
-        return self.ever_released(name) or library_name(name) not in self._all_libraries()
+        return self.was_ever_released(name) or normalize_library_name(name) not in self._list_all_libraries()
 
-    def _all_libraries(self) -> frozenset[str]:
-        return self._data.names("library")
+    def _list_all_libraries(self) -> frozenset[str]:
+        return self._data.list_values("library")
 
-    def ever_released(self, package: str) -> bool:
+    def was_ever_released(self, package: str) -> bool:
         """True when any distro at any date has released a package of this name."""
-        return package in self._data.names("package")
+        return package in self._data.list_values("package")
 
-    def history(self, package: str) -> tuple[tuple[str, str | None], ...]:
+    def list_releases(self, package: str) -> tuple[tuple[str, str | None], ...]:
         """(day, version) of every release of a package in this distro, oldest first; version None: dropped."""
-        return tuple((day_of(ts), version) for ts, version in self._steps(package))
+        return tuple((format_day(ts), version) for ts, version in self._list_steps(package))
 
-    @cached_method
-    def arrivals(self, package: str) -> tuple[tuple[str, str | None], ...]:
+    @cache_method
+    def list_arrivals(self, package: str) -> tuple[tuple[str, str | None], ...]:
         """The same with the days on which the versions could be had: those of the sync that brought each, and before
         the distro's first known sync of the commit. What no sync has brought yet is left out; of versions that one
         sync brought, the last counts."""
-        syncs = self._data.rows("SELECT day, cut FROM sync WHERE distro = ? ORDER BY day", (self._id,))
+        syncs = self._data.fetch("SELECT day, cut FROM sync WHERE distro = ? ORDER BY day", (self._id,))
         # Commits up to the day before the first known sync were available on their own day, as far as is known.
         early = end_of_day(syncs[0][0]) - 86400 if syncs else None
         days: dict[str, str | None] = {}
-        for ts, version in self._steps(package):
+        for ts, version in self._list_steps(package):
             if early is None or ts <= early:
-                days[day_of(ts)] = version
+                days[format_day(ts)] = version
             elif day := next((day for day, cut in syncs if cut >= ts), ""):
                 days[day] = version
         return tuple(days.items())
 
-    def _steps(self, package: str) -> list[tuple[int, str | None]]:
+    def _list_steps(self, package: str) -> list[tuple[int, str | None]]:
         """(moment, version) of every release of a package in this distro."""
         events = []
-        for repository in self._homes(package):
+        for repository in self._list_repositories(package):
             held = False
-            for ts, version, names in self._data.rows(
+            for ts, version, names in self._data.fetch(
                 "SELECT r.ts, r.version, p.names FROM release r LEFT JOIN packages p ON p.id = r.packages"
                 " WHERE r.distro = ? AND r.repository = ? ORDER BY r.ts",
                 (self._id, repository),
             ):
                 here = version is not None and package in names.split(" ")
                 if here or held:
-                    events.append((ts, not here, _upstream(version) if version and here else None))
+                    events.append((ts, not here, _strip_packaging(version) if version and here else None))
                 held = here
         events.sort(key=lambda event: event[:2])
         steps: list[tuple[int, str | None]] = []
@@ -302,25 +310,25 @@ class DistroTarget:
             last = (ts, version)
         return steps
 
-    def _homes(self, package: str) -> list[int]:
+    def _list_repositories(self, package: str) -> list[int]:
         return [
             repository
-            for (repository,) in self._data.rows(
+            for (repository,) in self._data.fetch(
                 "SELECT h.repository FROM home h JOIN package p ON p.id = h.package WHERE p.name = ? AND h.distro = ?",
                 (package, self._id),
             )
         ]
 
-    def since(self, package: str) -> str:
+    def find_first_day(self, package: str) -> str:
         """ISO day of the package's first release in this distro, empty when it never was; the commit's day."""
-        steps = self.history(package)
+        steps = self.list_releases(package)
         return steps[0][0] if steps else ""
 
-    def repository(self, package: str) -> tuple[str, str, str] | None:
-        released = self._packages().get(package)
+    def find_repository(self, package: str) -> tuple[str, str, str] | None:
+        released = self._load_packages().get(package)
         if released is None:
             return None
-        row = self._data.row(
+        row = self._data.query_row(
             "SELECT n.name, u.text, s.branch FROM repository n"
             " LEFT JOIN source s ON s.repository = n.id AND s.distro = ? AND s.ts <= ?"
             " LEFT JOIN url u ON u.id = s.url WHERE n.id = ? ORDER BY s.ts DESC LIMIT 1",
@@ -330,115 +338,115 @@ class DistroTarget:
 
     @cached_property
     def knows_manifests(self) -> bool:
-        row = self._data.row("SELECT 1 FROM manifest WHERE distro = ? LIMIT 1", (self._id,))
+        row = self._data.query_row("SELECT 1 FROM manifest WHERE distro = ? LIMIT 1", (self._id,))
         return row is not None
 
-    @cached_method
-    def dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+    @cache_method
+    def list_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         """What the released package declares, None when no manifest of it is known in this distro.
 
         Where this very version's manifest is not known, the nearest earlier one stands, else the nearest later one.
         """
-        manifest = self._manifest(package)
+        manifest = self._find_manifest(package)
         if manifest is None:
             return None
         return tuple(found for condition, found in _read_entries(manifest[0]) if not condition or self.holds(condition))
 
-    def _manifests(self, package: str) -> list[tuple[list[int], str, str]]:
+    def _list_manifests(self, package: str) -> list[tuple[list[int], str, str]]:
         """What is known of the manifests of a package in this distro, by their versions, oldest first: dependencies as
         they are stored, and the build type."""
-        rows = self._data.rows(
+        rows = self._data.fetch(
             "SELECT m.version, d.entries, m.build_type FROM manifest m JOIN package p ON p.id = m.package"
             " LEFT JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND m.distro = ?",
             (package, self._id),
         )
-        keyed = [(version_key(known), entries or "", build or "") for known, entries, build in rows]
+        keyed = [(make_version_key(known), entries or "", build or "") for known, entries, build in rows]
         return sorted(keyed, key=itemgetter(0))
 
-    def _manifest(self, package: str) -> tuple[str, str] | None:
-        version = self.version(package)
-        known = self._manifests(package) if version is not None else []
+    def _find_manifest(self, package: str) -> tuple[str, str] | None:
+        version = self.find_version(package)
+        known = self._list_manifests(package) if version is not None else []
         if version is None or not known:
             return None
-        wanted = version_key(version)
+        wanted = make_version_key(version)
         _, entries, build = next((row for row in reversed(known) if row[0] <= wanted), known[0])
         return entries, build
 
-    def later_dependencies(self, package: str) -> frozenset[str]:
+    def list_later_dependencies(self, package: str) -> frozenset[str]:
         """Names that come along with the next later version whose manifest is known here, where this very version's is
         not known: what dependencies() may lack."""
-        version = self.version(package)
-        wanted = version_key(version or "")
-        known = [(of, entries) for of, entries, _ in self._manifests(package) if of >= wanted] if version else []
+        version = self.find_version(package)
+        wanted = make_version_key(version or "")
+        known = [(of, entries) for of, entries, _ in self._list_manifests(package) if of >= wanted] if version else []
         return _come_along(known[0][1]) if known and known[0][0] != wanted else frozenset()
 
     def build_type(self, package: str) -> str:
         """`ament_cmake`, `ament_python`, `catkin`, `cmake` ...; empty when not known or not said."""
-        manifest = self._manifest(package)
+        manifest = self._find_manifest(package)
         return manifest[1] if manifest else ""
 
-    def newest(self) -> DistroTarget | None:
+    def find_newest(self) -> DistroTarget | None:
         """The newest long-term distro of this generation, None when this distro is it or newer."""
-        return _newest(self.distro, self.date if self.distro == "rolling" else "", self._data)
+        return _find_newest(self.distro, self.date if self.distro == "rolling" else "", self._data)
 
-    def in_testing(self) -> DistroTarget | None:
+    def find_testing(self) -> DistroTarget | None:
         """The same distro with what has been released on its day and waits for the next sync, which its build farm
         builds against already; None when nothing waits, or syncs are not known."""
         if self.approximate or self._cut >= end_of_day(self.date):
             return None
-        found = self.changed()
+        found = self.copy_with_changes()
         found._cut = end_of_day(self.date)
         return found
 
-    def updated(self) -> DistroTarget | None:
+    def find_updated(self) -> DistroTarget | None:
         """The same distro as of the data's newest day, None when this is it."""
         if self.date >= self.data_date and not self._overrides:
             return None
         return DistroTarget(self.distro, data=self._data)
 
-    def similar_dependencies(self, package: str) -> tuple[ReleasedDependency, ...] | None:
+    def list_similar(self, package: str) -> tuple[ReleasedDependency, ...] | None:
         """What the package declares in the nearest distro of the same generation whose manifest of it is known.
 
         For distros whose own manifests are not: what rests on it is likely, not sure.
         """
-        for neighbour in self._near(package):
-            if neighbour.knows_manifests and (found := neighbour.dependencies(package)) is not None:
+        for neighbour in self._iterate_near_distros(package):
+            if neighbour.knows_manifests and (found := neighbour.list_dependencies(package)) is not None:
                 return found
         return None
 
-    def possible_dependencies(self, package: str) -> frozenset[str]:
+    def list_possible(self, package: str) -> frozenset[str]:
         """Names that come along with a package in some version of some distro of this generation.
 
         Conditions count as held: this is what the package may bring where its own manifest is not known.
         """
-        rows = self._data.rows(
+        rows = self._data.fetch(
             "SELECT DISTINCT d.entries FROM manifest m JOIN package p ON p.id = m.package JOIN distro o ON"
             " o.id = m.distro JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND o.ros = ?",
             (package, self.ros),
         )
         return frozenset().union(*(_come_along(entries) for (entries,) in rows))
 
-    def known_build_types(self, package: str) -> frozenset[str]:
+    def list_build_types(self, package: str) -> frozenset[str]:
         """Every build type that a package is known to have had in a distro of this generation."""
-        rows = self._data.rows(
+        rows = self._data.fetch(
             "SELECT DISTINCT m.build_type FROM manifest m JOIN package p ON p.id = m.package JOIN distro o ON"
             " o.id = m.distro WHERE p.name = ? AND o.ros = ?",
             (package, self.ros),
         )
         return frozenset(build or "" for (build,) in rows)
 
-    def other_generation(self, package: str) -> bool:
+    def is_other_generation(self, package: str) -> bool:
         """True when distros have released a package of this name, and all of them are of the other ROS."""
-        return self.ever_released(package) and not self._distros_with(package)
+        return self.was_ever_released(package) and not self._list_distros_with(package)
 
-    def similar_build_type(self, package: str) -> str:
+    def find_similar_build_type(self, package: str) -> str:
         """The build type of the package in the nearest distro of the same generation that says it; likely, not sure."""
-        near = self._near(package)
+        near = self._iterate_near_distros(package)
         return next((found for one in near if one.knows_manifests and (found := one.build_type(package))), "")
 
-    def _near(self, package: str) -> Iterator[DistroTarget]:
+    def _iterate_near_distros(self, package: str) -> Iterator[DistroTarget]:
         """Other distros of this generation that have released a package, the nearest first."""
-        homes = self._distros_with(package)
+        homes = self._list_distros_with(package)
         for name in self._nearest if homes else ():
             if name in homes:
                 if name not in self._neighbours:
@@ -448,44 +456,44 @@ class DistroTarget:
     @cached_property
     def _nearest(self) -> list[str]:
         """The other distros of this generation, the nearest first."""
-        names = [known.name for known in known_distros(self._data) if known.ros == self.ros]
+        names = [known.name for known in list_known_distros(self._data) if known.ros == self.ros]
         here = names.index(self.distro) if self.distro in names else 0
         near = sorted(names, key=lambda name: (abs(names.index(name) - here), -names.index(name)))
         return [name for name in near if name != self.distro]
 
-    @cached_method
-    def _distros_with(self, package: str) -> frozenset[str]:
+    @cache_method
+    def _list_distros_with(self, package: str) -> frozenset[str]:
         """Distros of this generation that have ever released a package."""
-        if not self.ever_released(package):
+        if not self.was_ever_released(package):
             return frozenset()
-        rows = self._data.rows(
+        rows = self._data.fetch(
             "SELECT d.name FROM home h JOIN package p ON p.id = h.package JOIN distro d ON d.id = h.distro"
             " WHERE p.name = ? AND d.ros = ?",
             (package, self.ros),
         )
         return frozenset(name for (name,) in rows)
 
-    @cached_method
+    @cache_method
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
         here = Environment(self.distro, str(self.ros), (self.python_major, 0))
         return bool(condition) and evaluate(condition, here) is True
 
-    def transitive_dependencies(self, package: str, kinds: Iterable[str] = _WITH_KINDS) -> frozenset[str]:
+    def list_transitive(self, package: str, kinds: Iterable[str] = _WITH_KINDS) -> frozenset[str]:
         """Names that come along with a released package: its dependencies of these kinds, and theirs of these kinds.
 
         The package itself is not in it. Names that are no released package (rosdep keys) are, and end there.
         """
         wanted = frozenset(kinds)
 
-        def along(name: str) -> Iterable[str]:
-            return (dependency.name for dependency in self.dependencies(name) or () if dependency.kind in wanted)
+        def list_wanted(name: str) -> Iterable[str]:
+            return (dependency.name for dependency in self.list_dependencies(name) or () if dependency.kind in wanted)
 
-        return frozenset(walk([package], along)) - {package}
+        return frozenset(walk([package], list_wanted)) - {package}
 
     # rosdep keys
 
-    @cached_method
+    @cache_method
     def resolve(self, key: str) -> Resolution | None:
         """The rosdep rule for a key on this platform, None when there is none."""
         os_name, release = split_platform(self.platform)
@@ -501,55 +509,55 @@ class DistroTarget:
                 return resolve_rule(self._rules[key][system], os_name, release)
         # Some keys stand for every operating system under the name `*`.
         asked = "SELECT os, rule FROM rule WHERE key = ? AND os IN (?, '*') AND ts <= ? ORDER BY ts"
-        newest = dict(self._data.rows(asked, (key, os_name, ts)))
+        newest = dict(self._data.fetch(asked, (key, os_name, ts)))
         rule = next((newest[one] for one in (os_name, "*") if newest.get(one) is not None), None)
         return resolve_rule(decode_rule(rule), os_name, release) if rule is not None else None
 
-    def known_key(self, key: str) -> bool:
+    def knows_key(self, key: str) -> bool:
         """True when rosdep has, or had, a key of this name for any platform."""
-        return key in self._rules or key in self._data.names("rule", "key")
+        return key in self._rules or key in self._data.list_values("rule", "key")
 
     def has_rosdep_rules(self) -> bool:
         """True when rosdep knows the platform's operating system, so that a key without a rule cannot be installed."""
-        return split_platform(self.platform)[0] in systems_of_rosdep(self._data) or bool(self._rules)
+        return split_platform(self.platform)[0] in list_rosdep_systems(self._data) or bool(self._rules)
 
-    def keys_instead(self, key: str) -> tuple[str, ...]:
+    def find_replacement_keys(self, key: str) -> tuple[str, ...]:
         """rosdep keys that install here what a key installs on other releases, best first."""
         asked = "SELECT rule FROM rule WHERE key = ? AND os IN ('debian', 'ubuntu') ORDER BY ts DESC"
-        rules = [decode_rule(rule) for (rule,) in self._data.rows(asked, (key,))]
-        packages = dict.fromkeys(name for rule in rules for name in texts_of(rule))
+        rules = [decode_rule(rule) for (rule,) in self._data.fetch(asked, (key,))]
+        packages = dict.fromkeys(name for rule in rules for name in iterate_texts(rule))
         # Modules of Python 3 are packaged under another name.
         names = [n for name in packages for n in (name, re.sub(r"^python-", "python3-", name))]
-        found = dict.fromkeys(k for name in names for k in self.keys_of(name) if k != key)
+        found = dict.fromkeys(k for name in names for k in self.find_keys(name) if k != key)
         # A number tells a release, which the archive may have no longer.
         numbers = set(re.findall(r"\d+", key))
         return tuple(k for k in found if numbers.issuperset(re.findall(r"\d+", k.removeprefix("python3"))))
 
-    def key_names(self) -> frozenset[str]:
+    def list_keys(self) -> frozenset[str]:
         """Every rosdep key that any platform has, or had."""
-        return self._data.names("rule", "key") | self._rules.keys()
+        return self._data.list_values("rule", "key") | self._rules.keys()
 
-    def last_distro(self, package: str) -> str:
+    def find_last_distro(self, package: str) -> str:
         """The newest distro of the same generation that has released a package, empty when none has."""
-        names = sorted(self._distros_with(package))
-        order = {known.name: place for place, known in enumerate(known_distros(self._data))}
+        names = sorted(self._list_distros_with(package))
+        order = {known.name: place for place, known in enumerate(list_known_distros(self._data))}
         return max(names, key=lambda name: order.get(name, -1), default="")
 
-    def keys_of(self, debian_package: str) -> tuple[str, ...]:
+    def find_keys(self, debian_package: str) -> tuple[str, ...]:
         """rosdep keys that install this system package on the platform, sorted; shortest names first."""
         return self._by_debian.get(debian_package, ())
 
     @cached_property
     def _by_debian(self) -> dict[str, tuple[str, ...]]:
         found: dict[str, list[str]] = {}
-        for key, resolution in self._resolved_keys().items():
+        for key, resolution in self._resolve_keys().items():
             if resolution.manager in ("apt", "dnf", "yum"):
                 for name in resolution.packages:
                     found.setdefault(name, []).append(key)
         return {name: tuple(sorted(keys, key=lambda k: (len(k), k))) for name, keys in found.items()}
 
-    @cached_method
-    def _resolved_keys(self) -> dict[str, Resolution]:
+    @cache_method
+    def _resolve_keys(self) -> dict[str, Resolution]:
         """Every key that resolves here with its resolution, read at once."""
         os_name, release = split_platform(self.platform)
         moments = [self._rule_ts]
@@ -559,7 +567,7 @@ class DistroTarget:
         for ts in moments:
             seen: set[str] = set()
             for system in (os_name, "*"):
-                for key, rule, _ in self._data.rows(
+                for key, rule, _ in self._data.fetch(
                     "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key", (system, ts)
                 ):
                     if rule is None or key in seen:
@@ -570,14 +578,14 @@ class DistroTarget:
                         found[key] = resolution
         return found
 
-    @cached_method
-    def _libraries(self) -> dict[str, Library]:
+    @cache_method
+    def _load_libraries(self) -> dict[str, Library]:
         if self.platform in CHANNELS:
-            pinned = libraries_of(self.platform, self.distro, self.date)
+            pinned = find_libraries(self.platform, self.distro, self.date)
             return {name: Library(version, f"pins of {channel}") for name, (version, channel) in pinned.items()}
         return {
             name: Library(version, source)
-            for name, version, source in self._data.rows(
+            for name, version, source in self._data.fetch(
                 "SELECT name, version, source FROM library WHERE platform = ?", (self.platform,)
             )
         }
@@ -587,57 +595,57 @@ class DistroTarget:
         """Minor version of the Python 3 that ROS code runs on; 0 on Python 2 (python_major 2) and where not known."""
         if self.python_major == 2:
             return 0
-        return python_minor(self.library("python")) or 0
+        return parse_python_minor(self.find_library("python")) or 0
 
-    def library(self, name: str) -> str | None:
+    def find_library(self, name: str) -> str | None:
         """Version of a platform library by the name of platform_versions.yaml (opencv, boost, gcc, python3 ...)."""
-        wanted = library_name(name)
+        wanted = normalize_library_name(name)
         if wanted in self._own_libraries:
             return self._own_libraries[wanted] or None
         if self.platform in CHANNELS:
-            return cell.version if (cell := self._libraries().get(wanted)) else None
+            return cell.version if (cell := self._load_libraries().get(wanted)) else None
         instead = self._facts.libraries_from.get(wanted) if self._facts else None
-        if instead and (version := self.version(instead)):
+        if instead and (version := self.find_version(instead)):
             return version
         if self._facts and wanted in self._facts.libraries:
             return self._facts.libraries[wanted]
-        cell = self._libraries().get(wanted)
+        cell = self._load_libraries().get(wanted)
         return cell.version if cell else None
 
     def came_with_release(self, name: str) -> bool:
         """True for platform libraries that everybody has in this version since the distro's release: it stays on one
         platform, this one, and nothing else brings the library."""
-        wanted = library_name(name)
+        wanted = normalize_library_name(name)
         if self._facts is None or self.distro == "rolling" or self.platform != self._facts.platform:
             return False
         return wanted not in self._own_libraries and wanted not in self._facts.libraries_from
 
-    def overridden(self, package: str) -> bool:
+    def is_overridden(self, package: str) -> bool:
         """True for ROS packages whose version was given for this machine, and is not the distro's."""
         return package in self._overrides
 
-    def library_names(self) -> frozenset[str]:
+    def list_library_names(self) -> frozenset[str]:
         """Platform libraries whose version is known here."""
-        own = {name for name, value in self._own_libraries.items() if value and name in self._all_libraries()}
-        return frozenset(self._libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
+        own = {name for name, value in self._own_libraries.items() if value and name in self._list_all_libraries()}
+        return frozenset(self._load_libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
 
     def has_changes(self) -> bool:
         """True when changes() answers without working them out."""
-        if self._changes is None and self._data is snapshots.default():
-            self._changes = _tables.get(self.identity())
+        if self._changes is None and self._data is snapshots.load_snapshot():
+            self._changes = _tables.get(self.compute_identity())
         return self._changes is not None
 
     def set_changes(self, changes: tuple[ChangeInForce, ...]) -> None:
         """What changes() is to answer, worked out by an earlier run on the same data."""
         self._changes = ChangeTable(changes)
-        if self._data is snapshots.default():
-            _tables[self.identity()] = self._changes
+        if self._data is snapshots.load_snapshot():
+            _tables[self.compute_identity()] = self._changes
             if len(_tables) > _MOST_TABLES:
                 del _tables[next(iter(_tables))]
 
-    def availability(self, symbol: Symbol) -> Availability:
+    def find_availability(self, symbol: Symbol) -> Availability:
         """How the target stands to a package, header, name, CMake name, program, plugin, field or parameter."""
-        return self._availabilities.on_horizon(symbol)
+        return self._availabilities.find_on_horizon(symbol)
 
     @cached_property
     def _availabilities(self) -> Availabilities:
@@ -662,15 +670,15 @@ def _come_along(entries: str) -> frozenset[str]:
 
 
 @functools.cache
-def _newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
+def _find_newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
     here = find_distro(distro, data)
     if here is None:
         return None
-    lasting = [k for k in known_distros(data) if k.ros == here.ros and k.lts]
+    lasting = [k for k in list_known_distros(data) if k.ros == here.ros and k.lts]
     last = lasting[-1] if lasting else None
     return DistroTarget(last.name, data=data) if last and last.released > (day or here.released) else None
 
 
-def _unknown_distro(name: str, data: Snapshot) -> str:
-    names = [known.name for known in known_distros(data)]
+def _describe_unknown_distro(name: str, data: Snapshot) -> str:
+    names = [known.name for known in list_known_distros(data)]
     return f"unknown distro `{name}`{did_you_mean(name, names, '; ') or '.'} Known: {', '.join(names)}"

@@ -39,14 +39,14 @@ class KnownDistro(NamedTuple):
     facts: DistroFacts | None
 
 
-def known_distros(data: Snapshot | None = None) -> tuple[KnownDistro, ...]:
+def list_known_distros(data: Snapshot | None = None) -> tuple[KnownDistro, ...]:
     """All distros of the snapshot, oldest first."""
-    return tuple(_known_distros(data or snapshots.default()).values())
+    return tuple(_load_known_distros(data or snapshots.load_snapshot()).values())
 
 
 def find_distro(name: str, data: Snapshot | None = None) -> KnownDistro | None:
     """The distro of this name."""
-    return _known_distros(data or snapshots.default()).get(name)
+    return _load_known_distros(data or snapshots.load_snapshot()).get(name)
 
 
 def did_you_mean(name: str, known: Iterable[str], before: str = "") -> str:
@@ -64,33 +64,33 @@ def release_day(distro: str) -> str:
 
 
 @functools.lru_cache(maxsize=4)
-def _known_distros(data: Snapshot) -> dict[str, KnownDistro]:
-    told = data.rows("SELECT name, facts FROM distro_fact")
+def _load_known_distros(data: Snapshot) -> dict[str, KnownDistro]:
+    told = data.fetch("SELECT name, facts FROM distro_fact")
     facts = {name: msgspec.json.decode(text, type=DistroFacts) for name, text in told}
     found = []
-    for number, name, ros, python, status, first in data.rows(
+    for number, name, ros, python, status, first in data.fetch(
         "SELECT id, name, ros, python, status, min(ts) FROM distro LEFT JOIN release ON distro = id"
         " GROUP BY id ORDER BY id"
     ):
         fact = facts.get(name)
-        released = fact.released if fact else day_of(first) if first else ""
+        released = fact.released if fact else format_day(first) if first else ""
         end, lts = (fact.end_of_life or "", fact.lts) if fact else ("", False)
         found.append(KnownDistro(number, name, ros, python, status, released, end, lts, fact))
     return {known.name: known for known in sorted(found, key=lambda known: known.released)}
 
 
-def releases(package: str) -> frozenset[tuple[int, str]]:
+def list_releases(package: str) -> frozenset[tuple[int, str]]:
     """(ROS generation, version) of every release of a package in any distro."""
-    rows = snapshots.default().rows(
+    rows = snapshots.load_snapshot().fetch(
         "SELECT DISTINCT d.ros, r.version, n.names FROM home h JOIN package p ON p.id = h.package"
         " JOIN distro d ON d.id = h.distro JOIN release r ON r.repository = h.repository AND r.distro = h.distro"
         " JOIN packages n ON n.id = r.packages WHERE p.name = ? AND r.version IS NOT NULL",
         (package,),
     )
-    return frozenset((ros, _upstream(version)) for ros, version, names in rows if package in names.split(" "))
+    return frozenset((ros, _strip_packaging(version)) for ros, version, names in rows if package in names.split(" "))
 
 
-def day_of(ts: int) -> str:
+def format_day(ts: int) -> str:
     """The ISO day (UTC) of a moment, in seconds since 1970."""
     return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
 
@@ -101,7 +101,7 @@ def end_of_day(day: str) -> int:
     return int(start.timestamp()) + 86_399
 
 
-def _upstream(version: str) -> str:
+def _strip_packaging(version: str) -> str:
     """`1.2.3-0` → `1.2.3`: the part after the dash counts the packaging."""
     return version.partition("-")[0]
 
@@ -111,7 +111,7 @@ _FEW_RULES = 100
 
 
 @functools.lru_cache(maxsize=4)
-def systems_of_rosdep(data: Snapshot) -> frozenset[str]:
+def list_rosdep_systems(data: Snapshot) -> frozenset[str]:
     """The operating systems that rosdep has rules for."""
-    counted = data.rows("SELECT os, count(DISTINCT key) FROM rule GROUP BY os")
+    counted = data.fetch("SELECT os, count(DISTINCT key) FROM rule GROUP BY os")
     return frozenset(name for name, keys in counted if keys >= _FEW_RULES and name != "*")

@@ -25,33 +25,33 @@ def resolve_rule(rule: object, os_name: str, release: str) -> Resolution | None:
     None means "not available"). release: codename (`jammy`) or version (`9`). A release named in the mapping wins over
     `*`; a null there means "not on this release" and does not fall back to `*`. An empty list means nothing is needed.
     """
-    manager = _default_manager(os_name, release)
+    manager = _find_default_manager(os_name, release)
     if isinstance(rule, dict):
-        chosen = _installer(rule, os_name)
+        chosen = _find_installer(rule, os_name)
         if chosen is None:
             if release not in rule and "*" not in rule:
                 return None
             rule = rule[release if release in rule else "*"]
-            chosen = _installer(rule, os_name) if isinstance(rule, dict) else None
+            chosen = _find_installer(rule, os_name) if isinstance(rule, dict) else None
         if chosen is not None:
             manager, rule = chosen, rule[chosen]  # type: ignore[index]
         if isinstance(rule, dict):
             rule = rule.get("packages", [])
-    names = _names(rule)
+    names = _parse_names(rule)
     return None if names is None else Resolution(manager, names)
 
 
-def _default_manager(os_name: str, release: str) -> str:
+def _find_default_manager(os_name: str, release: str) -> str:
     if os_name in ("rhel", "fedora") and release.isdigit() and int(release) < (8 if os_name == "rhel" else 22):
         return "yum"
     return _DEFAULT.get(os_name, "")
 
 
-def _installer(rule: dict, os_name: str) -> str | None:
+def _find_installer(rule: dict, os_name: str) -> str | None:
     return next((name for name in INSTALLERS.get(os_name, _ANY) if name in rule), None)
 
 
-def _names(value: object) -> tuple[str, ...] | None:
+def _parse_names(value: object) -> tuple[str, ...] | None:
     if value is None:
         return None
     if isinstance(value, str):
@@ -73,10 +73,10 @@ def decode_rule(text: str | None) -> object:
     return None if text is None else msgspec.json.decode(text)
 
 
-def texts_of(rule: object) -> Iterator[str]:
+def iterate_texts(rule: object) -> Iterator[str]:
     """All texts of a rule's values: the packages that it installs on some release."""
     if isinstance(rule, str):
         yield rule
     elif isinstance(rule, (dict, list)):
         for value in rule.values() if isinstance(rule, dict) else rule:
-            yield from texts_of(value)
+            yield from iterate_texts(value)

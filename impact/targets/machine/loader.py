@@ -12,11 +12,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import IO
 
-from ....edges.files import open_regular, read_start, too_large
-from ....edges.limits import limits
-from ....edges.memory import cached_method
+from ....edges.files import make_size_error, open_regular, read_start
+from ....edges.limits import get_limits
+from ....edges.memory import cache_method
 from ...facts import elf
-from ...facts.elf import Elf, stem_and_version
+from ...facts.elf import Elf, split_soname
 
 _STANDARD = ("lib", "lib64", "usr/lib", "usr/lib64", "usr/local/lib")
 _MULTIARCH = re.compile(r"[a-z0-9_]+-linux-(?:gnu|musl)\w*$")
@@ -37,9 +37,9 @@ class Loader:
         environment: Mapping[str, str] = os.environ,
         run: Callable[[list[str]], str] | None = None,
     ):
-        from ..capture import output_of
+        from ..capture import run_command
 
-        self._root, self._run = root, run or output_of
+        self._root, self._run = root, run or run_command
         sourced = [folder for folder in environment.get("LD_LIBRARY_PATH", "").split(":") if folder]
         self._folders = [*sourced, *folders]
         self._heads: dict[str, tuple[str, int] | None] = {}
@@ -86,24 +86,24 @@ class Loader:
         the loader (a plugin host, an alternative) may find it."""
         return soname in self._everything
 
-    def others(self, soname: str) -> list[str]:
+    def list_others(self, soname: str) -> list[str]:
         """What there is of the same stem, shortest version first."""
-        stem = stem_and_version(soname)[0]
+        stem = split_soname(soname)[0]
         names = {name for name in self._everything | self._cached.keys() if name.startswith(stem + ".")}
         return sorted(names, key=lambda name: (len(name), name))
 
-    def offers(self, path: str) -> frozenset[str]:
+    def list_symbol_versions(self, path: str) -> frozenset[str]:
         """Versions of symbols that a library defines; empty for one without versions, or that cannot be read."""
-        found = self._elf(path)
+        found = self._read_elf(path)
         return frozenset(found.offers) if found else frozenset()
 
-    @cached_method
-    def _elf(self, path: str) -> Elf | None:
+    @cache_method
+    def _read_elf(self, path: str) -> Elf | None:
         with suppress(OSError), open_library(path) as file:
             return elf.read(file)
         return None
 
-    def loaded(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[str, ...] | None:
+    def list_loaded(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[str, ...] | None:
         """The libraries that are loaded with a file, those that they need in turn included; None where one is not
         found, or cannot be read. own: further names to files."""
         found: dict[str, None] = {}
@@ -114,18 +114,18 @@ class Loader:
                 path = own.get(soname) or self.find(soname, by, place)
                 if path in found:
                     continue
-                library = self._elf(path) if path else None
+                library = self._read_elf(path) if path else None
                 if library is None or library.problem:
                     return None
                 found[path] = None
                 stack.append((library, os.path.dirname(os.path.realpath(path))))
         return tuple(found)
 
-    @cached_method
-    def defined(self, path: str) -> frozenset[str] | None:
+    @cache_method
+    def list_defined_symbols(self, path: str) -> frozenset[str] | None:
         """The C++ symbols that a library has; None for one that cannot be read."""
         with suppress(OSError), open_library(path) as file:
-            return elf.defined(file)
+            return elf.read_defined_symbols(file)
         return None
 
     @cached_property
@@ -140,7 +140,7 @@ class Loader:
 
     def _fits(self, path: str, asker: Elf) -> bool:
         if path not in self._heads:
-            self._heads[path] = _head(path)
+            self._heads[path] = _read_head(path)
         head = self._heads[path]
         return head is not None and head == (asker.machine, asker.bits)
 
@@ -149,15 +149,15 @@ def open_library(path: str) -> IO[bytes]:
     """Opens a built file for reading. Raises OSError for what is no regular file, or larger than a library may be."""
     file = open(open_regular(path), "rb")  # noqa: SIM115
     try:
-        if os.fstat(file.fileno()).st_size > limits().library:
-            raise too_large(path, limits().library)
+        if os.fstat(file.fileno()).st_size > get_limits().library:
+            raise make_size_error(path, get_limits().library)
     except BaseException:
         file.close()
         raise
     return file
 
 
-def _head(path: str) -> tuple[str, int] | None:
+def _read_head(path: str) -> tuple[str, int] | None:
     """(machine, bits) of an ELF file, None when there is none."""
     from elftools.elf.enums import ENUM_E_MACHINE
 
@@ -171,10 +171,10 @@ def _head(path: str) -> tuple[str, int] | None:
     return next((name for name, value in ENUM_E_MACHINE.items() if value == number), ""), 64 if head[4] == 2 else 32
 
 
-def own_machine() -> str:
+def detect_machine() -> str:
     """This machine as elf.h names it (`EM_X86_64`), told by the program that runs here; empty where there is no ELF."""
     for path in ("/proc/self/exe", "/bin/sh"):
-        head = _head(path)
+        head = _read_head(path)
         if head is not None:
             return head[0]
     return ""

@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ...facts import elf
-from ...facts.elf import AskedSymbolVersions, Elf, stem_and_version
+from ...facts.elf import AskedSymbolVersions, Elf, split_soname
 from ..distro.distro import DistroTarget
 from ..version import compare
 from .loader import Loader
@@ -55,11 +55,11 @@ class Shelf:
         """Whether a library is there for a file that lies in a folder, None when it is not known."""
         raise NotImplementedError
 
-    def instead(self, soname: str) -> str:
+    def describe_others(self, soname: str) -> str:
         """What is there of the library in other versions, in words; empty when nothing is."""
         raise NotImplementedError
 
-    def package(self, soname: str) -> str:
+    def find_package(self, soname: str) -> str:
         """The Debian package of a library that is not installed and can be; empty where none is known."""
         return ""
 
@@ -67,7 +67,7 @@ class Shelf:
         """The versions of symbols that are asked of a library and not there; None when it is not known."""
         raise NotImplementedError
 
-    def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
         """Symbols without a version that a file asks for and that are not there, one for each library; None when it is
         not known. own: the files that are installed with it, by name."""
         return None
@@ -90,34 +90,34 @@ class MachineShelf(Shelf):
         if self._loader.find(soname, asker, folder):
             return True
         # A library without a version is of ROS or of one's own, and may be in a prefix that nobody named.
-        if not stem_and_version(soname)[1] and not self._loader.knows_prefixes:
+        if not split_soname(soname)[1] and not self._loader.knows_prefixes:
             return None
         return None if self._loader.lies_about(soname) else False
 
-    def instead(self, soname: str) -> str:
-        return _listed(self._loader.others(soname))
+    def describe_others(self, soname: str) -> str:
+        return _format_first(self._loader.list_others(soname))
 
-    def package(self, soname: str) -> str:
-        return self._sonames.package(soname) if self._sonames.has(self.platform, soname) else ""
+    def find_package(self, soname: str) -> str:
+        return self._sonames.find_package(soname) if self._sonames.has(self.platform, soname) else ""
 
     def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
         path = self._loader.find(asked.library, asker, folder)
-        offers = self._loader.offers(path) if path else frozenset()
+        offers = self._loader.list_symbol_versions(path) if path else frozenset()
         if not offers:
             return None  # the loader only warns of a library without versions
-        return tuple(Lack(version, _highest(offers, version)) for version in asked.versions if version not in offers)
+        return tuple(Lack(version, _find_max(offers, version)) for version in asked.versions if version not in offers)
 
-    def lost(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
         wanted = {u.name for u in asker.undefined if not u.version and not u.weak and u.name.startswith("_Z")}
-        paths = self._loader.loaded(asker, folder, own) if wanted else ()
+        paths = self._loader.list_loaded(asker, folder, own) if wanted else ()
         if paths is None:
             return None
-        known = {path: self._loader.defined(path) for path in paths}
+        known = {path: self._loader.list_defined_symbols(path) for path in paths}
         if None in known.values():
             return None
         absent = wanted.difference(*filter(None, known.values()))
         found: dict[str, list[str]] = {}
-        for member in sorted(filter(None, map(elf.member, absent))):
+        for member in sorted(filter(None, map(elf.parse_symbol, absent))):
             marks = tuple(mark.format(member.scope) for mark in _OF_CLASSES)
             owners = (path for path, names in known.items() if any(n.startswith(marks) for n in names or ()))
             owner = os.path.basename(next(owners, "")) if member.scope else ""
@@ -148,11 +148,11 @@ class DescribedShelf(Shelf):
     def has(self, soname: str, asker: Elf, folder: str) -> bool | None:
         if soname in self._own or soname in self._sonames.reviewed.everywhere:
             return True
-        stem, version = stem_and_version(soname)
+        stem, version = split_soname(soname)
         platform = self._described.platform
         known = self._sonames.has(platform, soname)
-        library = self._sonames.family(soname)
-        there = self._described.library(library) if library else None
+        library = self._sonames.find_family(soname)
+        there = self._described.find_library(library) if library else None
         fits = self._sonames.fits(soname, there) if there else None
         # A version that a person or a capture gives goes over that of the platform.
         if known or fits or (not version and self._is_of_ros(stem)):
@@ -163,10 +163,10 @@ class DescribedShelf(Shelf):
             return None
         return False if known is False else fits
 
-    def instead(self, soname: str) -> str:
-        others = _listed(self._sonames.others(self._described.platform, soname))
-        library = self._sonames.family(soname)
-        there = self._described.library(library) if library else None
+    def describe_others(self, soname: str) -> str:
+        others = _format_first(self._sonames.list_others(self._described.platform, soname))
+        library = self._sonames.find_family(soname)
+        there = self._described.find_library(library) if library else None
         return others or (f"{library} {there}" if there else "")
 
     def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
@@ -182,25 +182,25 @@ class DescribedShelf(Shelf):
     def _reach(self) -> dict[str, str]:
         """How far the versions of symbols reach, by their kind; empty where it is not known."""
         glibc, glibcxx = (self._sonames.reach(self.platform, kind) for kind in ("GLIBC", "GLIBCXX"))
-        return {"GLIBC": glibc or self._described.library("glibc") or "", "GLIBCXX": glibcxx}
+        return {"GLIBC": glibc or self._described.find_library("glibc") or "", "GLIBCXX": glibcxx}
 
     @cached_property
     def _released(self) -> frozenset[str]:
         """Names of ROS packages without what spelling may change, and without `vendor` and `lib`."""
-        names = (_plain(name) for name in self._described.released_names())
+        names = (_normalize(name) for name in self._described.list_released())
         return frozenset(name.removesuffix("vendor").removeprefix("lib") for name in names)
 
     def _is_of_ros(self, stem: str) -> bool:
         """Whether a library is called after a released package: `librclcpp.so`, `libstd_msgs__rosidl_cpp.so`."""
         name = stem.removeprefix("lib").removesuffix(".so")
-        return self._described.version(name.partition("__")[0]) is not None
+        return self._described.find_version(name.partition("__")[0]) is not None
 
     def _may_be_of_ros(self, soname: str) -> bool:
         """Whether a released package may bring the library in: it is called like the library, or its beginning, or like
         the Debian package that has it."""
-        stem = _plain(stem_and_version(soname)[0].removesuffix(".so").removeprefix("lib"))
-        package = _plain(re.sub(r"[\d.]+[a-z]?\d*$", "", self._sonames.package(soname)).removeprefix("lib"))
-        library = _plain(self._sonames.family(soname))
+        stem = _normalize(split_soname(soname)[0].removesuffix(".so").removeprefix("lib"))
+        package = _normalize(re.sub(r"[\d.]+[a-z]?\d*$", "", self._sonames.find_package(soname)).removeprefix("lib"))
+        library = _normalize(self._sonames.find_family(soname))
         return any(
             name[:length] in self._released
             for name in (stem, package, library)
@@ -208,16 +208,16 @@ class DescribedShelf(Shelf):
         )
 
 
-def _plain(name: str) -> str:
+def _normalize(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
-def _listed(names: list[str]) -> str:
+def _format_first(names: list[str]) -> str:
     """The first name, in code quotes."""
     return f"`{names[0]}`" if names else ""
 
 
-def _highest(offers: frozenset[str], version: str) -> str:
+def _find_max(offers: frozenset[str], version: str) -> str:
     """The highest version that is offered of the same kind: of `GLIBC_2.38` in an older libc, `GLIBC_2.36`."""
     kind = version.rpartition("_")[0]
     same = [offer for offer in offers if offer.rpartition("_")[0] == kind and re.search(r"_[\d.]+$", offer)]

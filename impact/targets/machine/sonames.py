@@ -11,9 +11,9 @@ from pathlib import Path
 
 import msgspec
 
-from ...facts.elf import stem_and_version
+from ...facts.elf import split_soname
 from ..snapshot import DATA, SnapshotError, read_table
-from ..version import number_of
+from ..version import parse_number
 
 FILE = "sonames.json.zst"
 
@@ -59,7 +59,7 @@ class Sonames:
             name, bits, package = line.split(" ")
             self._bits[name] = int(bits)
             self._packages[name] = package
-            self._by_stem.setdefault(stem_and_version(name)[0], []).append(name)
+            self._by_stem.setdefault(split_soname(name)[0], []).append(name)
 
     @property
     def platforms(self) -> frozenset[str]:
@@ -70,21 +70,21 @@ class Sonames:
         """Whether some package of a platform has a library; None where nobody can tell: the platform's files are not
         known, or no platform has a library of this stem in any version."""
         bit = self._bit.get(platform)
-        if bit is None or stem_and_version(soname)[0] not in self._by_stem:
+        if bit is None or split_soname(soname)[0] not in self._by_stem:
             return None
         return bool(self._bits.get(soname, 0) & bit)
 
-    def package(self, soname: str) -> str:
+    def find_package(self, soname: str) -> str:
         """A Debian package that has the library on the newest platform that has it, empty when none does."""
         return self._packages.get(soname, "")
 
-    def others(self, platform: str, soname: str) -> list[str]:
+    def list_others(self, platform: str, soname: str) -> list[str]:
         """What a platform has of the same stem, shortest version first."""
         bit = self._bit.get(platform, 0)
-        names = [name for name in self._by_stem.get(stem_and_version(soname)[0], ()) if self._bits[name] & bit]
+        names = [name for name in self._by_stem.get(split_soname(soname)[0], ()) if self._bits[name] & bit]
         return sorted(names, key=lambda name: (len(name), name))
 
-    def names(self, platform: str) -> list[str]:
+    def list_names(self, platform: str) -> list[str]:
         """Every library that a platform has."""
         bit = self._bit.get(platform, 0)
         return [name for name, bits in self._bits.items() if bits & bit]
@@ -93,29 +93,29 @@ class Sonames:
         """The highest version of symbols of a kind (`GLIBC`, `GLIBCXX`) on a platform, empty when it is not known."""
         return self._symbols.get(platform, {}).get(kind, "")
 
-    def family(self, soname: str) -> str:
+    def find_family(self, soname: str) -> str:
         """The library (platform_versions.yaml) that a soname is of, empty when sonames.yaml names none."""
-        return self._families.get(stem_and_version(soname)[0], "")
+        return self._families.get(split_soname(soname)[0], "")
 
     def fits(self, soname: str, version: str) -> bool | None:
         """Whether a soname can be of this version of its family; None when that cannot be told."""
-        family = self.reviewed.libraries.get(self.family(soname))
-        asked = numbers_of(stem_and_version(soname)[1])
-        there = [number_of(part) for part in re.findall(r"\d+", version)]
+        family = self.reviewed.libraries.get(self.find_family(soname))
+        asked = parse_numbers(split_soname(soname)[1])
+        there = [parse_number(part) for part in re.findall(r"\d+", version)]
         if family is None or len(asked) < family.numbers or len(there) < family.numbers:
             return None
         return asked[: family.numbers] == there[: family.numbers]
 
 
-def numbers_of(version: str) -> list[int]:
+def parse_numbers(version: str) -> list[int]:
     """The numbers that a soname's version says: `1.12` → 1, 12; `4.5d` → 4, 5; OpenCV's `406` → 4, 6."""
     if re.fullmatch(r"\d{3}", version):
         return [int(version[0]), int(version[1:])]
-    return [number_of(part) for part in re.findall(r"\d+", version)]
+    return [parse_number(part) for part in re.findall(r"\d+", version)]
 
 
 @cache
-def default_sonames(data: Path = DATA) -> Sonames:
+def load_sonames(data: Path = DATA) -> Sonames:
     """The shipped table. Raises SnapshotError when it is missing or damaged."""
     import yaml
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import msgspec
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ..platform import neighbours
+from ..platform import find_neighbours
 from ..snapshot import DATA, read_table
 
 INFERRED = 1 << 15
@@ -34,7 +34,7 @@ class Apt:
     def __init__(self, graph: AptGraph, platform: str):
         self._graph = graph
         self._place = {name: place for place, name in enumerate(graph.packages)}
-        near = neighbours(platform, graph.suites)
+        near = find_neighbours(platform, graph.suites)
         self._inferred = platform not in graph.suites
         self._mask = sum({1 << graph.suites.index(one) for one in near}) if all(near) else INFERRED - 1
 
@@ -47,13 +47,13 @@ class Apt:
         """Packages of every machine that builds."""
         return frozenset(self._graph.packages[place] for place in self._graph.base)
 
-    @cached_method
-    def brought_by(self, package: str) -> frozenset[str]:
+    @cache_method
+    def list_added(self, package: str) -> frozenset[str]:
         """A package and those that are installed along with it, as far as rosdep keys install them."""
-        return frozenset(self._brought_by(package))
+        return frozenset(self._iterate_brought_by(package))
 
-    @cached_method
-    def bringing(self, packages: frozenset[str]) -> frozenset[str]:
+    @cache_method
+    def list_bringing(self, packages: frozenset[str]) -> frozenset[str]:
         """These packages and all that bring one of them along."""
         places = [place for name in packages if (place := self._place.get(name)) is not None]
         found = walk(places, lambda one: self._brought_with.get(one, ()))
@@ -70,7 +70,7 @@ class Apt:
                     found.setdefault(other, []).append(place)
         return found
 
-    def _brought_by(self, package: str) -> Iterator[str]:
+    def _iterate_brought_by(self, package: str) -> Iterator[str]:
         yield package
         python = package.partition("-")[0]
         if python in ("python", "python3"):
@@ -91,11 +91,11 @@ class Apt:
 
 
 @cache
-def _graph(data: Path) -> AptGraph:
+def _load_graph(data: Path) -> AptGraph:
     return read_table(data / "apt.json.zst", AptGraph)
 
 
 @cache
-def apt_of(platform: str, data: Path = DATA) -> Apt:
+def load_apt(platform: str, data: Path = DATA) -> Apt:
     """The shipped graph for a platform (`ubuntu jammy`). Raises SnapshotError when it is missing or damaged."""
-    return Apt(_graph(data), platform)
+    return Apt(_load_graph(data), platform)

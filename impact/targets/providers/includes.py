@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ....edges.reach import Reach
 from ..snapshot import DATA, read_table
-from ..version import at_least, parts
+from ..version import is_at_least, parse
 from . import message_headers
-from .libraries import system_libraries
-from .standard import DEFINED_IN, bit_of, brought_by, headers_naming, named_by, oldest
+from .libraries import load_libraries
+from .standard import DEFINED_IN, find_named, find_oldest_gcc, get_bit, list_brought, list_naming_headers
 
 if TYPE_CHECKING:
     from ...conditions import Environment
@@ -61,18 +61,18 @@ class Includes:
                 self.owners_of[header] = (*self.owners_of.get(header, ()), owner)
         self._read: dict[str, frozenset[tuple[int, ...]]] = {}
 
-    @cached_method
-    def states(self, owner: str, header: str) -> tuple[_State, ...]:
+    @cache_method
+    def list_states(self, owner: str, header: str) -> tuple[_State, ...]:
         """(first version, what it includes; None: no such header), oldest first."""
         paths, found = self.table.paths, []
         for run in self.table.owners[owner][header].split(";"):
             version, _, text = run.partition(" ")
-            found.append((parts(version), None if text == "-" else tuple(paths[int(n)] for n in text.split())))
+            found.append((parse(version), None if text == "-" else tuple(paths[int(n)] for n in text.split())))
         return tuple(found)
 
-    def included(self, owner: str, header: str, version: str) -> tuple[str, ...] | None:
+    def list_included(self, owner: str, header: str, version: str) -> tuple[str, ...] | None:
         """What a header includes in a version; None when there is no such header in it, or none is known to be."""
-        wanted, states = parts(version), self.states(owner, header)
+        wanted, states = parse(version), self.list_states(owner, header)
         place = sum(1 for first, _ in states if first[: len(wanted)] <= wanted) - 1
         if place < 0:
             return None
@@ -88,12 +88,12 @@ class Includes:
         if owner not in self.table.sparse:
             return True
         if owner not in self._read:
-            self._read[owner] = frozenset(parts(version)[:2] for version in self.table.sparse[owner])
+            self._read[owner] = frozenset(parse(version)[:2] for version in self.table.sparse[owner])
         return wanted[:2] in self._read[owner]
 
 
 @cache
-def default() -> Includes:
+def load_includes() -> Includes:
     """The shipped table. Raises SnapshotError when it cannot be read."""
     return Includes(read_table(DATA / "includes.json.zst", IncludesTable))
 
@@ -159,7 +159,7 @@ class HeadersOfMachine:
         surfaces: Surfaces | None = None,
         platform: str = "",
     ):
-        self.ros, self._version, self._data, self._given = ros, version, data or default(), surfaces
+        self.ros, self._version, self._data, self._given = ros, version, data or load_includes(), surfaces
         self._platform = platform
         self._reach = Reach(self._look)
         # Of what was reached: headers of the standard libraries, and those of which nothing is known here.
@@ -167,8 +167,8 @@ class HeadersOfMachine:
         # The headers that tells() was asked of, and those that it denies.
         self._asked = self._silent = 0
 
-    @cached_method
-    def version(self, owner: str) -> str | None:
+    @cache_method
+    def find_version(self, owner: str) -> str | None:
         """The version of an owner here."""
         library = owner == "gcc" or owner in self._data.table.libraries
         return self._version(owner, library) or (self._version(owner, False) if library else None)
@@ -176,37 +176,37 @@ class HeadersOfMachine:
     @cached_property
     def gcc(self) -> int:
         """The major version of the compiler."""
-        return parts(self.version("gcc") or "5")[0]
+        return parse(self.find_version("gcc") or "5")[0]
 
     @cached_property
     def surfaces(self) -> Surfaces:
         """The stored surfaces."""
-        from ..surface.store import shipped
+        from ..surface.store import load_shipped
 
-        return self._given or shipped()
+        return self._given or load_shipped()
 
     def includes(self, header: str) -> tuple[str, ...] | None:
         """What one header includes here, as dependants would write it; None when that is not known."""
         found = self._find(header)
         return None if found is None else found.includes
 
-    @cached_method
-    def always_included(self, header: str) -> tuple[str, ...]:
+    @cache_method
+    def list_always_included(self, header: str) -> tuple[str, ...]:
         """What a header of a ROS package includes under no condition; nothing where that is not known."""
-        for package in self.surfaces.holders(header):
-            stored = self._standing_for(package)
-            written = stored[0].written(header, stored[1]) if stored is not None else None
+        for package in self.surfaces.list_holders(header):
+            stored = self._find_stored(package)
+            written = stored[0].list_includes(header, stored[1]) if stored is not None else None
             if stored is not None and written is not None:
                 plain = (one for one in written if not one.conditions)
-                return tuple(dict.fromkeys(stored[0].answer(one, header, stored[1]) for one in plain))
+                return tuple(dict.fromkeys(stored[0].resolve_include(one, header, stored[1]) for one in plain))
         return ()
 
-    def owner(self, header: str) -> tuple[str, str] | None:
+    def find_owner(self, header: str) -> tuple[str, str] | None:
         """The package or library that has a header here, and its version."""
         found = self._find(header)
         return None if found is None else (found.owner, found.version)
 
-    def of_library(self, header: str) -> bool:
+    def is_from_library(self, header: str) -> bool:
         """True when a platform library, and no ROS package, has a header here."""
         found = self._find(header)
         return found is not None and (found.library or found.owner in self._data.table.libraries)
@@ -217,95 +217,95 @@ class HeadersOfMachine:
             return True
         return any(
             header in included.headers
-            for package in self.surfaces.holders(header)
-            for ros in self.surfaces.generations(package)
-            if (included := self.surfaces.included(package, ros)) is not None
+            for package in self.surfaces.list_holders(header)
+            for ros in self.surfaces.list_ros(package)
+            if (included := self.surfaces.find_included(package, ros)) is not None
         )
 
-    @cached_method
+    @cache_method
     def _find(self, header: str) -> _Found | None:
         if header.startswith(_INCLUDE_FOLDERS):
             header = header.partition("/")[2]
         libraries = self._data.table.libraries
         owners = self._data.owners_of.get(header, ())
         return (
-            self._in_table(header, (owner for owner in owners if owner in libraries))
-            or self._in_surfaces(header)
-            or self._in_table(header, (owner for owner in owners if not self._gone(owner, header)))
-            or self._made(header)
-            or self._in_libraries(header)
+            self._find_in_table(header, (owner for owner in owners if owner in libraries))
+            or self._find_in_surfaces(header)
+            or self._find_in_table(header, (owner for owner in owners if not self._is_gone(owner, header)))
+            or self._find_made(header)
+            or self._find_in_libraries(header)
         )
 
-    def _in_table(self, header: str, owners: Iterable[str]) -> _Found | None:
+    def _find_in_table(self, header: str, owners: Iterable[str]) -> _Found | None:
         for owner in owners:
-            version = self.version(owner)
-            found = self._data.included(owner, header, version) if version else None
+            version = self.find_version(owner)
+            found = self._data.list_included(owner, header, version) if version else None
             if version and found is not None:
                 return _Found(owner, version, found)
         return None
 
-    def _in_surfaces(self, header: str) -> _Found | None:
-        for package in self.surfaces.holders(header):
-            stored = self._standing_for(package)
+    def _find_in_surfaces(self, header: str) -> _Found | None:
+        for package in self.surfaces.list_holders(header):
+            stored = self._find_stored(package)
             if stored is None:
                 continue
             included, standing, version = stored
-            written = included.written(header, standing)
+            written = included.list_includes(header, standing)
             if written is not None:
                 active = (one for one in written if self._may_hold(one.conditions))
-                paths = dict.fromkeys(included.answer(one, header, standing) for one in active)
+                paths = dict.fromkeys(included.resolve_include(one, header, standing) for one in active)
                 return _Found(package, version, tuple(paths))
         return None
 
-    def _in_libraries(self, header: str) -> _Found | None:
+    def _find_in_libraries(self, header: str) -> _Found | None:
         if not self._platform or header in self._data.owners_of:
             return None
-        found = system_libraries().included(header, self._platform)
+        found = load_libraries().find_included(header, self._platform)
         return _Found(*found, library=True) if found is not None else None
 
-    def _gone(self, package: str, header: str) -> bool:
+    def _is_gone(self, package: str, header: str) -> bool:
         """Whether the surface that stands for a package here lacks a header that others of its surfaces have."""
-        stored = self._standing_for(package)
+        stored = self._find_stored(package)
         return stored is not None and header in stored[0].headers
 
-    @cached_method
-    def _standing_for(self, package: str) -> tuple[Included, str, str] | None:
+    @cache_method
+    def _find_stored(self, package: str) -> tuple[Included, str, str] | None:
         """What a package's headers include, the stored version that stands for the one here, and that one."""
-        version, included = self._version(package, False), self.surfaces.included(package, self.ros)
+        version, included = self._version(package, False), self.surfaces.find_included(package, self.ros)
         standing = included.stands_for(version) if version and included is not None else None
         return (included, standing, version) if included and standing and version else None
 
-    @cached_method
+    @cache_method
     def _may_hold(self, conditions: tuple[Condition, ...]) -> bool:
         if not conditions:
             return True
-        from ...conditions import all_hold
+        from ...conditions import evaluate_all
 
-        return all_hold(conditions, self._environment) is not False
+        return evaluate_all(conditions, self._environment) is not False
 
     @cached_property
     def _environment(self) -> Environment:
         from ...conditions import Environment
 
-        def version(name: str) -> str | None:
+        def find_version(name: str) -> str | None:
             return self._version(name, False) or self._version(name.lower(), True)
 
-        return Environment(ros_version=str(self.ros), versions=version, headers=self._has)
+        return Environment(ros_version=str(self.ros), versions=find_version, headers=self._has)
 
     def _has(self, header: str) -> bool | None:
         """Whether a package has a header here, None when that is not known."""
         there: bool | None = None
-        for package in self.surfaces.holders(header):
-            stored = self._standing_for(package)
+        for package in self.surfaces.list_holders(header):
+            stored = self._find_stored(package)
             if stored is None or header not in stored[0].headers:
                 continue
             included, standing, version = stored
-            if included.written(header, standing) is not None:
+            if included.list_includes(header, standing) is not None:
                 return True
             there = False if standing == version else there
         return there
 
-    def _made(self, header: str) -> _Found | None:
+    def _find_made(self, header: str) -> _Found | None:
         """A header that is made while its package is built."""
         written = () if _NUMBERS.fullmatch(header) else _WRITTEN.get(header)
         if written is not None and self.ros == 2:
@@ -314,146 +314,146 @@ class HeadersOfMachine:
             return _Found(owner, version, written) if version else None
         if self.ros == 1 and _CONFIG.match(header):
             owner = "dynamic_reconfigure"
-            return _Found(owner, self.version(owner) or "", _RECONFIGURE)
-        package = message_headers.package_of(header, self.ros)
+            return _Found(owner, self.find_version(owner) or "", _RECONFIGURE)
+        package = message_headers.find_package(header, self.ros)
         if package is None:
-            package = message_headers.package_for_c(header) if self.ros == 2 else None
+            package = message_headers.find_package_for_c(header) if self.ros == 2 else None
             version = self._version(package, False) if package else None
             return _Found("rosidl_generator_c", version, message_headers.OF_C) if version else None
         owner, pattern = _GENERATOR[self.ros]
-        version = self.version(owner)
-        always = self._data.included(owner, pattern, version) if version else None
+        version = self.find_version(owner)
+        always = self._data.list_included(owner, pattern, version) if version else None
         if version is None or always is None:
             return None
-        apart = at_least(version, "0.9.0")
-        others = message_headers.included_by(header, self.ros, self._interfaces_of(package), apart) or ()
+        apart = is_at_least(version, "0.9.0")
+        others = message_headers.list_included(header, self.ros, self._load_interfaces(package), apart) or ()
         return _Found(owner, version, tuple(dict.fromkeys((*always, *others))))
 
-    @cached_method
-    def _interfaces_of(self, package: str) -> message_headers.Definitions:
-        stored = self._standing_for(package)
-        history = self.surfaces.history(package, self.ros) if stored is not None else None
-        found = history.interfaces(stored[1]) if stored is not None and history is not None else {}
+    @cache_method
+    def _load_interfaces(self, package: str) -> message_headers.Definitions:
+        stored = self._find_stored(package)
+        history = self.surfaces.find_history(package, self.ros) if stored is not None else None
+        found = history.load_interfaces(stored[1]) if stored is not None and history is not None else {}
         return message_headers.Definitions(found)
 
-    @cached_method
-    def brought(self, header: str) -> Brought:
+    @cache_method
+    def find_brought(self, header: str) -> Brought:
         """Everything that a header brings along here; of standard ones, by the machine's GCC."""
-        reached, along = self._reach.masks((header,))
+        reached, along = self._reach.collect_masks((header,))
         parts = (reached | along, reached & self._unknown, reached & self._plain)
-        return Brought(*(frozenset(self._reach.names(mask)) for mask in parts))
+        return Brought(*(frozenset(self._reach.list_names(mask)) for mask in parts))
 
     def _look(self, header: str) -> tuple[Iterable[str], Iterable[str]]:
         """The headers that one includes, or all that a standard one reads."""
         found = self.includes(header)
         if found is not None:
             return found, ()
-        standard = brought_by(header, self.gcc)
+        standard = list_brought(header, self.gcc)
         if _is_plain(header, self.gcc):
-            self._plain |= self._reach.bit(header)
+            self._plain |= self._reach.assign_bit(header)
         elif len(standard) == 1:
-            self._unknown |= self._reach.bit(header)
+            self._unknown |= self._reach.assign_bit(header)
         return (), standard
 
-    @cached_method
-    def _masks_of(self, headers: frozenset[str]) -> tuple[int, int]:
+    @cache_method
+    def _compute_masks(self, headers: frozenset[str]) -> tuple[int, int]:
         """The headers that these lead to, and with them those that standard ones among them read."""
-        reached, along = self._reach.masks(headers)
+        reached, along = self._reach.collect_masks(headers)
         return reached, along | reached
 
-    @cached_method
-    def _followed(self, headers: frozenset[str]) -> tuple[int, int]:
+    @cache_method
+    def _follow_headers(self, headers: frozenset[str]) -> tuple[int, int]:
         """The same as far as it was known when it was first asked for: most files get what they need from headers that
         were followed for others, so that those that nobody else includes need not be."""
-        reached, along = self._reach.known(headers)
+        reached, along = self._reach.collect_known_masks(headers)
         return reached, along | reached
 
-    def mask(self, headers: frozenset[str]) -> int:
+    def compute_mask(self, headers: frozenset[str]) -> int:
         """Everything that these headers bring along here, as bits() has it."""
-        return self._masks_of(headers)[1]
+        return self._compute_masks(headers)[1]
 
     def brings_any(self, bits: int, headers: frozenset[str]) -> bool:
         """Whether these headers bring one of others along here, which are given as bits() has them."""
-        return bool(bits & self._followed(headers)[1] or bits & self.mask(headers))
+        return bool(bits & self._follow_headers(headers)[1] or bits & self.compute_mask(headers))
 
-    @cached_method
-    def _naming(self, name: str, standard: int) -> int:
+    @cache_method
+    def _compute_naming_mask(self, name: str, standard: int) -> int:
         """The standard headers that a name of the standard libraries is in here, as bits() has them."""
-        named = headers_naming(name, self.gcc, standard)
-        return self.bits(one for one in named if _is_plain(one, self.gcc) and self.includes(one) is None)
+        named = list_naming_headers(name, self.gcc, standard)
+        return self.find_bits(one for one in named if _is_plain(one, self.gcc) and self.includes(one) is None)
 
     def brings(self, name: str, headers: frozenset[str], standard: int) -> bool:
         """Whether these headers bring a name of the standard libraries along here, as far as that can be excluded.
 
         standard: year of the C++ standard that they are compiled under."""
-        naming = self._naming(name, standard)
-        if naming & self._followed(headers)[0] or naming & self._masks_of(headers)[0]:
+        naming = self._compute_naming_mask(name, standard)
+        if naming & self._follow_headers(headers)[0] or naming & self._compute_masks(headers)[0]:
             return True
-        if self.names(name):
-            return self.gcc < oldest() and bool(self.bits(DEFINED_IN[name]) & self.mask(headers))
+        if self.knows_name(name):
+            return self.gcc < find_oldest_gcc() and bool(self.find_bits(DEFINED_IN[name]) & self.compute_mask(headers))
         return True
 
-    def names(self, name: str) -> bool:
+    def knows_name(self, name: str) -> bool:
         """Whether it is known here which headers bring a name of the standard libraries along: of older compilers the
         headers are, and of some names where they are defined."""
-        return bool(bit_of(name)) and (self.gcc >= oldest() or name in DEFINED_IN)
+        return bool(get_bit(name)) and (self.gcc >= find_oldest_gcc() or name in DEFINED_IN)
 
-    @cached_method
-    def outside(self, headers: frozenset[str]) -> frozenset[str]:
+    @cache_method
+    def list_unknown_headers(self, headers: frozenset[str]) -> frozenset[str]:
         """The headers among all that these bring along of which nothing is known here."""
-        reached, _ = self._masks_of(headers)
-        return frozenset(self._reach.names(reached & self._unknown))
+        reached, _ = self._compute_masks(headers)
+        return frozenset(self._reach.list_names(reached & self._unknown))
 
     def tells(self, header: str) -> bool:
         """False for a header that is made from an interface of which no definition is known here, so that neither its
         being there nor what it brings along of others' is known."""
-        package = message_headers.package_of(header, self.ros)
+        package = message_headers.find_package(header, self.ros)
         if package is None or self.includes(header) is None:
             return True
-        return message_headers.included_by(header, self.ros, self._interfaces_of(package), True) is not None
+        return message_headers.list_included(header, self.ros, self._load_interfaces(package), True) is not None
 
     def tells_all(self, headers: frozenset[str]) -> bool:
         """Whether it tells of all generated headers that these bring along."""
-        mask = self.mask(headers)
+        mask = self.compute_mask(headers)
         fresh = mask & ~self._asked
         if fresh:
             self._asked |= fresh
-            self._silent |= self.bits(header for header in self._reach.names(fresh) if not self.tells(header))
+            self._silent |= self.find_bits(header for header in self._reach.list_names(fresh) if not self.tells(header))
         return not mask & self._silent
 
-    def bits(self, headers: Iterable[str]) -> int:
+    def find_bits(self, headers: Iterable[str]) -> int:
         """One bit for each of these headers, the same in all answers of this machine."""
-        return self._reach.bits(headers)
+        return self._reach.combine_bits(headers)
 
 
 def _is_plain(header: str, gcc: int) -> bool:
     """Whether it is known of a header of the standard libraries which names it brings."""
-    return named_by(header, gcc, 2017) is not None
+    return find_named(header, gcc, 2017) is not None
 
 
-def machine(target: DistroTarget) -> HeadersOfMachine:
+def make_machine(target: DistroTarget) -> HeadersOfMachine:
     """The headers that a target has."""
 
-    def version(name: str, library: bool) -> str | None:
-        return target.library(name) if library else target.version(name)
+    def find_version(name: str, library: bool) -> str | None:
+        return target.find_library(name) if library else target.find_version(name)
 
-    return HeadersOfMachine(target.ros, version, platform=target.platform)
+    return HeadersOfMachine(target.ros, find_version, platform=target.platform)
 
 
 @cache
-def machine_of(distro: str, ros: int, data: Includes | None = None) -> HeadersOfMachine:
+def load_machine(distro: str, ros: int, data: Includes | None = None) -> HeadersOfMachine:
     """A distro as it was in the end."""
-    known = data or default()
+    known = data or load_includes()
     versions = known.table.versions.get(distro, {})
 
-    def version(owner: str, library: bool) -> str | None:
-        return versions.get(owner) or (None if library else _packages_of(distro).version(owner))
+    def find_version(owner: str, library: bool) -> str | None:
+        return versions.get(owner) or (None if library else _make_target(distro).find_version(owner))
 
-    return HeadersOfMachine(ros, version, known, platform=_packages_of(distro).platform)
+    return HeadersOfMachine(ros, find_version, known, platform=_make_target(distro).platform)
 
 
 @cache
-def _packages_of(distro: str) -> DistroTarget:
+def _make_target(distro: str) -> DistroTarget:
     from ..distro.distro import DistroTarget
 
     return DistroTarget(distro)
@@ -467,12 +467,12 @@ class _Offers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 @cache
-def offered() -> dict[str, tuple[str, ...]]:
+def load_offered() -> dict[str, tuple[str, ...]]:
     """Names to the headers that offer them: types that some header stopped bringing along, and much used ones."""
     reviewed = read_table(DATA / "offers.json", _Offers).names
-    return {**default().table.names, **reviewed}
+    return {**load_includes().table.names, **reviewed}
 
 
-def announced(name: str) -> tuple[str, ...]:
+def list_announcing_headers(name: str) -> tuple[str, ...]:
     """Headers that announce a type without defining it."""
-    return default().table.announced.get(name, ())
+    return load_includes().table.announced.get(name, ())

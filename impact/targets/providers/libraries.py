@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ...facts.cpp.lexical import Include
-from ..platform import neighbours
+from ..platform import find_neighbours
 from ..snapshot import DATA, SnapshotError
-from ..surface.includes import path_of, there
+from ..surface.includes import choose_path, covers
 from ..surface.store import StoredRows, StoredSurfacesError, SurfaceHistory
 from ..unpacked import read_packed
-from ..version import parts
-from .providers import default_providers
+from ..version import parse
+from .providers import load_providers
 
 if TYPE_CHECKING:
     from ..surface.surface import BuildSurface
@@ -75,161 +75,163 @@ class SystemLibraries:
     def __init__(self, file: Path = DATA / "libraries.sqlite") -> None:
         self._file = StoredRows(file)
         try:
-            self._file.columns("SELECT name FROM package LIMIT 1")
+            self._file.query_column("SELECT name FROM package LIMIT 1")
         except StoredSurfacesError as error:
             raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
 
-    def _first(self, query: str, value: str) -> str:
-        return next(iter(self._file.columns(query, value)), "")
+    def _query_first(self, query: str, value: str) -> str:
+        return next(iter(self._file.query_column(query, value)), "")
 
-    @cached_method
-    def of_package(self, debian: str) -> str:
+    @cache_method
+    def find_by_package(self, debian: str) -> str:
         """The library that a Debian development package is of; empty where it was not read."""
-        return self._first("SELECT library FROM debian WHERE name = ?", debian)
+        return self._query_first("SELECT library FROM debian WHERE name = ?", debian)
 
-    @cached_method
-    def versions(self, library: str) -> dict[str, str]:
+    @cache_method
+    def list_versions(self, library: str) -> dict[str, str]:
         """The version of a library in each Debian release that was read, oldest first."""
-        told = self._first("SELECT versions FROM package WHERE name = ?", library)
+        told = self._query_first("SELECT versions FROM package WHERE name = ?", library)
         found = dict(one.split("=") for one in told.split())
         return {f"debian {suite}": version for suite, version in found.items()}
 
-    @cached_method
-    def packages(self, library: str) -> frozenset[str]:
+    @cache_method
+    def list_packages(self, library: str) -> frozenset[str]:
         """The development packages of a library."""
-        return frozenset(self._file.columns("SELECT name FROM debian WHERE library = ?", library))
+        return frozenset(self._file.query_column("SELECT name FROM debian WHERE library = ?", library))
 
-    def around(self, library: str, platform: str) -> tuple[str, str]:
+    def find_range(self, library: str, platform: str) -> tuple[str, str]:
         """The versions between which a platform's lies; empty for one that is not known."""
-        known = self.versions(library)
-        before, after = neighbours(platform, known)
+        known = self.list_versions(library)
+        before, after = find_neighbours(platform, known)
         return known.get(before, ""), known.get(after, "")
 
     @lru_cache(maxsize=256)  # noqa: B019  (one of them lives as long as the program)
     def build(self, library: str, version: str, of: tuple[str, ...] = ()) -> BuildSurface | None:
         """What a version gives to CMake and the linker, without its headers. of: these fields alone."""
-        history = self._history(library)
+        history = self._load_history(library)
         return history.build(version, of) if history is not None else None
 
     @lru_cache(maxsize=256)  # noqa: B019
-    def _history(self, library: str) -> SurfaceHistory | None:
-        data = self._file.columns("SELECT data FROM package WHERE name = ?", library)
+    def _load_history(self, library: str) -> SurfaceHistory | None:
+        data = self._file.query_column("SELECT data FROM package WHERE name = ?", library)
         return SurfaceHistory(library, data[0], b"") if data else None
 
-    @cached_method
-    def of_header(self, header: str) -> str:
+    @cache_method
+    def find_by_header(self, header: str) -> str:
         """The library that has a header in some version; empty for none that was read."""
         if stray := self._strays.get(header):
             return stray
-        providers = (p for p in default_providers().header(header) if p.kind == "system" and p.package)
-        nearest = dict.fromkeys(library for p in islice(providers, NEAREST) if (library := self.of_package(p.package)))
+        providers = (p for p in load_providers().find_header(header) if p.kind == "system" and p.package)
+        nearest = dict.fromkeys(
+            library for p in islice(providers, NEAREST) if (library := self.find_by_package(p.package))
+        )
         return next((library for library in nearest if self.has(library, header)), "")
 
     @cached_property
     def _strays(self) -> dict[str, str]:
         """Headers that no list of files leads to, with their libraries."""
-        return dict(self._file.rows("SELECT name, library FROM header"))
+        return dict(self._file.fetch("SELECT name, library FROM header"))
 
     def has(self, library: str, header: str) -> bool:
         """Whether some version of a library has a header."""
-        return any(self._states(library, path) is not None for path in _written(header, self._roots(library)))
+        return any(self._find_states(library, path) is not None for path in _spell(header, self._list_roots(library)))
 
-    def _states(self, library: str, path: str) -> tuple[tuple[Include, ...], tuple[HeaderState, ...]] | None:
+    def _find_states(self, library: str, path: str) -> tuple[tuple[Include, ...], tuple[HeaderState, ...]] | None:
         """What is stored of a header, by its path below the folders that flags name: of its block HeaderBlock.every,
         and its states; None for one that no version has."""
         starts = self._starts(library)
         place = bisect_right(starts, path)
-        block = self._block(library, starts[place - 1]) if place else None
+        block = self._load_block(library, starts[place - 1]) if place else None
         return (block.every, block.headers[path]) if block is not None and path in block.headers else None
 
-    @cached_method
+    @cache_method
     def _starts(self, library: str) -> tuple[str, ...]:
         """The first header of each block of a library."""
-        return tuple(self._file.columns("SELECT start FROM block WHERE library = ? ORDER BY start", library))
+        return tuple(self._file.query_column("SELECT start FROM block WHERE library = ? ORDER BY start", library))
 
     @lru_cache(maxsize=64)  # noqa: B019
-    def _block(self, library: str, start: str) -> HeaderBlock:
-        (data,) = self._file.columns("SELECT data FROM block WHERE library = ? AND start = ?", library, start)
+    def _load_block(self, library: str, start: str) -> HeaderBlock:
+        (data,) = self._file.query_column("SELECT data FROM block WHERE library = ? AND start = ?", library, start)
         return read_packed(data, HeaderBlock)
 
-    def _state(self, library: str, version: str, path: str) -> tuple[tuple[Include, ...], HeaderState] | None:
+    def _find_state(self, library: str, version: str, path: str) -> tuple[tuple[Include, ...], HeaderState] | None:
         """The same with the one state that it has in a version; None where the version has no such header."""
-        found = self._states(library, path)
+        found = self._find_states(library, path)
         if found is None:
             return None
-        place = self._places(library)[version]
+        place = self._index_versions(library)[version]
         for state in found[1]:
-            if there(state.spans, place):
+            if covers(state.spans, place):
                 return found[0], state
         return None
 
-    @cached_method
-    def _places(self, library: str) -> dict[str, int]:
+    @cache_method
+    def _index_versions(self, library: str) -> dict[str, int]:
         """The versions of a library, oldest first, with their places in the spans of its headers."""
-        versions = sorted(dict.fromkeys(self.versions(library).values()), key=parts)
+        versions = sorted(dict.fromkeys(self.list_versions(library).values()), key=parse)
         return {version: place for place, version in enumerate(versions)}
 
-    def included(self, header: str, platform: str) -> Including | None:
+    def find_included(self, header: str, platform: str) -> Including | None:
         """What a header includes in a platform's version, or in either of those between which that lies; None where
         neither has it, one of them was not read, or it is of no library that was."""
-        library = self.of_header(header)
-        before, after = self.around(library, platform) if library else ("", "")
+        library = self.find_by_header(header)
+        before, after = self.find_range(library, platform) if library else ("", "")
         if not (before and after):
             return None
-        found = [self._included_in(library, version, header) for version in (before, after)]
+        found = [self._list_included(library, version, header) for version in (before, after)]
         known = [paths for paths in found if paths is not None]
         return Including(library, before, tuple(dict.fromkeys(chain(*known)))) if known else None
 
-    @cached_method
-    def _included_in(self, library: str, version: str, header: str) -> tuple[str, ...] | None:
+    @cache_method
+    def _list_included(self, library: str, version: str, header: str) -> tuple[str, ...] | None:
         """What a header includes in a version of its library; None where that has it not."""
-        for path in _written(header, self._roots(library)):
-            if (stored := self._state(library, version, path)) is not None:
+        for path in _spell(header, self._list_roots(library)):
+            if (stored := self._find_state(library, version, path)) is not None:
                 every, state = stored
-                has = partial(self._state, library, version)
-                return tuple(path_of(every[number], path, has) for number in state.includes)
+                has = partial(self._find_state, library, version)
+                return tuple(choose_path(every[number], path, has) for number in state.includes)
         return None
 
-    @cached_method
-    def _roots(self, library: str) -> tuple[str, ...]:
+    @cache_method
+    def _list_roots(self, library: str) -> tuple[str, ...]:
         """The folders that flags name in any version."""
-        return tuple(self._first("SELECT roots FROM package WHERE name = ?", library).split())
+        return tuple(self._query_first("SELECT roots FROM package WHERE name = ?", library).split())
 
-    @cached_method
-    def folder(self, header: str) -> str:
+    @cache_method
+    def find_folder(self, header: str) -> str:
         """The folder below the system's include folder that a header lies in, so that compilers find it only where they
         are told to look there; empty where its path leads to it, or it is of no library that was read."""
-        library = self.of_header(header)
-        inner = (root for root in self._roots(library) if "linux-gnu" not in root) if library else ()
-        return next((root for root in inner if default_providers().header(f"{root}/{header}")), "")
+        library = self.find_by_header(header)
+        inner = (root for root in self._list_roots(library) if "linux-gnu" not in root) if library else ()
+        return next((root for root in inner if load_providers().find_header(f"{root}/{header}")), "")
 
-    def target(self, name: str, platform: str, version_of: Callable[[str], str | None]) -> Presence | None:
+    def find_target(self, name: str, platform: str, version_of: Callable[[str], str | None]) -> Presence | None:
         """How a platform stands to a CMake target that a library exports in some version; None where none does.
         version_of: the platform's version of a library, where that is known."""
-        library = self._first("SELECT library FROM target WHERE name = ?", name)
+        library = self._query_first("SELECT library FROM target WHERE name = ?", name)
         if not library:
             return None
-        return self._presence(library, platform, version_of, lambda build: _exports(build, name))
+        return self._compute_presence(library, platform, version_of, lambda build: _exports(build, name))
 
-    def configuration(
+    def find_configuration(
         self, library: str, name: str, platform: str, version_of: Callable[[str], str | None]
     ) -> Presence | None:
         """The same of a CMake package of a library; None where no version has it."""
-        found = self._presence(library, platform, version_of, lambda build: name in build.cmake_names)
-        builds = (self.build(library, version, _NAMED) for version in self.versions(library).values())
+        found = self._compute_presence(library, platform, version_of, lambda build: name in build.cmake_names)
+        builds = (self.build(library, version, _NAMED) for version in self.list_versions(library).values())
         return found if any(build is not None and name in build.cmake_names for build in builds) else None
 
-    def _presence(
+    def _compute_presence(
         self,
         library: str,
         platform: str,
         version_of: Callable[[str], str | None],
         has: Callable[[BuildSurface], bool | None],
     ) -> Presence:
-        versions = dict.fromkeys(self.versions(library).values())
+        versions = dict.fromkeys(self.list_versions(library).values())
         told = {one: has(build) for one in versions if (build := self.build(library, one, _NAMED))}
         exact = version_of(library)
-        before, after = (exact, exact) if exact in told else self.around(library, platform)
+        before, after = (exact, exact) if exact in told else self.find_range(library, platform)
         states = {told.get(version) for version in (before, after) if version}
         # What the oldest release lacks and a later one has came with that: it was not there before either.
         complete = (before and after) or (after and told.get(after) is False)
@@ -245,7 +247,7 @@ def _exports(build: BuildSurface, name: str) -> bool | None:
     return None if any(part == "targets" for part, _ in build.unknown) or not build.cmake_names else False
 
 
-def _written(header: str, roots: tuple[str, ...]) -> Iterator[str]:
+def _spell(header: str, roots: tuple[str, ...]) -> Iterator[str]:
     """A header as it is written, and as it lies below the folders that flags name."""
     yield header
     folders = header.split("/")
@@ -256,6 +258,6 @@ def _written(header: str, roots: tuple[str, ...]) -> Iterator[str]:
 
 
 @cache
-def system_libraries() -> SystemLibraries:
+def load_libraries() -> SystemLibraries:
     """The shipped libraries, one for each process."""
     return SystemLibraries()

@@ -10,8 +10,8 @@ import msgspec
 
 from ..distro.distro import DistroTarget
 from ..snapshot import DATA, read_table
-from ..version import at_least, parts
-from .libraries import system_libraries
+from ..version import is_at_least, parse
+from .libraries import load_libraries
 
 
 class _Boost(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -105,14 +105,14 @@ OPENCV_FUNCTIONS = {f"cv::{name}": library for library, names in _KNOWN.opencv.i
 DEBIAN_PACKAGES = _KNOWN.debian
 
 
-def compiled_component(header: str, version: str) -> str | None:
+def find_compiled_component(header: str, version: str) -> str | None:
     """The compiled Boost library that code with this include needs to be linked to in a Boost version, None when it is
     headers alone or not known. version: empty where it is not known, which counts as the newest."""
     if not header.startswith("boost/"):
         return None
     for row in _KNOWN.boost.headers:
         if header.startswith(row.start):
-            return None if row.until and (not version or at_least(version, row.until)) else row.component
+            return None if row.until and (not version or is_at_least(version, row.until)) else row.component
     return None
 
 
@@ -123,17 +123,19 @@ class Gone(NamedTuple):
     help: str
 
 
-def gone_component(target: DistroTarget, package: str, component: str) -> Gone | None:
+def find_gone_component(target: DistroTarget, package: str, component: str) -> Gone | None:
     """What a target's version of a CMake package lacks of its components, None when it is there or not known."""
     for row in _KNOWN.gone:
         if row.package == package and row.component == component:
-            version = target.library(row.library)
-            if version and at_least(version, row.gone_in):
+            version = target.find_library(row.library)
+            if version and is_at_least(version, row.gone_in):
                 return Gone(version, row.help)
     # The configuration of Boost finds one for each component, `boost_json`.
     library = _KNOWN.packages.get(package, _OTHER).library
-    found = system_libraries().configuration(library, f"{library}_{component}", target.platform, target.library)
-    return Gone(target.library(library) or found.version, "") if found is not None and found.here is False else None
+    found = load_libraries().find_configuration(library, f"{library}_{component}", target.platform, target.find_library)
+    return (
+        Gone(target.find_library(library) or found.version, "") if found is not None and found.here is False else None
+    )
 
 
 class VersionAnswer(NamedTuple):
@@ -143,29 +145,29 @@ class VersionAnswer(NamedTuple):
     version: str
 
 
-def satisfies(target: DistroTarget, package: str, request: str, exact: bool) -> VersionAnswer | None:
+def check_version(target: DistroTarget, package: str, request: str, exact: bool) -> VersionAnswer | None:
     """Whether find_package(package request [EXACT]) holds by the platform's version; None when that is not known."""
     known = _KNOWN.packages.get(package, _OTHER)
-    if not known.library and target.version(package) is not None:
+    if not known.library and target.find_version(package) is not None:
         return None  # a released package's own
-    version = target.library(known.library or package.lower().replace("_", "-"))
+    version = target.find_library(known.library or package.lower().replace("_", "-"))
     if not version:
         return None
     if package == "OpenCV" and target.ros == 1 and target.distro == "kinetic":
         return None  # ROS kinetic brings OpenCV 3 beside the platform's 2
     low, _, high = request.partition("...")
     if exact:
-        return VersionAnswer(parts(version)[: len(parts(low))] == parts(low), version)
-    holds = at_least(version, low)
+        return VersionAnswer(parse(version)[: len(parse(low))] == parse(low), version)
+    holds = is_at_least(version, low)
     if holds and high:
         bound = high.lstrip("<")
         holds = (
-            not at_least(version, bound)
+            not is_at_least(version, bound)
             if high.startswith("<")
-            else not at_least(version, bound) or parts(version)[: len(parts(bound))] == parts(bound)
+            else not is_at_least(version, bound) or parse(version)[: len(parse(bound))] == parse(bound)
         )
     elif holds and known.same_major:
-        holds = parts(version)[:1] == parts(low)[:1]
+        holds = parse(version)[:1] == parse(low)[:1]
     return VersionAnswer(holds, version)
 
 
@@ -181,43 +183,43 @@ class NeededStandard(NamedTuple):
     sure: bool
 
 
-def needed_standard(target: DistroTarget, include: str) -> NeededStandard | None:
+def find_needed_standard(target: DistroTarget, include: str) -> NeededStandard | None:
     """The C++ standard that an include path needs on a target, None when nothing is known."""
     for row in _KNOWN.standards:
         if include.startswith(row.prefix):
-            version = target.library(row.package) if row.library else target.version(row.package)
-            if at_least(version, row.since) if version else target.distro in row.distros:
+            version = target.find_library(row.package) if row.library else target.find_version(row.package)
+            if is_at_least(version, row.since) if version else target.distro in row.distros:
                 return NeededStandard(row.standard, row.package, version or "", row.sure)
     return None
 
 
-def default_standard(target: DistroTarget) -> int | None:
+def find_default_standard(target: DistroTarget) -> int | None:
     """Year of the C++ standard that the target's compiler takes by default (1998, 2014, 2017), None when not known.
 
     Source: GCC's documentation of -std: gnu++98 before 6, gnu++14 from 6, gnu++17 from 11.
     """
-    gcc = target.library("gcc")
+    gcc = target.find_library("gcc")
     if not gcc:
         return None
-    return 2017 if at_least(gcc, "11") else 2014 if at_least(gcc, "6") else 1998
+    return 2017 if is_at_least(gcc, "11") else 2014 if is_at_least(gcc, "6") else 1998
 
 
-def standard_year(number: int) -> int:
+def get_year(number: int) -> int:
     """The year of a C++ standard as flags and CMake write it: 98 and 3 come before 11."""
     return 1998 if number in (98, 3) else 2000 + number % 100
 
 
-def not_answering(target: DistroTarget, package: str) -> str:
+def find_misspelled_version(target: DistroTarget, package: str) -> str:
     """The target's version of a library whose CMake package does not answer to this spelling of its name; empty where
     it does, or nothing is known."""
     for row in _KNOWN.exact:
         if package.lower() == row.name and package != row.name:
-            version = target.library(row.library) or ""
-            return version if version and at_least(version, row.since) else ""
+            version = target.find_library(row.library) or ""
+            return version if version and is_at_least(version, row.since) else ""
     return ""
 
 
-def variables(package: str) -> frozenset[str] | None:
+def list_variables(package: str) -> frozenset[str] | None:
     """Variables that find_package(package) sets, None where they are not known."""
     known = _KNOWN.packages.get(package, _OTHER).variables
     return frozenset(f"{stem}_{end}" for stem, ends in known.items() for end in ends.split()) if known else None
@@ -239,16 +241,16 @@ class Folder(NamedTuple):
     path: str
 
 
-def versioned_folder(target: DistroTarget, path: str) -> Folder | None:
+def find_versioned_folder(target: DistroTarget, path: str) -> Folder | None:
     """The folder of a version in an include path; None where there is none, or the library's version is not known."""
     found = _FOLDER.match(path)
     if found is None or found.lastgroup is None:
         return None
-    version = target.library(found.lastgroup)
+    version = target.find_library(found.lastgroup)
     if not version:
         return None
-    meant = parts(found[found.lastgroup])
-    return Folder(found.lastgroup, version, parts(version)[: len(meant)] == meant, path[found.end() :])
+    meant = parse(found[found.lastgroup])
+    return Folder(found.lastgroup, version, parse(version)[: len(meant)] == meant, path[found.end() :])
 
 
 def include_roots(name: str) -> tuple[str, ...]:

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
-from ...facts.interface import PRIMITIVES, TIMES, Interface, full_name
-from ..surface.fields import ROS1_SUFFIXES, snake
+from ...facts.interface import PRIMITIVES, TIMES, Interface, make_full_name
+from ..surface.fields import ROS1_SUFFIXES, make_snake_case
 
 _ROS1 = re.compile(r"(?P<package>\w+)/(?P<name>[A-Z]\w*)\.h\Z")
 _ROS2 = re.compile(
@@ -31,7 +31,7 @@ rosidl_generator_c, 3.1 (Humble) to 4.6 (Jazzy)."""
 _OF_ACTIONS = ("actionlib_msgs/GoalID.h", "actionlib_msgs/GoalStatus.h", "std_msgs/Header.h")
 
 
-def package_of(header: str, ros: int) -> str | None:
+def find_package(header: str, ros: int) -> str | None:
     """The package of a header that is made from an interface in this ROS generation, by its path; None for others."""
     found = (_ROS1 if ros == 1 else _ROS2).match(header)
     return None if found is None else found["package"]
@@ -48,23 +48,23 @@ class InterfaceType(NamedTuple):
 
 
 @lru_cache(maxsize=20000)
-def type_in(name: str) -> InterfaceType | None:
+def parse_type(name: str) -> InterfaceType | None:
     """The type that a qualified name of C++ begins with; None where it looks like none. Of ROS 1, types in packages
     whose names say that they hold messages, without what only some of them have (`Ptr`)."""
     found, ros = _TYPE2.match(name), 2
     if found is None:
         found, ros = _TYPE1.match(name), 1
-    return None if found is None else InterfaceType(found[0], found["package"], ros, _defining(found[0].split("::")))
+    return None if found is None else InterfaceType(found[0], found["package"], ros, _list_files(found[0].split("::")))
 
 
-def _defining(parts: list[str]) -> tuple[str, ...]:
+def _list_files(parts: list[str]) -> tuple[str, ...]:
     if len(parts) == 2:
         return (f"{parts[0]}/{parts[1]}.h",)
-    folder, stem = f"{parts[0]}/{parts[1]}/", snake(parts[2])
+    folder, stem = f"{parts[0]}/{parts[1]}/", make_snake_case(parts[2])
     return f"{folder}{stem}.hpp", f"{folder}detail/{stem}__struct.hpp", f"{folder}{stem}__struct.hpp"
 
 
-def package_for_c(header: str) -> str | None:
+def find_package_for_c(header: str) -> str | None:
     """The package of a header for C that ROS 2 makes from an interface, by its path; None for others."""
     found = _ROS2_C.match(header)
     return None if found is None else found["package"]
@@ -79,32 +79,32 @@ class Definitions(dict[str, Interface]):
         found: dict[tuple[str, str], Interface] = {}
         for name, interface in self.items():
             kind, _, name = name.partition("/")
-            found.setdefault((kind, snake(name)), interface)
+            found.setdefault((kind, make_snake_case(name)), interface)
         return found
 
 
-def included_by(header: str, ros: int, interfaces: Definitions, apart: bool) -> tuple[str, ...] | None:
+def list_included(header: str, ros: int, interfaces: Definitions, apart: bool) -> tuple[str, ...] | None:
     """The generated headers that such a header includes; None when its package has no such interface. interfaces: those
     of its package. apart: the parts of a header lie in a folder of their own."""
-    return _of_ros1(header, interfaces) if ros == 1 else _of_ros2(header, interfaces, "detail/" if apart else "")
+    return _list_ros1(header, interfaces) if ros == 1 else _list_ros2(header, interfaces, "detail/" if apart else "")
 
 
-def _of_ros1(header: str, interfaces: Definitions) -> tuple[str, ...] | None:
+def _list_ros1(header: str, interfaces: Definitions) -> tuple[str, ...] | None:
     found = _ROS1.match(header)
     if found is None:
         return None
     package, name = found.groups()
-    for kind, stem in (("msg", name), ("srv", name), *_stems(name)):
+    for kind, stem in (("msg", name), ("srv", name), *_iterate_stems(name)):
         definition = interfaces.get(f"{kind}/{stem}")
         if definition is None:
             continue
         own = [f"{package}/{stem}{ending}.h" for ending in ROS1_SUFFIXES[kind] if stem + ending != name]
-        nested = [f"{other}/{type_}.h" for other, type_ in _nested(definition, package)]
+        nested = [f"{other}/{type_}.h" for other, type_ in _iterate_nested(definition, package)]
         return tuple(dict.fromkeys((*own, *nested, *(_OF_ACTIONS if kind == "action" else ()))))
     return None
 
 
-def _stems(name: str) -> Iterator[tuple[str, str]]:
+def _iterate_stems(name: str) -> Iterator[tuple[str, str]]:
     """Services and actions that a header may be one of several of."""
     for kind, endings in ROS1_SUFFIXES.items():
         for ending in endings:
@@ -112,7 +112,7 @@ def _stems(name: str) -> Iterator[tuple[str, str]]:
                 yield kind, name.removesuffix(ending)
 
 
-def _of_ros2(header: str, interfaces: Definitions, detail: str) -> tuple[str, ...] | None:
+def _list_ros2(header: str, interfaces: Definitions, detail: str) -> tuple[str, ...] | None:
     found = _ROS2.match(header)
     if found is None:
         return None
@@ -126,18 +126,18 @@ def _of_ros2(header: str, interfaces: Definitions, detail: str) -> tuple[str, ..
         return (f"{own}__struct.hpp",)
     return tuple(
         dict.fromkeys(
-            f"{other}/msg/{detail}{snake(type_)}{found['part']}.hpp"
-            for other, type_ in _nested(definition, found["package"])
+            f"{other}/msg/{detail}{make_snake_case(type_)}{found['part']}.hpp"
+            for other, type_ in _iterate_nested(definition, found["package"])
         )
     )
 
 
-def _nested(definition: Interface, package: str) -> Iterator[tuple[str, str]]:
+def _iterate_nested(definition: Interface, package: str) -> Iterator[tuple[str, str]]:
     """Package and name of each interface that a field has as its type."""
     for section in definition.sections:
         for field in section.fields:
             type_ = field.type.partition("<")[0]
             if type_ in PRIMITIVES or type_ in TIMES:
                 continue
-            other, _, name = full_name(type_, package).partition("/")
+            other, _, name = make_full_name(type_, package).partition("/")
             yield other, name

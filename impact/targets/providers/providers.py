@@ -11,13 +11,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ..snapshot import DATA, read_table
 from ..target import Provider
 from ..unpacked import ShippedDatabase
-from ..version import parts
+from ..version import parse
 
-__all__ = ["HeaderSpan", "Providers", "default_providers"]
+__all__ = ["HeaderSpan", "Providers", "load_providers"]
 
 FACT_SCHEMA = """
 CREATE TABLE fact(kind TEXT, name TEXT, entries TEXT, PRIMARY KEY(kind, name)) WITHOUT ROWID;
@@ -71,19 +71,19 @@ class Providers(ShippedDatabase):
     def __reduce__(self):
         return Providers, (self.data, self._cache)
 
-    @cached_method
-    def header(self, path: str) -> tuple[Provider, ...]:
+    @cache_method
+    def find_header(self, path: str) -> tuple[Provider, ...]:
         """Who installs a header that is included as path (`ros/ros.h`, `opencv2/core.hpp`), best first.
 
         A provider with an empty name is the C library, the kernel's headers or the compiler. That `pkg/x.h` is of the
         released package `pkg` is a convention which the caller adds; what is here was seen in a file list. Released
         packages of both ROS generations are listed; the caller knows which its target has.
         """
-        found = self._facts("header", path)
-        system = self._system("header", path)
+        found = self._find_facts("header", path)
+        system = self._find_system("header", path)
         released = [
             Provider("ros", name)
-            for (name,) in self._rows(
+            for (name,) in self._query(
                 "SELECT h.package FROM ros_header h JOIN pattern p ON p.id = h.pattern WHERE h.path = ?"
                 " ORDER BY length(p.spans) DESC, h.package",
                 path,
@@ -93,38 +93,42 @@ class Providers(ShippedDatabase):
             # Some packages carry a copy of a library; the library itself is meant, but where the package is named so.
             head = path.partition("/")[0]
             own = [provider for provider in released if head in provider.name]
-            found += [*own, system[0], *self._vendors(system[0].name), *system[1:], *released]
+            found += [*own, system[0], *self._find_vendors(system[0].name), *system[1:], *released]
         else:
-            found += released or self._by_prefix(path)
-        return tuple(_once(found))
+            found += released or self._find_by_prefix(path)
+        return tuple(_deduplicate(found))
 
-    def cmake(self, name: str) -> list[Provider]:
+    def find_cmake(self, name: str) -> list[Provider]:
         """Who answers find_package(name), best first. Where only another letter case is known, sure is False.
 
         An empty provider name: CMake's own find module succeeds on every machine that builds (Threads, PkgConfig).
         """
-        found = self._facts("cmake", name) + self._ros("ros_cmake", name) + self._system("cmake", name)
-        found += self._sought(name)
+        found = self._find_facts("cmake", name) + self._find_ros("ros_cmake", name) + self._find_system("cmake", name)
+        found += self._find_sought(name)
         if not found:
             # find_package(SDL2) also reads sdl2-config.cmake.
-            found = self._system("cmake", f"{name.lower()}-config")
+            found = self._find_system("cmake", f"{name.lower()}-config")
         if not found:
             for other in self._folded_cmake.get(name.lower(), ()):
-                found += self._facts("cmake", other) + self._ros("ros_cmake", other) + self._system("cmake", other)
-                found += self._sought(other)
+                found += (
+                    self._find_facts("cmake", other)
+                    + self._find_ros("ros_cmake", other)
+                    + self._find_system("cmake", other)
+                )
+                found += self._find_sought(other)
             found = [provider._replace(sure=False) for provider in found]
-        return _once(found)
+        return _deduplicate(found)
 
-    def installed_cmake(self, name: str) -> list[Provider]:
+    def find_installed_cmake(self, name: str) -> list[Provider]:
         """Which system packages install a CMake configuration of exactly this name, best first."""
-        return self._system("cmake", name)
+        return self._find_system("cmake", name)
 
-    def _sought(self, module: str) -> list[Provider]:
+    def _find_sought(self, module: str) -> list[Provider]:
         """Who brings what a find module of CMake looks for, so that it succeeds."""
         found: list[Provider] = []
         for kind, names in self._find_modules.get(module, {}).items():
             for name in names:
-                found += self.header(name) if kind == "header" else self.executable(name)
+                found += self.find_header(name) if kind == "header" else self.find_executable(name)
         return found
 
     @cached_property
@@ -138,15 +142,15 @@ class Providers(ShippedDatabase):
         databuild/commands.py."""
         return read_table(self.data / "commands.json", dict[int, dict[str, str]])
 
-    def spellings(self, name: str) -> tuple[str, ...]:
+    def list_spellings(self, name: str) -> tuple[str, ...]:
         """Every known CMake package whose name differs from this one in letter case at most."""
         return tuple(self._folded_cmake.get(name.lower(), ()))
 
-    def pkgconfig(self, name: str) -> list[Provider]:
+    def find_pkgconfig(self, name: str) -> list[Provider]:
         """Who installs `name.pc`, best first."""
-        return _once(self._facts("pkgconfig", name) + self._system("pkgconfig", name))
+        return _deduplicate(self._find_facts("pkgconfig", name) + self._find_system("pkgconfig", name))
 
-    def module(self, dotted: str) -> list[Provider]:
+    def find_module(self, dotted: str) -> list[Provider]:
         """Who installs a Python module (`yaml`, `google.protobuf.text_format`), best first.
 
         The standard library is not here, see stdlib.py. The longest known beginning of the dotted name counts.
@@ -154,28 +158,32 @@ class Providers(ShippedDatabase):
         parts_ = dotted.split(".")
         for size in range(min(len(parts_), 2), 0, -1):
             name = ".".join(parts_[:size])
-            found = self._facts("module", name) + self._ros("ros_module", name) + self._system("module", name)
+            found = (
+                self._find_facts("module", name)
+                + self._find_ros("ros_module", name)
+                + self._find_system("module", name)
+            )
             if found:
-                return _once(found)
+                return _deduplicate(found)
         return []
 
-    def executable(self, name: str) -> list[Provider]:
+    def find_executable(self, name: str) -> list[Provider]:
         """Who installs a program on the PATH, best first. An empty provider name: every Debian or Ubuntu has it."""
-        return _once(self._facts("program", name) + self._system("program", name))
+        return _deduplicate(self._find_facts("program", name) + self._find_system("program", name))
 
-    def header_platforms(self, path: str) -> tuple[str, ...]:
+    def list_header_platforms(self, path: str) -> tuple[str, ...]:
         """Platforms (`ubuntu jammy`) whose system packages have a header; empty for headers of ROS packages alone."""
-        return self._platforms_of("header", path)
+        return self._list_platforms("header", path)
 
-    def system_has(self, header: str, platform: str) -> bool | None:
+    def has_system_header(self, header: str, platform: str) -> bool | None:
         """Whether a platform's packages have a header that the system packages of some platform have.
 
         None when no platform's have it, when the C library or compiler has it, or the platform is not in the table.
         """
         if platform not in self.platforms:
             return None
-        where = self.header_platforms(header)
-        if not where or any(not provider.name for provider in self._system("header", header)):
+        where = self.list_header_platforms(header)
+        if not where or any(not provider.name for provider in self._find_system("header", header)):
             return None
         return platform in where
 
@@ -185,123 +193,123 @@ class Providers(ShippedDatabase):
 
     @cached_property
     def _system_names(self) -> frozenset[str]:
-        return frozenset(name for (entries,) in self._rows("SELECT entries FROM provider") for name in entries.split())
+        return frozenset(name for (entries,) in self._query("SELECT entries FROM provider") for name in entries.split())
 
-    def companies(self) -> list[tuple[str, ...]]:
+    def list_provider_groups(self) -> list[tuple[str, ...]]:
         """For every header and pkg-config file of the system the packages that bring it, best first."""
         entries = {
             number: tuple(dict.fromkeys(p.package for p in _decode(text) if p.package))
-            for number, text in self._rows("SELECT id, entries FROM provider")
+            for number, text in self._query("SELECT id, entries FROM provider")
         }
         return [
             packages
             for table in ("header", "pkgconfig")
-            for (number,) in self._rows(f"SELECT provider FROM {table} ORDER BY name")
+            for (number,) in self._query(f"SELECT provider FROM {table} ORDER BY name")
             if (packages := entries[number])
         ]
 
-    def cmake_platforms(self, name: str) -> tuple[str, ...]:
+    def list_cmake_platforms(self, name: str) -> tuple[str, ...]:
         """Platforms whose system packages bring a CMake configuration or find module of this name."""
-        return self._platforms_of("cmake", name)
+        return self._list_platforms("cmake", name)
 
     @cached_property
     def platforms(self) -> tuple[str, ...]:
         """Platforms whose system packages are in the table."""
-        return tuple(name for (name,) in self._rows("SELECT name FROM platform ORDER BY bit"))
+        return tuple(name for (name,) in self._query("SELECT name FROM platform ORDER BY bit"))
 
-    def header_history(self, package: str, header: str) -> tuple[HeaderSpan, ...]:
+    def list_header_spans(self, package: str, header: str) -> tuple[HeaderSpan, ...]:
         """Releases of a ROS package that have a header (include path), by distro; empty when none is known to.
 
         Only releases whose source tree was read count; known_releases tells which.
         """
-        number = self._headers_of(package).get(header)
-        return self._pattern(number) if number is not None else ()
+        number = self._list_headers(package).get(header)
+        return self._load_pattern(number) if number is not None else ()
 
-    @cached_method
-    def known_releases(self, package: str) -> tuple[HeaderSpan, ...]:
+    @cache_method
+    def list_known_releases(self, package: str) -> tuple[HeaderSpan, ...]:
         """Releases of a ROS package whose source trees were read, as spans by distro."""
-        rows = self._rows("SELECT pattern FROM ros_package WHERE name = ?", package)
-        return self._pattern(rows[0][0]) if rows else ()
+        rows = self._query("SELECT pattern FROM ros_package WHERE name = ?", package)
+        return self._load_pattern(rows[0][0]) if rows else ()
 
     def has_header(self, package: str, header: str, distro: str, version: str) -> bool | None:
         """Whether a package's release in a distro has a header; None when that release's tree is not known."""
-        if not _within(self.known_releases(package), distro, version):
+        if not _contains_version(self.list_known_releases(package), distro, version):
             return None
-        return _within(self.header_history(package, header), distro, version)
+        return _contains_version(self.list_header_spans(package, header), distro, version)
 
     def has_headers(self, package: str, distro: str, version: str) -> bool | None:
         """Whether a package's release in a distro has any header; None when that release's tree is not known."""
-        if not _within(self.known_releases(package), distro, version):
+        if not _contains_version(self.list_known_releases(package), distro, version):
             return None
-        patterns = {*self._headers_of(package).values()}
-        return any(_within(self._pattern(number), distro, version) for number in patterns)
+        patterns = {*self._list_headers(package).values()}
+        return any(_contains_version(self._load_pattern(number), distro, version) for number in patterns)
 
-    @cached_method
-    def _headers_of(self, package: str) -> dict[str, int]:
+    @cache_method
+    def _list_headers(self, package: str) -> dict[str, int]:
         """The headers that a ROS package ever had, with their patterns."""
-        return dict(self._rows("SELECT path, pattern FROM ros_header WHERE package = ?", package))
+        return dict(self._query("SELECT path, pattern FROM ros_header WHERE package = ?", package))
 
-    def _vendors(self, key: str) -> list[Provider]:
-        return self._facts("vendor", key)
+    def _find_vendors(self, key: str) -> list[Provider]:
+        return self._find_facts("vendor", key)
 
-    def _by_prefix(self, path: str) -> list[Provider]:
+    def _find_by_prefix(self, path: str) -> list[Provider]:
         """Reviewed owners of whole folders (`gz/math`), longest first; not seen in a file list, so sure is False."""
         folders = path.split("/")[:-1]
         for size in range(len(folders), 0, -1):
-            found = self._facts("folder", "/".join(folders[:size]))
+            found = self._find_facts("folder", "/".join(folders[:size]))
             if found:
                 return [provider._replace(sure=False) for provider in found]
         return []
 
-    def _facts(self, kind: str, name: str) -> list[Provider]:
+    def _find_facts(self, kind: str, name: str) -> list[Provider]:
         entries = self._reviewed.get((kind, name))
         return [] if entries is None else _decode(entries)
 
     @cached_property
     def _reviewed(self) -> dict[tuple[str, str], str]:
         """The facts of data/providers.yaml, a few hundred, by kind and name."""
-        return {(kind, name): entries for kind, name, entries in self._rows("SELECT kind, name, entries FROM fact")}
+        return {(kind, name): entries for kind, name, entries in self._query("SELECT kind, name, entries FROM fact")}
 
-    def _system(self, table: str, name: str) -> list[Provider]:
-        row = self._row(table, name)
+    def _find_system(self, table: str, name: str) -> list[Provider]:
+        row = self._find_row(table, name)
         if row is None:
             return []
         number, platforms = row
-        known = self._set(number)
+        known = self._load_set(number)
         return [provider._replace(sure=False) for provider in known] if platforms & BY_FOLDER else list(known)
 
-    @cached_method
-    def _set(self, number: int) -> tuple[Provider, ...]:
-        ((entries,),) = self._rows("SELECT entries FROM provider WHERE id = ?", number)
+    @cache_method
+    def _load_set(self, number: int) -> tuple[Provider, ...]:
+        ((entries,),) = self._query("SELECT entries FROM provider WHERE id = ?", number)
         return tuple(_decode(entries))
 
-    @cached_method
-    def _row(self, table: str, name: str) -> tuple[int, int] | None:
+    @cache_method
+    def _find_row(self, table: str, name: str) -> tuple[int, int] | None:
         """(provider, platforms) of a name in one of the tables of the system's packages, None when it is not there."""
-        rows = self._rows(f"SELECT provider, platforms FROM {table} WHERE name = ?", name)
+        rows = self._query(f"SELECT provider, platforms FROM {table} WHERE name = ?", name)
         return rows[0] if rows else None
 
-    def _ros(self, table: str, name: str) -> list[Provider]:
-        for (packages,) in self._rows(f"SELECT packages FROM {table} WHERE name = ?", name):
+    def _find_ros(self, table: str, name: str) -> list[Provider]:
+        for (packages,) in self._query(f"SELECT packages FROM {table} WHERE name = ?", name):
             return [Provider("ros", package) for package in packages.split(" ")]
         return []
 
-    def _platforms_of(self, table: str, name: str) -> tuple[str, ...]:
-        row = self._row(table, name)
+    def _list_platforms(self, table: str, name: str) -> tuple[str, ...]:
+        row = self._find_row(table, name)
         if row is None:
             return ()
         return tuple(platform for place, platform in enumerate(self.platforms) if row[1] >> place & 1)
 
-    @cached_method
-    def _pattern(self, number: int) -> tuple[HeaderSpan, ...]:
-        ((text,),) = self._rows("SELECT spans FROM pattern WHERE id = ?", number)
+    @cache_method
+    def _load_pattern(self, number: int) -> tuple[HeaderSpan, ...]:
+        ((text,),) = self._query("SELECT spans FROM pattern WHERE id = ?", number)
         spans = (line.split(" ") for line in text.split("\n") if line)
         return tuple(HeaderSpan(distro, first, None if last == "-" else last) for distro, first, last in spans)
 
     @cached_property
     def _folded_cmake(self) -> dict[str, list[str]]:
         found: dict[str, list[str]] = {}
-        for (name,) in self._rows(
+        for (name,) in self._query(
             "SELECT name FROM cmake UNION SELECT name FROM ros_cmake UNION SELECT name FROM fact WHERE kind = 'cmake'"
         ):
             found.setdefault(name.lower(), []).append(name)
@@ -310,11 +318,11 @@ class Providers(ShippedDatabase):
                 found[name.lower()] = [name]
         return found
 
-    def _rows(self, sql: str, *arguments: object) -> list[tuple]:
-        return self.rows(sql, arguments)
+    def _query(self, sql: str, *arguments: object) -> list[tuple]:
+        return self.fetch(sql, arguments)
 
 
-def _once(providers: list[Provider]) -> list[Provider]:
+def _deduplicate(providers: list[Provider]) -> list[Provider]:
     """Each provider once, first mention first; the machine itself (no name) makes all others pointless."""
     if any(not provider.name for provider in providers):
         return [_LIBC]
@@ -335,10 +343,10 @@ def _decode(entries: str) -> list[Provider]:
     return found
 
 
-def _within(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
-    wanted = parts(version)
+def _contains_version(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
+    wanted = parse(version)
     return any(
-        span.distro == distro and parts(span.first) <= wanted and (span.last is None or wanted <= parts(span.last))
+        span.distro == distro and parse(span.first) <= wanted and (span.last is None or wanted <= parse(span.last))
         for span in spans
     )
 
@@ -346,7 +354,7 @@ def _within(spans: tuple[HeaderSpan, ...], distro: str, version: str) -> bool:
 _default: Providers | None = None
 
 
-def default_providers() -> Providers:
+def load_providers() -> Providers:
     """The shipped table, one for each process."""
     global _default
     if _default is None:

@@ -62,7 +62,7 @@ a later one."""
 
 
 @cache
-def _of_c() -> dict[str, frozenset[str]]:
+def _load_c_headers() -> dict[str, frozenset[str]]:
     """What headers of C and POSIX bring, by header."""
     found: dict[str, set[str]] = {}
     for brought, headers in _KNOWN.brought_by_c.items():
@@ -72,7 +72,7 @@ def _of_c() -> dict[str, frozenset[str]]:
 
 
 @cache
-def _tables() -> tuple[tuple[int, dict[str, frozenset[str]]], ...]:
+def _load_tables() -> tuple[tuple[int, dict[str, frozenset[str]]], ...]:
     read = read_table(DATA / "providers_std.json", dict[str, dict[str, str]])
     return tuple(
         (int(major), {header: frozenset(text.split()) for header, text in table.items()})
@@ -80,19 +80,19 @@ def _tables() -> tuple[tuple[int, dict[str, frozenset[str]]], ...]:
     )
 
 
-def brought_by(header: str, gcc: int) -> frozenset[str]:
+def list_brought(header: str, gcc: int) -> frozenset[str]:
     """Standard headers (and `bits/` ones of DEFINED_IN) that a standard header reads in a GCC, itself included.
 
     gcc: major version; one that is not known is answered as the nearest older one, or the oldest. Raises SnapshotError
     when the data cannot be read.
     """
-    return _table(gcc).get(header, frozenset()) | {header}
+    return _build_table(gcc).get(header, frozenset()) | {header}
 
 
 @cache
-def _table(gcc: int) -> dict[str, frozenset[str]]:
-    older = [table for major, table in _tables() if major <= gcc]
-    of_c, read = _of_c(), older[-1] if older else _tables()[0][1]
+def _build_table(gcc: int) -> dict[str, frozenset[str]]:
+    older = [table for major, table in _load_tables() if major <= gcc]
+    of_c, read = _load_c_headers(), older[-1] if older else _load_tables()[0][1]
     return {
         **of_c,
         **{header: found.union(*(of_c.get(h, ()) for h in (header, *found))) for header, found in read.items()},
@@ -108,15 +108,15 @@ class StandardNames(msgspec.Struct, frozen=True):
 
 
 @cache
-def names() -> StandardNames:
+def load_names() -> StandardNames:
     """The names that are known. Raises SnapshotError when the data cannot be read."""
     return read_table(DATA / "std_names.json.zst", StandardNames)
 
 
 @cache
-def oldest() -> int:
+def find_oldest_gcc() -> int:
     """The first GCC whose headers are known name by name."""
-    return min(map(int, names().gcc))
+    return min(map(int, load_names().gcc))
 
 
 # Headers of C that are known: `cmath` is `math.h` as well.
@@ -127,44 +127,44 @@ _C = frozenset(
 
 
 @cache
-def offering() -> dict[str, tuple[str, ...]]:
+def index_headers() -> dict[str, tuple[str, ...]]:
     """Names of the standard libraries to the headers that offer them, the one to include first."""
     told = {
         name: (header, f"{header[1:]}.h") if header in _C and not name.startswith("std::") else (header,)
-        for name, header in names().names.items()
+        for name, header in load_names().names.items()
     }
     return {**DEFINED_IN, **told}
 
 
 @cache
-def _places() -> dict[str, int]:
-    return {name: 1 << place for place, name in enumerate(names().names)}
+def _index_bits() -> dict[str, int]:
+    return {name: 1 << place for place, name in enumerate(load_names().names)}
 
 
-def bit_of(name: str) -> int:
-    """The bit that stands for a name in named_by(); 0 for one that is not known."""
-    return _places().get(name, 0)
+def get_bit(name: str) -> int:
+    """The bit that stands for a name in find_named(); 0 for one that is not known."""
+    return _index_bits().get(name, 0)
 
 
-def named_by(header: str, gcc: int, standard: int) -> int | None:
+def find_named(header: str, gcc: int, standard: int) -> int | None:
     """The names that a header brings alone, as bits; None for a header that is not known.
 
     gcc: major version; one that is not known is answered as the nearest older one, or the oldest. standard: year of the
     C++ standard, likewise.
     """
-    return _names_of(gcc, standard).get(header)
+    return _select_names(gcc, standard).get(header)
 
 
 @cache
-def headers_naming(name: str, gcc: int, standard: int) -> tuple[str, ...]:
-    """The standard headers that bring a name alone, see named_by()."""
-    bit = bit_of(name)
-    return tuple(header for header, bits in _names_of(gcc, standard).items() if bit & bits)
+def list_naming_headers(name: str, gcc: int, standard: int) -> tuple[str, ...]:
+    """The standard headers that bring a name alone, see find_named()."""
+    bit = get_bit(name)
+    return tuple(header for header, bits in _select_names(gcc, standard).items() if bit & bits)
 
 
 @cache
-def _names_of(gcc: int, standard: int) -> dict[str, int]:
-    majors = {int(major): table for major, table in names().gcc.items()}
+def _select_names(gcc: int, standard: int) -> dict[str, int]:
+    majors = {int(major): table for major, table in load_names().gcc.items()}
     standards = majors[max((major for major in majors if major <= gcc), default=min(majors))]
     years = {2000 + int(number): table for number, table in standards.items()}
     told = years[max((year for year in years if year <= standard), default=min(years))]

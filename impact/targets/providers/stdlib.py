@@ -32,7 +32,7 @@ _REMOVED_IN = {word.partition("=")[0]: minor for minor, words in _KNOWN.removed.
 _TOP_2 = _SUCCESSORS.keys() - _REMOVED_IN.keys()
 
 
-def stdlib(module: str, minor: int, major: int = 3) -> bool:
+def is_in_stdlib(module: str, minor: int, major: int = 3) -> bool:
     """True when a module (its first dotted part counts) is in the standard library of Python major.minor.
 
     minor: 4 to 14 for Python 3; for Python 2 it does not matter, 2.7 stands. A version outside that range is answered
@@ -48,17 +48,17 @@ def stdlib(module: str, minor: int, major: int = 3) -> bool:
     return name in _ALWAYS_3 or (name.startswith("_") and name in _PRIVATE)
 
 
-def successor_of(module: str) -> str:
+def find_successor(module: str) -> str:
     """What serves instead of a module that Python 3 lacks; empty where nothing does."""
     return _SUCCESSORS.get(module.partition(".")[0], "")
 
 
-def stood_in_for(module: str) -> bool:
+def has_substitute(module: str) -> bool:
     """True for what a package that most machines have brings back: setuptools does with distutils."""
     return module.partition(".")[0] == "distutils"
 
 
-def ever_stdlib(module: str) -> bool:
+def was_ever_in_stdlib(module: str) -> bool:
     """True when any version of Python, 2.7 included, has or had the module in its standard library."""
     name = module.partition(".")[0]
     return name in _ALWAYS_3 or name in _ADDED or name in _REMOVED_IN or name in _TOP_2 or name in _PRIVATE

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import msgspec
 
 from ..snapshot import DATA, read_table
-from ..version import at_least, parts
+from ..version import is_at_least, parse
 
 
 class _Row(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -37,15 +37,15 @@ class VersionTest(NamedTuple):
     header: str
 
 
-def version_test(package: str, library: bool, version: str, *, ros: int, oldest: str) -> VersionTest | None:
+def make_version_test(package: str, library: bool, version: str, *, ros: int, oldest: str) -> VersionTest | None:
     """The test for at least this version of a package or platform library; None where no macro is known.
 
     oldest: the lowest version that has to understand it. Raises SnapshotError when the table cannot be read.
     """
-    row = _rows().get((package, library))
-    if row is None or not at_least(oldest, row.since) or row.ros not in (0, ros):
+    row = _load_rows().get((package, library))
+    if row is None or not is_at_least(oldest, row.since) or row.ros not in (0, ros):
         return None
-    numbers = (*parts(version), 0, 0, 0)[:3]
+    numbers = (*parse(version), 0, 0, 0)[:3]
     if row.only_major and any(numbers[1:]):
         return None
     form = row.major if row.major and not any(numbers[1:]) else row.form
@@ -54,7 +54,7 @@ def version_test(package: str, library: bool, version: str, *, ros: int, oldest:
 
 
 @cache
-def _rows() -> dict[tuple[str, bool], _Row]:
+def _load_rows() -> dict[tuple[str, bool], _Row]:
     file = read_table(DATA / "version_macros.json", _File)
     return {(name, library): row for rows, library in ((file.macros, False), (file.libraries, True)) for row in rows
             for name in row.packages}  # fmt: skip

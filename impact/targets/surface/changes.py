@@ -8,7 +8,7 @@ little. The line of versions is one for each ROS generation, since nothing is go
 import msgspec
 
 from ...facts.surface import Entity
-from ..version import newest_up_to
+from ..version import find_newest_up_to
 
 PARAMETER = "parameter of a node"
 """The side, and the sort of thing, of parameters that nodes declare."""
@@ -28,7 +28,7 @@ class Overload(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return self.fewest <= arguments and (self.most < 0 or arguments <= self.most)
 
 
-def overload_of(one: Entity) -> Overload:
+def make_overload(one: Entity) -> Overload:
     """The way to call a function or macro that an entity is."""
     parameters = one.parameters or ()
     required = sum(p.default is None and not p.pack for p in parameters)
@@ -112,8 +112,8 @@ class Line(msgspec.Struct, frozen=True, array_like=True, gc=False):
     bases: dict[str, tuple[str, ...]] = {}
     approximate: tuple[str, ...] = ()
 
-    def place(self, version: str) -> int | None:
+    def find_place(self, version: str) -> int | None:
         """The version that stands for one: itself, or the newest before it that was read at its tag; None for one older
         than all."""
-        found = newest_up_to(version, [known for known in self.versions if known not in self.approximate])
+        found = find_newest_up_to(version, [known for known in self.versions if known not in self.approximate])
         return None if found is None else self.versions.index(found)

@@ -19,9 +19,9 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ..snapshot import DATA, read_table
-from ..version import at_least, parts
+from ..version import is_at_least, parse
 
 
 class FieldMember(NamedTuple):
@@ -43,7 +43,7 @@ class Definition:
     def __init__(self, spans: tuple[tuple[int, int], ...], sections: dict[str, dict[str, list[FieldMember]]]):
         self.spans, self.sections = spans, sections
 
-    def members(self, section: str, name: str) -> list[FieldMember]:
+    def list_members(self, section: str, name: str) -> list[FieldMember]:
         return self.sections.get(section, {}).get(name, [])
 
     @cached_property
@@ -80,27 +80,27 @@ class FieldsHistory:
                 continue
             name, _, spans = line.partition("@")
             sections = []
-            self._lines[name] = _spans(spans, len(self.starts)), sections
+            self._lines[name] = _parse_spans(spans, len(self.starts)), sections
         self._definitions: dict[str, Definition] = {}
 
-    def state(self, version: str) -> int | None:
+    def find_state(self, version: str) -> int | None:
         """The state that holds for a version; None before the first that was read."""
         at = None
         for place, start in enumerate(self.starts):
-            if at_least(version, start):
+            if is_at_least(version, start):
                 at = place
         return at
 
     def read_up_to(self, version: str) -> bool:
         """False when newer releases of the version's line were not read: something may have come since."""
-        major = parts(version)[:1]
-        return any(parts(last)[:1] == major and at_least(last, version) for last in self._last)
+        major = parse(version)[:1]
+        return any(parse(last)[:1] == major and is_at_least(last, version) for last in self._last)
 
     def may_be_back(self, spans: Iterable[tuple[int, int]], version: str) -> bool:
         """Whether what earlier states had and this one lacks may be in a version all the same: newer releases of its
         line were not read, and a later state has it again, so that it was brought to an older line and goes on there.
         """
-        state = self.state(version)
+        state = self.find_state(version)
         return state is not None and any(first > state for first, _ in spans) and not self.read_up_to(version)
 
     @property
@@ -108,12 +108,12 @@ class FieldsHistory:
         """Every interface it ever had, as `kind/Name`."""
         return list(self._lines)
 
-    def spans(self, interface: str) -> tuple[tuple[int, int], ...] | None:
+    def find_spans(self, interface: str) -> tuple[tuple[int, int], ...] | None:
         """The states that have an interface; None when it never was."""
         known = self._lines.get(interface)
         return known and known[0]
 
-    def definition(self, interface: str) -> Definition | None:
+    def find_definition(self, interface: str) -> Definition | None:
         known = self._definitions.get(interface)
         if known is None and interface in self._lines:
             spans, lines = self._lines[interface]
@@ -127,45 +127,45 @@ class FieldsHistory:
                         name, constant, nested, array, there, successor = match.groups()
                         rows.setdefault(name, []).append(
                             FieldMember(name, nested or "", bool(array), bool(constant),
-                                   _spans(there, len(self.starts)) if there else spans, successor or "")
+                                   _parse_spans(there, len(self.starts)) if there else spans, successor or "")
                         )  # fmt: skip
             for section, members in [*sections.items()]:
                 for name, rows in members.items():
-                    if len({row.nested for row in rows}) > 1 and (inner := self._members_within(rows)):
+                    if len({row.nested for row in rows}) > 1 and (inner := self._list_members(rows)):
                         sections[f"{section}.{name}"] = inner
             known = self._definitions[interface] = Definition(spans, sections)
         return known
 
-    def _members_within(self, rows: Iterable[FieldMember]) -> dict[str, list[FieldMember]]:
+    def _list_members(self, rows: Iterable[FieldMember]) -> dict[str, list[FieldMember]]:
         """The members of what a field is made of in some states each; none where one of these is no known interface."""
         found: dict[str, list[FieldMember]] = {}
         for row in rows:
             package, _, name = row.nested.partition("/")
             history = None if row.array or not name else self._others(package)
-            definition = history.definition(f"msg/{name}") if history is not None else None
+            definition = history.find_definition(f"msg/{name}") if history is not None else None
             if definition is None:
                 return {}
             for member, inner in definition.sections.get("message", {}).items():
                 found.setdefault(member, []).append(inner[-1]._replace(spans=row.spans, successor=""))
         return found
 
-    @cached_method
-    def lacking(self, interface: str, versions: tuple[str, ...]) -> frozenset[str]:
+    @cache_method
+    def list_lacking(self, interface: str, versions: tuple[str, ...]) -> frozenset[str]:
         """The members of an interface that one of these versions lacks in some section while it has the interface."""
-        definition = self.definition(interface)
-        states = {state for version in versions if (state := self._state_of(version)) is not None}
+        definition = self.find_definition(interface)
+        states = {state for version in versions if (state := self._find_state(version)) is not None}
         return frozenset(
             name
             for state in states
-            if definition is not None and there(definition.spans, state)
+            if definition is not None and covers(definition.spans, state)
             for members in definition.sections.values()
             for name, rows in members.items()
-            if not any(there(row.spans, state) for row in rows)
+            if not any(covers(row.spans, state) for row in rows)
         )
 
-    @cached_method
-    def _state_of(self, version: str) -> int | None:
-        return self.state(version)
+    @cache_method
+    def _find_state(self, version: str) -> int | None:
+        return self.find_state(version)
 
     @cached_property
     def by_header(self) -> dict[str, str]:
@@ -173,7 +173,7 @@ class FieldsHistory:
         found: dict[str, str] = {}
         for interface in self._lines:
             kind, _, name = interface.partition("/")
-            found[f"{kind}/{snake(name)}"] = interface
+            found[f"{kind}/{make_snake_case(name)}"] = interface
             for suffix in ROS1_SUFFIXES[kind]:
                 found.setdefault(name + suffix, interface)
         return found
@@ -188,7 +188,7 @@ ROS1_SUFFIXES = {
 
 
 @lru_cache(maxsize=20000)
-def snake(name: str) -> str:
+def make_snake_case(name: str) -> str:
     """An interface's name as rosidl spells it in header names (`SetBool` gives `set_bool`).
 
     Source: rosidl_cmake's string_camel_case_to_lower_case_underscore."""
@@ -196,7 +196,7 @@ def snake(name: str) -> str:
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
 
-def _spans(text: str, states: int) -> tuple[tuple[int, int], ...]:
+def _parse_spans(text: str, states: int) -> tuple[tuple[int, int], ...]:
     if not text:
         return ((0, -1),)
     found = []
@@ -206,12 +206,12 @@ def _spans(text: str, states: int) -> tuple[tuple[int, int], ...]:
     return tuple(found)
 
 
-def there(spans: tuple[tuple[int, int], ...], state: int) -> bool:
+def covers(spans: tuple[tuple[int, int], ...], state: int) -> bool:
     """Whether a state is in the spans."""
     return any(first <= state and (last < 0 or state <= last) for first, last in spans)
 
 
-def before(spans: tuple[tuple[int, int], ...], state: int) -> bool:
+def was_there_before(spans: tuple[tuple[int, int], ...], state: int) -> bool:
     """Whether an earlier state is in the spans."""
     return any(first < state for first, _ in spans)
 
@@ -230,18 +230,18 @@ class Fields:
     def _texts(self) -> dict[str, str]:
         return read_table(self._path, dict[str, str])
 
-    def packages(self) -> list[str]:
+    def list_packages(self) -> list[str]:
         """Every package of every generation, as `package generation`."""
         return list(self._texts)
 
-    @cached_method
-    def history(self, package: str, ros: int) -> FieldsHistory | None:
+    @cache_method
+    def find_history(self, package: str, ros: int) -> FieldsHistory | None:
         """A package's versions; None when it was not read."""
         text = self._texts.get(f"{package} {ros}")
-        return FieldsHistory(text, lambda name: self.history(name, ros)) if text else None
+        return FieldsHistory(text, lambda name: self.find_history(name, ros)) if text else None
 
 
 @cache
-def default_fields() -> Fields:
+def load_fields() -> Fields:
     """The shipped table."""
     return Fields(DATA / "fields.json.zst")

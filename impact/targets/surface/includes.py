@@ -8,7 +8,7 @@ from functools import cached_property
 import msgspec
 
 from ...facts.cpp.lexical import Include
-from ..version import newest_up_to
+from ..version import find_newest_up_to
 
 
 class IncludesRow(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -33,28 +33,28 @@ class Included(msgspec.Struct, frozen=True, array_like=True, dict=True):
     def stands_for(self, version: str) -> str | None:
         """The stored version that stands for one: itself, or the newest before it that was read at its tag; None for
         one older than all."""
-        return newest_up_to(version, [*self.read()])
+        return find_newest_up_to(version, [*self.read()])
 
     def read(self) -> Iterator[str]:
         """The versions that were read at their tags, oldest first."""
         return (version for version in self.versions if version not in self.approximate)
 
-    def written(self, header: str, version: str) -> tuple[Include, ...] | None:
+    def list_includes(self, header: str, version: str) -> tuple[Include, ...] | None:
         """What a header includes in a stored version, as written; None where the version has no such header."""
-        row = self._row(header, version)
+        row = self._find_row(header, version)
         return None if row is None else tuple(self.every[number] for number in row.includes)
 
-    def announced(self, header: str, version: str) -> tuple[str, ...]:
+    def list_announced_types(self, header: str, version: str) -> tuple[str, ...]:
         """Types that a header announces in a stored version without defining them."""
-        row = self._row(header, version)
+        row = self._find_row(header, version)
         return () if row is None else tuple(self.types[number] for number in row.announced)
 
-    def _row(self, header: str, version: str) -> IncludesRow | None:
+    def _find_row(self, header: str, version: str) -> IncludesRow | None:
         place = self._places.get(version)
         if place is None:
             return None
         for row in self.headers.get(header, ()):
-            if there(row.spans, place):
+            if covers(row.spans, place):
                 return row
         return None
 
@@ -62,12 +62,12 @@ class Included(msgspec.Struct, frozen=True, array_like=True, dict=True):
     def _places(self) -> dict[str, int]:
         return {version: place for place, version in enumerate(self.versions)}
 
-    def answer(self, include: Include, header: str, version: str) -> str:
+    def resolve_include(self, include: Include, header: str, version: str) -> str:
         """The path that dependants would write for what a header includes, see path_of()."""
-        return path_of(include, header, lambda path: self._row(path, version) is not None)
+        return choose_path(include, header, lambda path: self._find_row(path, version) is not None)
 
 
-def path_of(include: Include, header: str, has: Callable[[str], object]) -> str:
+def choose_path(include: Include, header: str, has: Callable[[str], object]) -> str:
     """The path that dependants would write for what a header includes: that of a header of the same package, where one
     lies there, else as it is written. has: gives something, or True, of a header that the package has."""
     if include.angled and has(include.path):
@@ -79,6 +79,6 @@ def path_of(include: Include, header: str, has: Callable[[str], object]) -> str:
     return beside if has(beside) else include.path
 
 
-def there(spans: Sequence[int], place: int) -> bool:
+def covers(spans: Sequence[int], place: int) -> bool:
     """Whether a place lies in some spans; none at all are all places."""
     return not spans or any([spans[at] <= place <= spans[at + 1] for at in range(0, len(spans), 2)])

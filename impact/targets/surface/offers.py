@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from ....edges.memory import cached_method
-from ...facts.surface import declared
+from ....edges.memory import cache_method
+from ...facts.surface import format_declaration
 from .changes import ChangeEvent, ComparedThing, Form, Line
 
 if TYPE_CHECKING:
@@ -66,37 +66,37 @@ class Offers:
     @cached_property
     def surfaces(self) -> Surfaces:
         """The stored surfaces."""
-        from .store import shipped
+        from .store import load_shipped
 
-        return self._given or shipped()
+        return self._given or load_shipped()
 
-    @cached_method
-    def package(self, name: str) -> PackageOffer | None:
+    @cache_method
+    def find_package(self, name: str) -> PackageOffer | None:
         """What a package offers there; None when it is not there, or nothing comparable is stored."""
-        version = self.target.version(name)
-        line = self.surfaces.line(name, self.target.ros) if version else None
-        place = line.place(version) if line is not None and version else None
+        version = self.target.find_version(name)
+        line = self.surfaces.find_line(name, self.target.ros) if version else None
+        place = line.find_place(version) if line is not None and version else None
         return None if line is None or place is None or not version else PackageOffer(self, name, version, line, place)
 
-    def history(self, package: str) -> SurfaceHistory | None:
+    def find_history(self, package: str) -> SurfaceHistory | None:
         """All stored versions of a package that the target's ROS generation has; None when there is none."""
-        return self.surfaces.history(package, self.target.ros)
+        return self.surfaces.find_history(package, self.target.ros)
 
-    def standard(self, name: str) -> int:
+    def find_standard(self, name: str) -> int:
         """The C++ standard that a package asks of those who link it, as CMake writes it; 0 when nothing tells."""
-        offer = self.package(name)
+        offer = self.find_package(name)
         return offer.build.standard if offer is not None else 0
 
-    def exports(self, name: str) -> tuple[str, ...] | None:
+    def list_exports(self, name: str) -> tuple[str, ...] | None:
         """What a package hands on to its dependants by CMake: packages, and the CMake names of system libraries; None
         when nothing of it is stored."""
-        offer = self.package(name)
-        return offer.history.exports(offer.stored) if offer is not None else None
+        offer = self.find_package(name)
+        return offer.history.list_exports(offer.stored) if offer is not None else None
 
     def is_bundle(self, name: str) -> bool:
         """True for a package of which the stored version, or else the newest one, has no header, module, library,
         program, plugin, interface or launch file: it is there for what it depends on."""
-        offer, history = self.package(name), self.history(name)
+        offer, history = self.find_package(name), self.find_history(name)
         if history is None:
             return False
         return history.is_bundle(offer.stored if offer is not None else history.versions[-1])
@@ -115,7 +115,7 @@ class Offers:
         return False if own is None and self.has_one_include_folder else own
 
     def _has_own_folder(self, package: str, path: str) -> bool | None:
-        offer = self.package(package)
+        offer = self.find_package(package)
         header = next((h for h in offer.build.headers if h.include == path), None) if offer is not None else None
         if header is None:
             return None
@@ -126,7 +126,7 @@ class Offers:
         """The first of these packages' names that is so called and not as everywhere; or what it stands in: a member
         of a class that is gone as a whole is told by its class."""
         separator = {"c++": "::", "python": "."}.get(side, "\0")
-        offers = [offer for package in packages if (offer := self.package(package)) is not None]
+        offers = [offer for package in packages if (offer := self.find_package(package)) is not None]
         while name:
             for offer in offers:
                 found = offer.get(side, name)
@@ -135,9 +135,9 @@ class Offers:
             name = name.rpartition(separator)[0]
         return None
 
-    def there(self, side: str, name: str, package: str) -> bool:
+    def has_name(self, side: str, name: str, package: str) -> bool:
         """Whether the stored version that stands for the target's has a name at all."""
-        offer = self.package(package)
+        offer = self.find_package(package)
         return offer is not None and offer.history.has(name, offer.stored)
 
 
@@ -150,16 +150,16 @@ class PackageOffer:
         self.stored = line.versions[place]
         self.exact = self.stored == version
 
-    @cached_method
+    @cache_method
     def get(self, side: str, name: str) -> Offered | None:
         """A name that only some versions have, or have in the same form; None for one that all do, or that none has."""
         events = self.line.events.get(side, {}).get(name)
-        return self._offered(side, name, events) if events else None
+        return self._make_offered(side, name, events) if events else None
 
     @property
     def history(self) -> SurfaceHistory:
         """All its stored versions, which stand beside what changed from one to the next."""
-        found = self._offers.history(self.package)
+        found = self._offers.find_history(self.package)
         assert found is not None
         return found
 
@@ -173,26 +173,26 @@ class PackageOffer:
     @cached_property
     def parameters(self) -> dict[str, str | None]:
         """The parameters that the stored version declares, with their defaults, as in Surface."""
-        return dict(self.history.parameters(self.stored))
+        return dict(self.history.list_parameters(self.stored))
 
-    def last_default(self, parameter: str) -> str | None:
+    def find_last_default(self, parameter: str) -> str | None:
         """The default that a parameter had in the last earlier version that declares it; None where there is none."""
         for version in reversed(self.line.versions[: self.place]):
-            declared = dict(self.history.parameters(version))
+            declared = dict(self.history.list_parameters(version))
             if parameter in declared:
                 return declared[parameter]
         return None
 
-    def every(self, side: str) -> Iterator[Offered]:
+    def list_offered(self, side: str) -> Iterator[Offered]:
         """All such names."""
         for name in self.line.events.get(side, ()):
             found = self.get(side, name)
             if found is not None:
                 yield found
 
-    def _offered(self, side: str, name: str, events: tuple[ChangeEvent, ...]) -> Offered:
+    def _make_offered(self, side: str, name: str, events: tuple[ChangeEvent, ...]) -> Offered:
         versions = self.line.versions
-        standing = standing_at(side, events, self.place)
+        standing = find_standing(side, events, self.place)
         past, future, there = standing.past, standing.future, standing.there
         told = (past[-1] if past else future[0]).told
         deciding = past[-1:] if past else future[:1]
@@ -206,7 +206,7 @@ class PackageOffer:
         instead = next((t.instead for t in told if t.instead), "")
         moved_to = ""
         if state == "removed" and side not in _OF_EVERY_PACKAGE:
-            moved_to = next((t.moved_to for t in told if t.moved_to), "") or self._elsewhere(side, name)
+            moved_to = next((t.moved_to for t in told if t.moved_to), "") or self._find_other_package(side, name)
         return Offered(
             self.package,
             side,
@@ -220,27 +220,27 @@ class PackageOffer:
             first,
             standing.after,
             versions[coming.place] if coming is not None else "",
-            next((versions[e.place] for e in future if there and effect(side, e) == "gone"), ""),
+            next((versions[e.place] for e in future if there and classify_event(side, e) == "gone"), ""),
             told,
             instead,
             moved_to,
             sure,
         )
 
-    def _elsewhere(self, side: str, name: str) -> str:
+    def _find_other_package(self, side: str, name: str) -> str:
         """Another package of the target that has the name."""
-        others = self._offers.surfaces.elsewhere(name)
-        return next((p for p in others if p != self.package and self._offers.there(side, name, p)), "")
+        others = self._offers.surfaces.list_other_packages(name)
+        return next((p for p in others if p != self.package and self._offers.has_name(side, name, p)), "")
 
-    def declarations(self, side: str, name: str, version: str) -> tuple[str, ...]:
+    def list_declared(self, side: str, name: str, version: str) -> tuple[str, ...]:
         """How a stored version declares a name of C++ or Python, a line for each overload."""
-        return declarations(self.history, side, name, version)
+        return list_declared(self.history, side, name, version)
 
 
-def other_forms(offers: Offers, offered: Offered) -> Iterator[tuple[ChangeEvent, Form, bool]]:
+def iterate_other_forms(offers: Offers, offered: Offered) -> Iterator[tuple[ChangeEvent, Form, bool]]:
     """The other forms of a name, the nearest first: an event, the form on the other side of it, and whether that is of
     earlier versions."""
-    offer = offers.package(offered.package)
+    offer = offers.find_package(offered.package)
     events = offer.line.events.get(offered.side, {}).get(offered.name, ()) if offer is not None else ()
     for event in reversed(events):
         if offer is not None and event.place <= offer.place and event.had is not None:
@@ -250,10 +250,10 @@ def other_forms(offers: Offers, offered: Offered) -> Iterator[tuple[ChangeEvent,
             yield event, event.has, False
 
 
-def offered_by(offers: Offers, offered: Offered, event: ChangeEvent, earlier: bool) -> Offered:
+def make_offered(offers: Offers, offered: Offered, event: ChangeEvent, earlier: bool) -> Offered:
     """A name as one of its changes tells of it, where a use of it fits the form on the other side of that change.
     earlier: the target's version has that change already."""
-    offer = offers.package(offered.package)
+    offer = offers.find_package(offered.package)
     assert offer is not None
     version = offer.line.versions[event.place]
     if not earlier:
@@ -265,34 +265,34 @@ def offered_by(offers: Offers, offered: Offered, event: ChangeEvent, earlier: bo
     )  # fmt: skip
 
 
-def declarations(history: SurfaceHistory | None, side: str, name: str, version: str) -> tuple[str, ...]:
+def list_declared(history: SurfaceHistory | None, side: str, name: str, version: str) -> tuple[str, ...]:
     """How a stored version of a package declares a name of C++ or Python, a line for each overload; empty for anything
     else."""
     if history is None or side not in ("c++", "python"):
         return ()
     if side == "c++":
-        return tuple(dict.fromkeys(declared(entity) for entity in history.entities(name, version)))
-    from .python import UNKNOWN, shown
+        return tuple(dict.fromkeys(format_declaration(entity) for entity in history.iterate_entities(name, version)))
+    from .python import UNKNOWN, describe
 
-    names = _names(history, version)
+    names = _load_names(history, version)
     entry = names.find(name) if names is not None else None
     if entry is None or entry is UNKNOWN or entry.bound is None:
         return ()  # a module declares nothing by its name alone
-    text = shown(entry)
+    text = describe(entry)
     return (f"{name} = {text}" if text and not text.startswith("(") else f"{name}{text}",)
 
 
 @lru_cache(maxsize=8)
-def _names(history: SurfaceHistory, version: str) -> SurfaceNames | None:
+def _load_names(history: SurfaceHistory, version: str) -> SurfaceNames | None:
     from .python import SurfaceNames
 
-    python = history.python(version)
+    python = history.load_python(version)
     return SurfaceNames(python) if python is not None else None
 
 
-def there_at(side: str, events: Sequence[ChangeEvent], place: int) -> bool:
+def is_there_at(side: str, events: Sequence[ChangeEvent], place: int) -> bool:
     """Whether a name of which these are all events is there in the version at a place of its line."""
-    return standing_at(side, events, place).there
+    return find_standing(side, events, place).there
 
 
 class Standing(NamedTuple):
@@ -309,12 +309,12 @@ class Standing(NamedTuple):
     future: Sequence[ChangeEvent]
 
 
-def standing_at(side: str, events: Sequence[ChangeEvent], place: int) -> Standing:
+def find_standing(side: str, events: Sequence[ChangeEvent], place: int) -> Standing:
     """How the version at a place of its line stands to all events of a name."""
     past = [event for event in events if event.place <= place]
     future = [event for event in events if event.place > place]
     before = past[-1].had if past else None
-    if (effect(side, past[-1]) == "gone") if past else (effect(side, future[0]) == "come"):
+    if (classify_event(side, past[-1]) == "gone") if past else (classify_event(side, future[0]) == "come"):
         return Standing(False, False, None, before, None, past, future)
     here = past[-1].has if past else future[0].had
     told = past[-1].told if past else ()
@@ -322,7 +322,7 @@ def standing_at(side: str, events: Sequence[ChangeEvent], place: int) -> Standin
     return Standing(True, deprecated, here, before, future[0].has if future else None, past, future)
 
 
-def effect(side: str, event: ChangeEvent) -> str:
+def classify_event(side: str, event: ChangeEvent) -> str:
     """What an event does to a name: it is `gone`, it has `come`, or it has another `form`."""
     whole = [told for told in event.told if "overload" not in told.aspects]
     come = any(told.kind == "added" for told in whole)

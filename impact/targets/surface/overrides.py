@@ -9,8 +9,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ...facts.surface import Entity
-from .changes import Form, Overload, overload_of
-from .offers import Offered, offered_by, other_forms
+from .changes import Form, Overload, make_overload
+from .offers import Offered, iterate_other_forms, make_offered
 
 if TYPE_CHECKING:
     from .changes import ChangeEvent
@@ -30,12 +30,12 @@ def says_override(given: tuple[str, ...], arguments: int) -> bool:
     return "override" in given[arguments:]
 
 
-def class_of(given: tuple[str, ...], arguments: int) -> str:
+def extract_class(given: tuple[str, ...], arguments: int) -> str:
     """The class that declares a method that is so described; empty where that is not told."""
     return given[-1] if any(one.startswith(_RESULT) for one in given[arguments:]) else ""
 
 
-def virtual_forms(form: Form | None) -> list[Overload]:
+def list_virtual_forms(form: Form | None) -> list[Overload]:
     """The overloads of a form that may be overridden."""
     return [one for one in form.overloads if "virtual" in one.traits] if form is not None else []
 
@@ -50,41 +50,41 @@ class Override:
         self.parameters: tuple[str, ...] = ()
         self.result = next((one[len(_RESULT) :] for one in marks if one.startswith(_RESULT)), "")
 
-    def lost(self, line: Sequence[tuple[str, str]]) -> tuple[Offered, bool] | None:
+    def find_lost_change(self, line: Sequence[tuple[str, str]]) -> tuple[Offered, bool] | None:
         """The change that the method does not fit to, and whether it was before the target's version; None where it
         overrides what the target has, or where that cannot be told. line: packages and names of the method in the base
         class and in the bases of that."""
         self.parameters = tuple(
             parameter.name
             for package, name in line
-            for one in self._entities(package, name.rpartition("::")[0])
+            for one in self._list_entities(package, name.rpartition("::")[0])
             for parameter in one.template or ()
         )
-        here = [one for package, name in line for one in self._virtual(package, name)]
-        fitting = {one.type for one in here if self._fits(overload_of(one))}
+        here = [one for package, name in line for one in self._list_virtual_methods(package, name)]
+        fitting = {one.type for one in here if self._fits(make_overload(one))}
         for package, name in line:
-            offer = self.offers.package(package)
+            offer = self.offers.find_package(package)
             offered = offer.get("c++", name) if offer is not None else None
-            for event, form, earlier in other_forms(self.offers, offered) if offered is not None else ():
+            for event, form, earlier in iterate_other_forms(self.offers, offered) if offered is not None else ():
                 # A method that is not to override anything need not do so yet.
-                mine = [one for one in virtual_forms(form) if self._fits(one)] if earlier or self.says_so else []
+                mine = [one for one in list_virtual_forms(form) if self._fits(one)] if earlier or self.says_so else []
                 if offered is None or not mine:
                     continue
                 if fitting:
                     if self._gives_other(offered, event, earlier, fitting):
-                        return offered_by(self.offers, offered, event, earlier), earlier
-                elif all(self._surely_differs(overload_of(one), mine, form, offered) for one in here):
-                    return offered_by(self.offers, offered, event, earlier), earlier
+                        return make_offered(self.offers, offered, event, earlier), earlier
+                elif all(self._differs_surely(make_overload(one), mine, form, offered) for one in here):
+                    return make_offered(self.offers, offered, event, earlier), earlier
         return None
 
-    def _entities(self, package: str, name: str, version: str = "") -> list[Entity]:
+    def _list_entities(self, package: str, name: str, version: str = "") -> list[Entity]:
         """What a version of a package, by default the target's, declares by a name."""
-        offer = self.offers.package(package)
-        return list(offer.history.entities(name, version or offer.stored)) if offer is not None else []
+        offer = self.offers.find_package(package)
+        return list(offer.history.iterate_entities(name, version or offer.stored)) if offer is not None else []
 
-    def _virtual(self, package: str, name: str, version: str = "") -> list[Entity]:
+    def _list_virtual_methods(self, package: str, name: str, version: str = "") -> list[Entity]:
         """The methods of a name that may be overridden."""
-        return [one for one in self._entities(package, name, version) if "virtual" in one.traits]
+        return [one for one in self._list_entities(package, name, version) if "virtual" in one.traits]
 
     def _fits(self, overload: Overload) -> bool:
         """Whether the method can be the same as another, as their types are written."""
@@ -93,15 +93,15 @@ class Override:
         pairs = zip(self.types, overload.types, strict=True)
         return all(_agree(one, other, self.parameters) for one, other in pairs)
 
-    def _surely_differs(self, overload: Overload, mine: list[Overload], form: Form, owner: Offered) -> bool:
+    def _differs_surely(self, overload: Overload, mine: list[Overload], form: Form, owner: Offered) -> bool:
         """Whether the method does not override another, however the types are spelt. mine: those that it overrides in
         another version, which has the form."""
         if len(overload.types) != len(self.types) or ("const" in overload.traits) != self.const:
             return True
         pairs = list(zip(self.types, overload.types, strict=True))
-        if not any(_last(one) == _last(other) for one, other in pairs):
+        if not any(_strip_scopes(one) == _strip_scopes(other) for one, other in pairs):
             return True
-        if any(_unlike(one, other) for one, other in pairs) or any(
+        if any(_differs(one, other) for one, other in pairs) or any(
             overload.types == one.types and "virtual" in one.traits for one in form.overloads
         ):
             return True  # what is declared beside another has other types
@@ -115,11 +115,11 @@ class Override:
     def _gives_other(self, offered: Offered, event: ChangeEvent, earlier: bool, now: set[str]) -> bool:
         """Whether the method gives back what another version's does, and the target's surely does not. now: what those
         of the target do that it may override."""
-        offer = self.offers.package(offered.package)
+        offer = self.offers.find_package(offered.package)
         if not self.result or offer is None or not any("result" in told.aspects for told in event.told):
             return False
         version = offer.line.versions[event.place - 1 if earlier else event.place]
-        before = sorted({one.type for one in self._virtual(offered.package, offered.name, version)})
+        before = sorted({one.type for one in self._list_virtual_methods(offered.package, offered.name, version)})
         if len(before) != 1 or not _agree(self.result, before[0], ()):
             return False
         scope = offered.name.rpartition("::")[0]
@@ -129,10 +129,10 @@ class Override:
 
     def _differ(self, one: str, other: str, scope: str, package: str) -> bool:
         """Whether two types are surely not the same. scope: the class in which both are written."""
-        kinds = [self._kind(type_, scope, package) for type_ in (one, other)]
+        kinds = [self._resolve_type(type_, scope, package) for type_ in (one, other)]
         return "" not in kinds and kinds[0] != kinds[1]
 
-    def _kind(self, type_: str, scope: str, package: str) -> str:
+    def _resolve_type(self, type_: str, scope: str, package: str) -> str:
         """A type by a name that no other type has; empty where it may be an alias, or is a template's."""
         bare = " ".join(re.sub(r"\b(?:const|typename)\b|&", " ", type_).split())
         if "*" in bare or "<" in bare:
@@ -141,25 +141,25 @@ class Override:
             return bare
         class_, _, pointer = bare.rpartition("::")
         if pointer in _POINTERS:
-            kind = self._kind(class_, scope, package)
+            kind = self._resolve_type(class_, scope, package)
             return f"{kind}::{pointer}" if kind else ""
         while True:
             full = f"{scope}::{bare}" if scope else bare
             # What a header of the package names is declared by itself or by what it hands on.
-            owners = [full.partition("::")[0], package] if scope else self._handed_on(package, bare.partition("::")[0])
+            owners = [full.partition("::")[0], package] if scope else self._list_given(package, bare.partition("::")[0])
             for owner in owners:
-                found = self._entities(owner, full)
+                found = self._list_entities(owner, full)
                 if found:
                     return full if all(entity.kind in _TYPES for entity in found) else ""
             if not scope:
                 return ""
             scope = scope.rpartition("::")[0]
 
-    def _handed_on(self, package: str, first: str) -> list[str]:
+    def _list_given(self, package: str, first: str) -> list[str]:
         """A package, and what it hands on to its dependants, also through each other: first the one of a name."""
         found = [first, package]
         for one in found:
-            found.extend(other for other in self.offers.exports(one) or () if other not in found)
+            found.extend(other for other in self.offers.list_exports(one) or () if other not in found)
         return found
 
 
@@ -172,14 +172,14 @@ _TYPES = frozenset(("class", "struct", "enum"))
 def _agree(one: str, other: str, parameters: tuple[str, ...]) -> bool:
     """Whether two types as written can be the same: but for scopes that one of them leaves out, and for what stands for
     the parameters of the template in which the other is written."""
-    names, others = _parts(one), _parts(other)
+    names, others = _split_type(one), _split_type(other)
     return len(names) == len(others) and all(
         a == b or a.endswith(f"::{b}") or b.endswith(f"::{a}") or b.partition("::")[0] in parameters
         for a, b in zip(names, others, strict=True)
     )
 
 
-def _parts(type_: str) -> list[str]:
+def _split_type(type_: str) -> list[str]:
     """The names and signs of a type, without what callers do not see."""
     bare = re.sub(r"\btypename\b", " ", type_)
     bare = re.sub(r"\bconst\b", " ", bare) if not bare.endswith(("&", "*")) else bare
@@ -189,7 +189,7 @@ def _parts(type_: str) -> list[str]:
 _SHAPE = re.compile(r"(?:\b|::)(Const)?(Shared|Weak|Unique)Ptr\b|\b(shared|weak|unique)_ptr<")
 
 
-def _unlike(one: str, other: str) -> bool:
+def _differs(one: str, other: str) -> bool:
     """Whether two types differ in more than what an alias can stand for: a reference against a value, or one sort of
     smart pointer against another."""
     if one.endswith("&") != other.endswith("&"):
@@ -200,6 +200,6 @@ def _unlike(one: str, other: str) -> bool:
     return bool(sorts[0]) and bool(sorts[1]) and sorts[0] != sorts[1]
 
 
-def _last(type_: str) -> str:
+def _strip_scopes(type_: str) -> str:
     """A type without its scopes."""
-    return "".join(re.sub(r"(?:\w+::)+(?=\w)", "", "".join(_parts(type_))))
+    return "".join(re.sub(r"(?:\w+::)+(?=\w)", "", "".join(_split_type(type_))))

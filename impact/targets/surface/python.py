@@ -47,31 +47,31 @@ class SurfaceNames:
         for length in range(len(parts), 0, -1):
             module = self.modules.get(".".join(parts[:length]))
             if module is not None:
-                return self.below(self.of_module(module), parts[length:])
-        if self._hidden(dotted) or self.surface.unresolved:
+                return self.follow_names(self.make_module_entry(module), parts[length:])
+        if self._is_hidden(dotted) or self.surface.unresolved:
             return UNKNOWN
         if any(name.startswith(f"{dotted}.") for name in self.modules):
             return PythonName(dotted, "module")  # a folder without __init__.py
         return None
 
-    def of_module(self, module: InstalledModule) -> PythonName:
+    def make_module_entry(self, module: InstalledModule) -> PythonName:
         """The entry of a module itself."""
         return PythonName(module.name, "module")
 
-    def below(self, entry: PythonName | None, parts: Iterable[str]) -> PythonName | None:
+    def follow_names(self, entry: PythonName | None, parts: Iterable[str]) -> PythonName | None:
         """Goes on from an entry, name by name."""
         for part in parts:
             if entry is None or entry.kind in ("unknown", "external"):
                 return entry and UNKNOWN
             if entry.kind == "module":
-                entry = self._in_module(self.modules.get(entry.where), entry.where, part, 0)
+                entry = self._find_in_module(self.modules.get(entry.where), entry.where, part, 0)
             elif entry.kind == "class" and entry.bound is not None:
-                entry = self.member(entry, part)
+                entry = self.find_member(entry, part)
             else:
                 return UNKNOWN
         return entry
 
-    def _hidden(self, dotted: str) -> bool:
+    def _is_hidden(self, dotted: str) -> bool:
         return any(dotted == name or dotted.startswith(f"{name}.") for name in self.surface.unknown)
 
     def bound(self, module: InstalledModule) -> dict[str, list[Bound]]:
@@ -83,7 +83,7 @@ class SurfaceNames:
                 known.setdefault(bound.name, []).append(bound)
         return known
 
-    def taken(self, module: InstalledModule) -> dict[str, list[Taken]]:
+    def index_imports(self, module: InstalledModule) -> dict[str, list[Taken]]:
         """The imports of a module by the name they bind."""
         known = self._taken.get(module.name)
         if known is None:
@@ -93,30 +93,30 @@ class SurfaceNames:
                     known.setdefault(taken.name, []).append(taken)
         return known
 
-    def _in_module(self, module: InstalledModule | None, where: str, name: str, depth: int) -> PythonName | None:
+    def _find_in_module(self, module: InstalledModule | None, where: str, name: str, depth: int) -> PythonName | None:
         dotted = f"{where}.{name}"
         if module is not None:
             written = self.bound(module).get(name)
             if written:
-                return _entry(dotted, written)
-            for taken in reversed(self.taken(module).get(name, ())):
-                return self._imported(module, taken, depth)
+                return _make_entry(dotted, written)
+            for taken in reversed(self.index_imports(module).get(name, ())):
+                return self._resolve_import(module, taken, depth)
         if dotted in self.modules or any(other.startswith(f"{dotted}.") for other in self.modules):
             return PythonName(dotted, "module")
-        if self._hidden(dotted):
+        if self._is_hidden(dotted):
             return UNKNOWN
         if module is None:
             return None
         unsure = not module.surface.parsed or any(scope == "" for scope, _ in module.surface.open)
-        for taken in self.taken(module).get("*", ()):
-            found = self._through_star(module, taken, name, depth)
+        for taken in self.index_imports(module).get("*", ()):
+            found = self._find_through_star(module, taken, name, depth)
             if found is UNKNOWN:
                 unsure = True
             elif found is not None:
                 return found
         return UNKNOWN if unsure else None
 
-    def target(self, module: InstalledModule, taken: Taken) -> str:
+    def resolve_target(self, module: InstalledModule, taken: Taken) -> str:
         """The dotted name of the module that an import is about."""
         if not taken.level:
             return taken.module
@@ -125,9 +125,9 @@ class SurfaceNames:
         parts = parts[: len(parts) - up] if up else parts
         return ".".join([*parts, *([taken.module] if taken.module else [])])
 
-    def _imported(self, module: InstalledModule, taken: Taken, depth: int) -> PythonName:
+    def _resolve_import(self, module: InstalledModule, taken: Taken, depth: int) -> PythonName:
         """What an import binds. It binds something, whatever becomes of it."""
-        target = self.target(module, taken)
+        target = self.resolve_target(module, taken)
         if not taken.original:
             return PythonName(taken.name, "module") if taken.name in self.modules else PythonName(target, "external")
         of = self.modules.get(target)
@@ -138,13 +138,13 @@ class SurfaceNames:
             of = self.modules.get(implicit)
             if of is None or depth > _DEPTH:
                 return PythonName(f"{target}.{taken.original}", "external")
-        found = self._in_module(of, of.name, taken.original, depth + 1)
+        found = self._find_in_module(of, of.name, taken.original, depth + 1)
         if found is None or found is UNKNOWN:
             return PythonName(f"{target}.{taken.original}", "external")
         return found._replace(conditional=True) if taken.conditions else found
 
-    def _through_star(self, module: InstalledModule, taken: Taken, name: str, depth: int) -> PythonName | None:
-        of = self.modules.get(self.target(module, taken))
+    def _find_through_star(self, module: InstalledModule, taken: Taken, name: str, depth: int) -> PythonName | None:
+        of = self.modules.get(self.resolve_target(module, taken))
         if of is None or depth > _DEPTH:
             return UNKNOWN
         listed = of.surface.all
@@ -153,11 +153,11 @@ class SurfaceNames:
                 return None
         elif name.startswith("_"):
             return None
-        return self._in_module(of, of.name, name, depth + 1)
+        return self._find_in_module(of, of.name, name, depth + 1)
 
     # -- classes
 
-    def member(self, entry: PythonName, name: str, depth: int = 0) -> PythonName | None:
+    def find_member(self, entry: PythonName, name: str, depth: int = 0) -> PythonName | None:
         """A member of a class, its base classes included."""
         split = self._split(entry.where)
         if split is None or entry.bound is None or depth > _DEPTH:
@@ -165,39 +165,39 @@ class SurfaceNames:
         module, inside = split
         written = self.bound(module).get(f"{inside}.{name}")
         if written:
-            return _entry(f"{entry.where}.{name}", written)
+            return _make_entry(f"{entry.where}.{name}", written)
         if any(t.scope == inside and t.name == name for t in module.surface.imports):
             return PythonName(f"{entry.where}.{name}", "external")
         unsure = any(scope == inside for scope, _ in module.surface.open)
         for base in entry.bound.bases:
-            found = self.inherited(module, inside, base, name, depth)
+            found = self.find_in_base(module, inside, base, name, depth)
             if found is UNKNOWN:
                 unsure = True
             elif found is not None:
                 return found
         return UNKNOWN if unsure else None
 
-    def inherited(self, module: InstalledModule, inside: str, base: str, name: str, depth: int) -> PythonName | None:
+    def find_in_base(self, module: InstalledModule, inside: str, base: str, name: str, depth: int) -> PythonName | None:
         """A member by way of a base class, as written."""
         base = base.partition("[")[0].strip()
         if base in _NO_ATTRIBUTES:
             return PythonName(f"object.{name}", "external") if name in _OBJECT else None
         if not re.fullmatch(r"[\w.]+", base):
             return UNKNOWN
-        found = self.base(module, inside, base)
+        found = self.resolve_base(module, inside, base)
         if (known := _ENUMS.get(base if base in _ENUMS else found.where if found is not None else "")) is not None:
             return PythonName(f"{base}.{name}", "external") if hasattr(known, name) or name[0] == "_" else None
         if found is not None and found.kind == "class":
-            return self.member(found, name, depth + 1)
+            return self.find_member(found, name, depth + 1)
         known = getattr(builtins, base, None)
         if found is None and isinstance(known, type):
             return PythonName(f"{base}.{name}", "external") if hasattr(known, name) else None
         return UNKNOWN
 
-    def base(self, module: InstalledModule, inside: str, base: str) -> PythonName | None:
+    def resolve_base(self, module: InstalledModule, inside: str, base: str) -> PythonName | None:
         """What the name of a base class stands for in its module."""
         head, *rest = base.split(".")
-        return self.below(self._in_module(module, module.name, head, 0), rest)
+        return self.follow_names(self._find_in_module(module, module.name, head, 0), rest)
 
     def _split(self, where: str) -> tuple[InstalledModule, str] | None:
         """The module of something defined here, and its name in it."""
@@ -220,38 +220,38 @@ class SurfaceNames:
                 continue
             for name in self.bound(module):
                 if "." not in name and not is_private(name) and not name.startswith("__"):
-                    found[f"{module.name}.{name}"] = _entry(f"{module.name}.{name}", self.bound(module)[name])
-            for name in self.reexported(module):
+                    found[f"{module.name}.{name}"] = _make_entry(f"{module.name}.{name}", self.bound(module)[name])
+            for name in self.iterate_reexported(module):
                 dotted = f"{module.name}.{name}"
-                entry = self._in_module(module, module.name, name, 0)
+                entry = self._find_in_module(module, module.name, name, 0)
                 if dotted not in found and entry is not None and entry.kind not in ("unknown", "module"):
                     found[dotted] = entry
         return found
 
-    def reexported(self, module: InstalledModule, seen: frozenset[str] = frozenset()) -> Iterator[str]:
+    def iterate_reexported(self, module: InstalledModule, seen: frozenset[str] = frozenset()) -> Iterator[str]:
         """Public names that a module has from others of its package and means to offer: what is in its `__all__`, and
         in an `__init__.py` what it imports from below itself; what it takes from elsewhere it needs for itself. seen:
         modules that lead here, as they may take all names from each other."""
         listed = module.surface.all or ()
-        for name, taken in self.taken(module).items():
+        for name, taken in self.index_imports(module).items():
             for one in taken:
-                own = f"{self.target(module, one)}.".startswith(f"{module.name}.")
+                own = f"{self.resolve_target(module, one)}.".startswith(f"{module.name}.")
                 if name == "*" and own:
-                    of = self.modules.get(self.target(module, one))
-                    yield from self.starred(of, seen | {module.name}) if of is not None else ()
+                    of = self.modules.get(self.resolve_target(module, one))
+                    yield from self.iterate_starred(of, seen | {module.name}) if of is not None else ()
                 elif name != "*" and not is_private(name) and (name in listed or (own and module.package)):
                     yield name
 
-    def starred(self, module: InstalledModule, seen: frozenset[str] = frozenset()) -> Iterator[str]:
-        """Names that `from module import *` gives, as far as they are written. seen: as of reexported()."""
+    def iterate_starred(self, module: InstalledModule, seen: frozenset[str] = frozenset()) -> Iterator[str]:
+        """Names that `from module import *` gives, as far as they are written. seen: as of iterate_reexported()."""
         if module.surface.all is not None:
             yield from (name for name in module.surface.all if not name.startswith("+"))
             return
         yield from (name for name in self.bound(module) if "." not in name and not name.startswith("_"))
         if module.package and module.name not in seen:
-            yield from self.reexported(module, seen)
+            yield from self.iterate_reexported(module, seen)
 
-    def members(self, entry: PythonName) -> dict[str, PythonName]:
+    def list_members(self, entry: PythonName) -> dict[str, PythonName]:
         """Public members that a class itself has, and `__init__`."""
         split = self._split(entry.where)
         if split is None:
@@ -261,16 +261,16 @@ class SurfaceNames:
         for name, written in self.bound(module).items():
             head, _, last = name.rpartition(".")
             if head == inside and (last == "__init__" or not (is_private(last) or last in _OBJECT)):
-                found[last] = _entry(f"{entry.where}.{last}", written)
+                found[last] = _make_entry(f"{entry.where}.{last}", written)
         if "__init__" not in found:
-            fields = self.fields(entry, 0)
+            fields = self.list_dataclass_fields(entry, 0)
             if fields is not None:
                 found["__init__"] = PythonName(
                     f"{entry.where}.__init__", "method", Bound("__init__", "method", 0, tuple(fields.values()))
                 )
         return found
 
-    def fields(self, entry: PythonName, depth: int) -> dict[str, PythonParameter] | None:
+    def list_dataclass_fields(self, entry: PythonName, depth: int) -> dict[str, PythonParameter] | None:
         """The constructor's parameters of a dataclass; None for any other class, and where a base cannot be told."""
         split = self._split(entry.where)
         if entry.bound is None or split is None or depth > _DEPTH:
@@ -280,8 +280,8 @@ class SurfaceNames:
             return None
         found: dict[str, PythonParameter] = {}
         for base in reversed(entry.bound.bases):
-            of = self.base(module, inside, base.partition("[")[0])
-            more = self.fields(of, depth + 1) if of is not None and of.kind == "class" else None
+            of = self.resolve_base(module, inside, base.partition("[")[0])
+            more = self.list_dataclass_fields(of, depth + 1) if of is not None and of.kind == "class" else None
             if more is None and base not in _NO_ATTRIBUTES:
                 return None
             found.update(more or {})
@@ -294,7 +294,7 @@ class SurfaceNames:
         return found
 
 
-def _entry(dotted: str, written: list[Bound]) -> PythonName:
+def _make_entry(dotted: str, written: list[Bound]) -> PythonName:
     """What several bindings of one name come to: the last that does not depend on a condition, else the first."""
     written = [b for b in written if not any(c.text == "overload" for c in b.conditions)] or written
     plain = [b for b in written if not b.conditions]
@@ -311,7 +311,7 @@ _KEEPS = frozenset((
 """Decorators that leave the parameters as they are."""
 
 
-def wrapped(bound: Bound) -> bool:
+def is_wrapped(bound: Bound) -> bool:
     """True where a decorator that is not known may give it other parameters."""
     return any(decorator.rpartition(".")[2] not in _KEEPS for decorator in bound.decorators)
 
@@ -321,17 +321,17 @@ def is_callable(kind: str) -> bool:
     return kind in ("function", "method", "classmethod", "staticmethod")
 
 
-def shown(entry: PythonName) -> str:
+def describe(entry: PythonName) -> str:
     """What stands behind a name where it is defined: parameters, bases or a value."""
     bound = entry.bound
     if bound is None:
         return entry.where
     if is_callable(bound.kind):
-        return signature(bound.parameters)
+        return write_signature(bound.parameters)
     return f"({', '.join(bound.bases)})" if bound.kind == "class" else bound.value
 
 
-def signature(parameters: Iterable[PythonParameter]) -> str:
+def write_signature(parameters: Iterable[PythonParameter]) -> str:
     """Parameters as Python writes them, without annotations."""
     texts: list[str] = []
     last = ""

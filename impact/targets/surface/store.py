@@ -19,14 +19,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from ....edges.console import UserError
-from ....edges.memory import cached_method
+from ....edges.memory import cache_method
 from ...facts.interface import Interface
 from ...facts.python.surface import Bound, ModuleSurface, Taken
-from ...facts.surface import CLASSES, Entity, HeaderSurface, offered, plain
+from ...facts.surface import CLASSES, Entity, HeaderSurface, drop_inline, list_offered
 from ..snapshot import DATA, SnapshotError
-from ..unpacked import decoder_of, read_packed
+from ..unpacked import make_decoder, read_packed
 from .changes import Line
-from .includes import Included, there
+from .includes import Included, covers
 
 if TYPE_CHECKING:
     from .surface import BuildSurface, PythonSurface, Surface
@@ -53,7 +53,7 @@ _OWN = frozenset({"targets", "libraries", "commands", "programs", "plugins", "la
 
 
 @cache
-def _fields_of_build() -> dict[str, Any]:
+def _list_build_fields() -> dict[str, Any]:
     """The types of those fields of a BuildSurface that hold several values."""
     from .surface import BuildSurface
 
@@ -76,30 +76,30 @@ class SurfaceHistory:
         for kind, scope, value, spans in rows:
             self._rows.setdefault(kind, []).append((scope, value, spans))
 
-    def surface(self, version: str) -> Surface | None:
+    def load_surface(self, version: str) -> Surface | None:
         """What a version offers; None for one that is not stored."""
-        build, python = self.build(version), self.python(version)
+        build, python = self.build(version), self.load_python(version)
         if build is None or python is None:
             return None
         # What only changed is asked far more often than a whole version is.
         from .surface import Surface
 
-        guessed, runs_with = next((value for _, value in self._values("surface", version)), (False, ()))
+        guessed, runs_with = next((value for _, value in self._iterate("surface", version)), (False, ()))
         return Surface(
             self.package,
             version,
             build,
             python,
-            tuple(sorted(self._headers(version), key=_name)),
-            tuple(sorted(self._values("interface", version, Interface), key=_name)),
+            tuple(sorted(self._iterate_headers(version), key=_name)),
+            tuple(sorted(self._iterate("interface", version, Interface), key=_name)),
             guessed,
             tuple(runs_with),
-            self.parameters(version),
+            self.list_parameters(version),
         )
 
-    def parameters(self, version: str) -> tuple[tuple[str, str | None], ...]:
+    def list_parameters(self, version: str) -> tuple[tuple[str, str | None], ...]:
         """The parameters that a version declares, with their defaults, as in Surface."""
-        return tuple(sorted(self._values("parameter", version), key=_name))
+        return tuple(sorted(self._iterate("parameter", version), key=_name))
 
     def build(self, version: str, of: tuple[str, ...] = ()) -> BuildSurface | None:
         """What a version gives to CMake and at run time; None for one that is not stored. of: these fields alone."""
@@ -108,21 +108,21 @@ class SurfaceHistory:
         from .surface import BuildSurface
 
         build: dict[str, list[Any]] = {}
-        for scope, value in self._values("build", version, of=of):
+        for scope, value in self._iterate("build", version, of=of):
             build.setdefault(scope, []).append(value)
-        known = _fields_of_build()
+        known = _list_build_fields()
         given = {
             name: msgspec.convert(values, known[name]) if name in known else values[-1]
             for name, values in build.items()
         }
         return BuildSurface(self.package, version, **given)
 
-    def exports(self, version: str) -> tuple[str, ...] | None:
+    def list_exports(self, version: str) -> tuple[str, ...] | None:
         """The packages, and the CMake names of system libraries, that a version hands on to its dependants; None for
         a version that is not stored, or whose build says nothing."""
         found: list[str] = []
         kinds = 0
-        for scope, value in self._values("build", version, of=("build_type", "dependencies", "system")):
+        for scope, value in self._iterate("build", version, of=("build_type", "dependencies", "system")):
             if scope == "build_type":
                 kinds += 1
             else:
@@ -135,20 +135,20 @@ class SurfaceHistory:
             return False
         place = self.versions.index(version)
         return not any(
-            there(spans, place)
+            covers(spans, place)
             for kind, rows in self._rows.items()
             for scope, _, spans in rows
             if kind != "surface" and (kind != "build" or scope in _OWN)
         )
 
-    def python(self, version: str) -> PythonSurface | None:
+    def load_python(self, version: str) -> PythonSurface | None:
         """The Python of a version; None for one that is not stored."""
         if version not in self.versions:
             return None
         from .surface import InstalledModule, PythonSurface
 
-        bound, taken = self._inside("bound", version, Bound), self._inside("taken", version, Taken)
-        told = self._inside("python", version, str)
+        bound, taken = self._group_by_scope("bound", version, Bound), self._group_by_scope("taken", version, Taken)
+        told = self._group_by_scope("python", version, str)
         modules = (
             InstalledModule(
                 name,
@@ -164,7 +164,7 @@ class SurfaceHistory:
                     parsed,
                 ),
             )
-            for name, (path, is_package, all_, all_open, open_, deprecated, parsed) in self._values("module", version)
+            for name, (path, is_package, all_, all_open, open_, deprecated, parsed) in self._iterate("module", version)
         )
         return PythonSurface(
             self.package,
@@ -178,18 +178,18 @@ class SurfaceHistory:
         """What the headers of each version include."""
         return read_packed(self._includes, Included)
 
-    def interfaces(self, version: str) -> dict[str, Interface]:
+    def load_interfaces(self, version: str) -> dict[str, Interface]:
         """The messages, services and actions of a version, by `msg/Name`."""
-        return dict(self._values("interface", version, Interface))
+        return dict(self._iterate("interface", version, Interface))
 
-    def entities(self, name: str, version: str) -> Iterator[Entity]:
+    def iterate_entities(self, name: str, version: str) -> Iterator[Entity]:
         """What a version declares by a name of C++, as users write it; nothing for a version that is not stored."""
         if version not in self.versions:
             return iter(())
         place = self.versions.index(version)
         rows = self._by_last.get(name.rpartition("::")[2], ())
-        near = tuple(decoder_of(Entity)(value) for _, value, spans in rows if there(spans, place))
-        found = offered([HeaderSurface(near, inline=self._inline(version))]) if near else ()
+        near = tuple(make_decoder(Entity)(value) for _, value, spans in rows if covers(spans, place))
+        found = list_offered([HeaderSurface(near, inline=self._list_inline_namespaces(version))]) if near else ()
         return (entity for entity in found if entity.name == name)
 
     @cached_property
@@ -202,45 +202,45 @@ class SurfaceHistory:
                 found.setdefault(last, []).append(row)
         return found
 
-    @cached_method
-    def _inline(self, version: str) -> tuple[str, ...]:
+    @cache_method
+    def _list_inline_namespaces(self, version: str) -> tuple[str, ...]:
         """The inline namespaces of a version."""
-        spaces = (space for _, (spaces, *_) in self._values("header", version) for space in spaces)
+        spaces = (space for _, (spaces, *_) in self._iterate("header", version) for space in spaces)
         return tuple(dict.fromkeys(spaces))
 
-    def _headers(self, version: str) -> Iterator[tuple[str, HeaderSurface]]:
-        entities = self._inside("entity", version, Entity)
-        for path, (inline, deprecated, instead, lost) in self._values("header", version):
+    def _iterate_headers(self, version: str) -> Iterator[tuple[str, HeaderSurface]]:
+        entities = self._group_by_scope("entity", version, Entity)
+        for path, (inline, deprecated, instead, lost) in self._iterate("header", version):
             yield (
                 path,
                 HeaderSurface(
                     tuple(entities.get(path, ())),
-                    self.included.written(path, version) or (),
+                    self.included.list_includes(path, version) or (),
                     tuple(inline),
                     deprecated,
                     instead,
                     lost,
-                    announced=self.included.announced(path, version),
+                    announced=self.included.list_announced_types(path, version),
                 ),
             )
 
-    def _inside(self, kind: str, version: str, type_: Any) -> dict[str, list[Any]]:
+    def _group_by_scope(self, kind: str, version: str, type_: Any) -> dict[str, list[Any]]:
         """The values of a kind by their scope."""
         found: dict[str, list[Any]] = {}
-        for scope, value in self._values(kind, version, type_):
+        for scope, value in self._iterate(kind, version, type_):
             found.setdefault(scope, []).append(value)
         return found
 
-    def _values(
+    def _iterate(
         self, kind: str, version: str, type_: Any = Any, of: tuple[str, ...] = ()
     ) -> Iterator[tuple[str, Any]]:
         """Scope and value of each row of a kind that a version has. of: these scopes."""
         place = self.versions.index(version) if version in self.versions else -1
-        decode = decoder_of(type_)
+        decode = make_decoder(type_)
         for scope, value, spans in self._rows.get(kind, ()):
             if of and scope not in of:
                 continue
-            if place >= 0 and there(spans, place):
+            if place >= 0 and covers(spans, place):
                 yield scope, decode(value)
 
     @cached_property
@@ -257,15 +257,15 @@ class SurfaceHistory:
         if version not in self.versions:
             return False
         place = self.versions.index(version)
-        return any(there(spans, place) for spans in self._named.get(name, ()))
+        return any(covers(spans, place) for spans in self._named.get(name, ()))
 
-    def names(self) -> dict[str, tuple[str, ...]]:
+    def index_names(self) -> dict[str, tuple[str, ...]]:
         """Headers, interfaces, C++ names, Python modules and names that any version had, with the versions that do."""
         count = len(self.versions)
-        found = {name: {place for one in spans for place in _places(one, count)} for name, spans in self._named.items()}
+        found = {name: {place for one in spans for place in _expand(one, count)} for name, spans in self._named.items()}
         return {name: tuple(self.versions[place] for place in sorted(places)) for name, places in found.items()}
 
-    def types(self) -> dict[str, tuple[str, ...]]:
+    def index_types(self) -> dict[str, tuple[str, ...]]:
         """Classes, enums and aliases of namespaces that any version had, with the headers that define them."""
         inline = {name for _, value, _ in self._rows.get("header", ()) for name in _decoded(value)[0]}
         found: dict[str, dict[str, None]] = {}
@@ -273,7 +273,7 @@ class SurfaceHistory:
         for scope, value, _ in self._rows.get("entity", ()):
             head = _decode_head(value)
             if head.kind in _TYPES:
-                name = plain(head.name, inline)
+                name = drop_inline(head.name, inline)
                 found.setdefault(name, {})[scope] = None
                 if head.kind in CLASSES:
                     classes.add(name)
@@ -291,7 +291,7 @@ _Rows = tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]
 _name = itemgetter(0)
 
 
-_decoded = decoder_of(Any)
+_decoded = make_decoder(Any)
 
 
 class _Head(msgspec.Struct, array_like=True, gc=False):
@@ -307,7 +307,7 @@ class _First(msgspec.Struct, array_like=True, gc=False):
     name: str
 
 
-_decode_head, _decode_first = decoder_of(_Head), decoder_of(_First)
+_decode_head, _decode_first = make_decoder(_Head), make_decoder(_First)
 # How what a row of a kind is about is called.
 _NAMED: dict[str, Callable[[str, str, msgspec.Raw], str]] = {
     "header": lambda package, path, value: path,
@@ -318,7 +318,7 @@ _NAMED: dict[str, Callable[[str, str, msgspec.Raw], str]] = {
 }
 
 
-def _places(spans: Sequence[int], count: int) -> Iterator[int]:
+def _expand(spans: Sequence[int], count: int) -> Iterator[int]:
     for at in range(0, len(spans), 2):
         yield from range(spans[at], spans[at + 1] + 1)
     if not spans:
@@ -332,11 +332,11 @@ class StoredRows:
         self.file = file
         self._reader = 0  # the process that opened it
 
-    def columns(self, query: str, *values: str) -> list[Any]:
+    def query_column(self, query: str, *values: str) -> list[Any]:
         """The first column of a query's rows."""
-        return [row[0] for row in self.rows(query, *values)]
+        return [row[0] for row in self.fetch(query, *values)]
 
-    def rows(self, query: str, *values: str | int) -> Iterator[tuple]:
+    def fetch(self, query: str, *values: str | int) -> Iterator[tuple]:
         try:
             if self._reader != os.getpid():
                 # No other process may go on with a connection of this one.
@@ -353,46 +353,46 @@ class Surfaces(StoredRows):
     def __init__(self, file: Path):
         super().__init__(file)
         self._generations: dict[str, tuple[int, ...]] = {}
-        for name, ros in self.rows("SELECT name, ros FROM package ORDER BY name, ros"):
+        for name, ros in self.fetch("SELECT name, ros FROM package ORDER BY name, ros"):
             self._generations[name] = (*self._generations.get(name, ()), ros)
         self.packages = frozenset(self._generations)
 
-    def generations(self, package: str) -> tuple[int, ...]:
+    def list_ros(self, package: str) -> tuple[int, ...]:
         """The ROS generations of which versions of a package are stored."""
         return self._generations.get(package, ())
 
-    def history(self, package: str, ros: int) -> SurfaceHistory | None:
+    def find_history(self, package: str, ros: int) -> SurfaceHistory | None:
         """All versions of a package that a ROS generation has, None when there is none."""
         # Most packages that are asked for are not stored, and must not displace those that are.
-        return self._history(package, ros) if ros in self.generations(package) else None
+        return self._load_history(package, ros) if ros in self.list_ros(package) else None
 
     @lru_cache(maxsize=256)  # noqa: B019  (one of them lives as long as the program)
-    def _history(self, package: str, ros: int) -> SurfaceHistory | None:
-        row = self._row("data, includes", package, ros)
+    def _load_history(self, package: str, ros: int) -> SurfaceHistory | None:
+        row = self._query_row("data, includes", package, ros)
         return SurfaceHistory(package, *row) if row else None
 
     @lru_cache(maxsize=1024)  # noqa: B019
-    def line(self, package: str, ros: int) -> Line | None:
+    def find_line(self, package: str, ros: int) -> Line | None:
         """What changed in a package of a ROS generation from version to version, None when it is not there."""
-        row = self._row("changes", package, ros)
+        row = self._query_row("changes", package, ros)
         return read_packed(row[0], Line) if row else None
 
-    def lines(self, package: str) -> dict[int, Line]:
+    def find_lines(self, package: str) -> dict[int, Line]:
         """The same by ROS generation; empty when the package is not there."""
-        return {ros: line for ros in self.generations(package) if (line := self.line(package, ros)) is not None}
+        return {ros: line for ros in self.list_ros(package) if (line := self.find_line(package, ros)) is not None}
 
     @lru_cache(maxsize=1024)  # noqa: B019
-    def included(self, package: str, ros: int) -> Included | None:
+    def find_included(self, package: str, ros: int) -> Included | None:
         """What the headers of each version of a package of a ROS generation include, None when it is not there."""
-        row = self._row("includes", package, ros)
+        row = self._query_row("includes", package, ros)
         return read_packed(row[0], Included) if row else None
 
-    def _row(self, columns: str, package: str, ros: int) -> tuple | None:
-        if ros not in self.generations(package):
+    def _query_row(self, columns: str, package: str, ros: int) -> tuple | None:
+        if ros not in self.list_ros(package):
             return None
-        return next(self.rows(f"SELECT {columns} FROM package WHERE name = ? AND ros = ?", package, ros), None)
+        return next(self.fetch(f"SELECT {columns} FROM package WHERE name = ? AND ros = ?", package, ros), None)
 
-    def holders(self, header: str) -> tuple[str, ...]:
+    def list_holders(self, header: str) -> tuple[str, ...]:
         """The packages that may have, or have had, a header, by the path that dependants write."""
         head, separator, _ = header.partition("/")
         named = (head,) if separator and head in self.packages else ()
@@ -401,24 +401,24 @@ class Surfaces(StoredRows):
     @cached_property
     def _headers(self) -> dict[str, tuple[str, ...]]:
         """Headers that do not lie in a folder called like their package."""
-        (data,) = next(self.rows("SELECT data FROM headers"))
+        (data,) = next(self.fetch("SELECT data FROM headers"))
         return read_packed(data, dict[str, tuple[str, ...]])
 
     @cached_property
     def changing_parameters(self) -> dict[str, frozenset[str]]:
         """The last parts of names of parameters that some versions of a package surely declare and others surely do
         not, with those packages."""
-        (data,) = next(self.rows("SELECT data FROM parameters"))
+        (data,) = next(self.fetch("SELECT data FROM parameters"))
         return read_packed(data, dict[str, frozenset[str]])
 
     @cached_property
     def about(self) -> About:
         """What the file holds."""
-        return About(*next(self.rows("SELECT packages, versions, distros, date FROM about")))
+        return About(*next(self.fetch("SELECT packages, versions, distros, date FROM about")))
 
-    def elsewhere(self, name: str) -> tuple[str, ...]:
+    def list_other_packages(self, name: str) -> tuple[str, ...]:
         """The packages that have, or had, a name that some package lost."""
-        row = next(self.rows("SELECT packages FROM elsewhere WHERE name = ?", name), None)
+        row = next(self.fetch("SELECT packages FROM elsewhere WHERE name = ?", name), None)
         return tuple(row[0].split()) if row else ()
 
     @cached_property
@@ -428,7 +428,7 @@ class Surfaces(StoredRows):
 
 
 @cache
-def shipped() -> Surfaces:
+def load_shipped() -> Surfaces:
     """The surfaces that come with the program. Raises SnapshotError when they cannot be read."""
     try:
         return Surfaces(DATA / "surfaces.sqlite")

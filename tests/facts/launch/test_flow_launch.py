@@ -4,9 +4,9 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from rosimpact.impact.facts.launch.actions import LaunchFile, ValuePart, plain
-from rosimpact.impact.facts.launch.flow import extract, substitutions, words
-from rosimpact.impact.facts.launch.parameter_files import ParameterFile, scalar
+from rosimpact.impact.facts.launch.actions import LaunchFile, ValuePart, find_literal
+from rosimpact.impact.facts.launch.flow import extract, parse_substitutions, split_command_line
+from rosimpact.impact.facts.launch.parameter_files import ParameterFile, parse_scalar
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 
 
@@ -55,12 +55,12 @@ ROS2 = [
 
 @pytest.mark.parametrize(("text", "expected"), ROS1)
 def test_substitutions_of_ros1(text, expected):
-    assert said(substitutions(text, 1)) == expected
+    assert said(parse_substitutions(text, 1)) == expected
 
 
 @pytest.mark.parametrize(("text", "expected"), ROS2)
 def test_substitutions_of_ros2(text, expected):
-    assert said(substitutions(text, 2)) == expected
+    assert said(parse_substitutions(text, 2)) == expected
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_substitutions_of_ros2(text, expected):
     ],
 )
 def test_words_of_a_command_line(text, expected):
-    assert [said(word) for word in words(substitutions(text, 1))] == expected
+    assert [said(word) for word in split_command_line(parse_substitutions(text, 1))] == expected
 
 
 def lines(actions, depth=0):
@@ -268,7 +268,7 @@ def test_what_cannot_be_read_is_said(kind, data, problem):
 
 def test_a_mistake_does_not_hide_what_comes_before_it():
     file = extract(b"launch:\n- node: {pkg: a, exec: b}\n- node: {pkg: [\n", "launch_yaml")
-    assert [plain(a.get("package")) for a in file.actions][:1] == ["a"]
+    assert [find_literal(a.get("package")) for a in file.actions][:1] == ["a"]
     assert file.problems
 
 
@@ -316,8 +316,8 @@ def test_parameter_file():
      ("99999999999999999999", "99999999999999999999"), ("1.2.3", "1.2.3"), ("a", "a"), ("-", "-"), ("08", "08")],
 )  # fmt: skip
 def test_scalars(text, expected):
-    assert scalar(text) == expected
-    assert type(scalar(text)) is type(expected)
+    assert parse_scalar(text) == expected
+    assert type(parse_scalar(text)) is type(expected)
 
 
 def test_degrees_are_radians():
@@ -364,4 +364,4 @@ def test_never_raises(data, kind):
 @given(st.text(alphabet="$()'\" \\abvr-", max_size=60))
 def test_substitutions_never_raise(text):
     for generation in (1, 2):
-        assert all(isinstance(piece, ValuePart) for piece in substitutions(text, generation))
+        assert all(isinstance(piece, ValuePart) for piece in parse_substitutions(text, generation))

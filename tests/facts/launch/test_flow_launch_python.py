@@ -3,7 +3,7 @@
 import textwrap
 
 import pytest
-from rosimpact.impact.facts.launch.actions import LaunchFile, plain
+from rosimpact.impact.facts.launch.actions import LaunchFile, find_literal
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.python import MOST_STEPS
 
@@ -316,7 +316,7 @@ def test_lines_are_those_of_the_call():
         b"def generate_launch_description():\r\n    return LaunchDescription([\r\n        Node(\r\n package='p')])\r\n"
     )
     (node,) = extract(text, "launch_python").actions
-    assert (node.line, plain(node.get("package"))) == (3, "p")
+    assert (node.line, find_literal(node.get("package"))) == (3, "p")
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from rosimpact.impact.model.flow.frameworks import Frameworks
 from rosimpact.impact.model.flow.graph import Graph
 from rosimpact.impact.model.flow.join import Join
 from rosimpact.impact.model.flow.nodes import BuiltPackage
-from rosimpact.impact.model.flow.workspace import graph_of, linked
+from rosimpact.impact.model.flow.workspace import link_for_flow, make_graph
 
 
 def joined(
@@ -44,7 +44,7 @@ def _built(package: str, facts) -> BuiltPackage:
 
 def graph(files: dict[str, str], ros: int = 2, **more) -> Graph:
     """The graph of such sources."""
-    return joined(files, ros, **more).graph()
+    return joined(files, ros, **more).build()
 
 
 def ends(found: Graph, role: str) -> set[tuple[str, str, str]]:
@@ -64,7 +64,7 @@ def graph_on_disk(root: Path, files: dict[str, str], launch: str = "") -> Graph:
     """The graph of a workspace that is written to a folder, or of what one of its launch files starts."""
     write(root, files)
     with Store(root / ".cache") as store:
-        return graph_of(linked(open_tree(root, ""), store), None, launch=launch)
+        return make_graph(link_for_flow(open_tree(root, ""), store), None, launch=launch)
 
 
 def manifest(name: str, build: str) -> str:

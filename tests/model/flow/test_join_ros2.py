@@ -182,7 +182,7 @@ def test_a_function_that_is_named_as_the_frameworks_own_is_a_wrapper():
     """})  # fmt: skip
     assert join.sites.endpoints == []
     assert [use.call.line for use in join.sites.wrapped] == [4]
-    (wrapper,) = join.graph().coverage.wrappers
+    (wrapper,) = join.build().coverage.wrappers
     assert wrapper.line == 4
 
 

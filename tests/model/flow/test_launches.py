@@ -8,7 +8,7 @@ from rosimpact.edges import processes
 from rosimpact.impact.analysis.session import open_tree
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow import launches as module
-from rosimpact.impact.model.flow.workspace import flow_of, linked
+from rosimpact.impact.model.flow.workspace import get_flow, link_for_flow
 
 EYE = """
     #include <rclcpp/rclcpp.hpp>
@@ -50,7 +50,7 @@ FILES = {
 def workspace(tmp_path):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        yield linked(open_tree(tmp_path / "ws", ""), store)
+        yield link_for_flow(open_tree(tmp_path / "ws", ""), store)
 
 
 @pytest.mark.skipif(not processes.may_fork(), reason="processes are forked here only on Linux")
@@ -61,7 +61,9 @@ def test_several_processes_tell_the_same_as_one(workspace, monkeypatch, dying):
     if dying:
         done = getattr(module, dying)
         monkeypatch.setattr(module, dying, lambda *given: done(*given) if os.getpid() == here else os._exit(1))
-    alone, several = (tuple(module._launches(workspace, lambda: flow_of(workspace).code, jobs)) for jobs in (1, 2))
+    alone, several = (
+        tuple(module._find_launches(workspace, lambda: get_flow(workspace).code, jobs)) for jobs in (1, 2)
+    )
     assert several == alone
     assert [(each.path.rpartition("/")[2], [start.names for start in each.starts]) for each in alone] == [
         ("all.launch.xml", [("/image",)]),

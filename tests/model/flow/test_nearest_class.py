@@ -21,5 +21,5 @@ GLOBAL, INSIDE = "class Talker {};", "namespace n { class Talker {}; }"
 def test_the_nearest_class_is_meant(files, scope, meant):
     code = joined(files).code
     source = next(source for source in code.sources if source.path == "a/main.cpp")
-    found = code.class_of("Talker", source, scope)
+    found = code.find_class("Talker", source, scope)
     assert (found and found.source.path) == meant

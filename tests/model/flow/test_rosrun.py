@@ -62,7 +62,7 @@ LOADER = """
 
 def ends(files, command, **more) -> set[tuple[str, str, str, str]]:
     """(role, topic, type, how) of the endpoints that a command has, what every node has left out."""
-    found = joined(files, 1, **more).graph(launch=rosrun(*command))
+    found = joined(files, 1, **more).build(launch=rosrun(*command))
     return {(e.role, e.topic, e.type, e.how) for e in found.endpoints if not e.implied}
 
 
@@ -100,7 +100,7 @@ def test_arguments_without_those_of_ros():
 
 
 def test_arguments_that_nobody_gives_are_not_known():
-    found = joined({"p/relay.cpp": RELAY}, 1).graph()
+    found = joined({"p/relay.cpp": RELAY}, 1).build()
     assert {e.topic for e in found.endpoints if not e.implied} == {""}
 
 
@@ -114,7 +114,7 @@ def test_a_program_loads_one_nodelet_twice():
 
 
 def test_what_every_node_has():
-    found = joined({"p/relay.cpp": RELAY}, 1).graph(launch=rosrun("p", "relay", ("/in", "__name:=other")))
+    found = joined({"p/relay.cpp": RELAY}, 1).build(launch=rosrun("p", "relay", ("/in", "__name:=other")))
     assert {(e.role, e.topic, e.type) for e in found.endpoints if e.implied} == {
         ("publisher", "/rosout", "rosgraph_msgs/Log"),
         ("server", "/other/get_loggers", "roscpp/GetLoggers"),
@@ -136,5 +136,5 @@ def test_what_every_node_has():
 )
 def test_services_of_a_manager_of_nodelets(made, expected):
     main = f'int main(int argc, char** argv) {{ ros::init(argc, argv, "box"); {made} ros::spin(); }}'
-    found = joined({"p/box.cpp": main}, 1).graph()
+    found = joined({"p/box.cpp": main}, 1).build()
     assert {e.topic for e in found.endpoints if e.framework == "nodelet"} == expected

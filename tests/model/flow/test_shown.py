@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.facts.flow import FlowExpr
-from rosimpact.impact.model.flow.endpoints import shown
+from rosimpact.impact.model.flow.endpoints import unparse
 
 ONE, RATE, PATH = FlowExpr("number", "1"), FlowExpr("name", "rate"), FlowExpr("text", "a")
 
@@ -17,4 +17,4 @@ ONE, RATE, PATH = FlowExpr("number", "1"), FlowExpr("name", "rate"), FlowExpr("t
     ],
 )
 def test_expressions_are_shown_as_they_are_written(value, expected):
-    assert shown(value) == expected
+    assert unparse(value) == expected

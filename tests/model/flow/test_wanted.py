@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 from rosimpact.impact.facts.store import Store
-from rosimpact.impact.model.flow.file_selection import code_kinds
-from rosimpact.impact.model.flow.workspace import code_of, linked
+from rosimpact.impact.model.flow.file_selection import make_code_selector
+from rosimpact.impact.model.flow.workspace import link_for_flow, list_code
 from rosimpact.impact.tree import WorkingTree
 
 MANIFEST = "<package format='3'><name>{}</name><version>1.0.0</version></package>"
@@ -35,25 +35,25 @@ def tree(tmp_path):
 
 
 def test_kinds_by_path(tree):
-    wanted = code_kinds(tree)
+    wanted = make_code_selector(tree)
     assert {path: wanted(path) for path in WANTED} == WANTED
 
 
 def test_no_code_of_a_package_is_left_out(tree, tmp_path):
     """What packages own in the end is less than what is read: the fixture within a package's tests is no package."""
     with Store(tmp_path / "cache") as store:
-        workspace = linked(tree, store)
-        assert code_of(workspace) == {
+        workspace = link_for_flow(tree, store)
+        assert list_code(workspace) == {
             "dock/include/dock/crane.hpp": "dock",
             "dock/scripts/lift": "dock",
             "dock/scripts/lift.py": "dock",
             "dock/src/crane.cpp": "dock",
             "test/quay/src/quay.cpp": "quay",
         }
-        assert workspace.gathered.second.kinds.keys() >= code_of(workspace).keys()
+        assert workspace.gathered.second.kinds.keys() >= list_code(workspace).keys()
 
 
 def test_a_path_of_any_depth(tmp_path):
     (tmp_path / "package.xml").write_text(MANIFEST.format("deep"))
-    wanted = code_kinds(WorkingTree(tmp_path))
+    wanted = make_code_selector(WorkingTree(tmp_path))
     assert wanted("a/" * 2000 + "a.cpp") == "flow_cpp"
