@@ -411,7 +411,7 @@ def slowly(kind, data):
     return extract(kind, data)
 kinds.extract = slowly
 with Store(sys.argv[2]) as store:
-    module.gather(WorkingTree(sys.argv[1]), store, jobs=2, progress=lambda done, total: print(done, flush=True))
+    module.extract_all(WorkingTree(sys.argv[1]), store, jobs=2, progress=lambda done, total: print(done, flush=True))
 print("finished", flush=True)
 """
 

@@ -453,6 +453,9 @@ class PackageJoin:
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))
         # Files whose references nobody follows where the package is used.
         unused = set(self.files) if of_tests else set()
+        # What the launch system or shell of this generation refuses: from before a migration, or for the other build of
+        # a package for both generations. Its tests run nowhere.
+        leftover: set[str] = set()
         python: dict[str, PythonFile] = {}
         interpreted = self.interpreted
         shells: list[str] = []
@@ -488,7 +491,7 @@ class PackageJoin:
                     launches.append((path, "launch_python"))
                     data_words.append(facts.words)
                     if self.generation == 1:
-                        unused.add(path)
+                        leftover.add(path)
             elif isinstance(facts, Interface):
                 name = facts.name or posixpath.basename(path).rsplit(".", 1)[0]
                 interfaces.append(InterfaceFile(name, path, facts))
@@ -503,9 +506,10 @@ class PackageJoin:
                 if kind in ("launch_xml", "launch_yaml"):
                     launches.append((path, kind))
                 if {getattr(facts, "generation", 0), self.generation} == {1, 2}:
-                    unused.add(path)  # left over, or for the other build of a package for both generations
+                    leftover.add(path)
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
+        unused |= leftover
         if self.build_type == "catkin":  # which starts programs from the source space too
             own = (r for p, r in references if r.package == self.name and self.find_role(p) is None)
             self.start_scripts(python, {r.name for r in own if r.kind == "executable"})
@@ -538,8 +542,9 @@ class PackageJoin:
             includes=tuple(includes),
             imports=tuple(imports),
             references=tuple(
-                ReferenceUse(r, At(p, r.line, r.column), "aside" if p in unused else self.find_role(p) or "run")
+                ReferenceUse(r, At(p, r.line, r.column), self.find_role(p) or ("aside" if p in unused else "run"))
                 for p, r in references
+                if p not in leftover or self.find_role(p) != "test"
             ),
             names=tuple(names + python_names),
             needed_headers=tuple(needed),

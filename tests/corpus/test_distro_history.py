@@ -103,11 +103,11 @@ class Made:
             put("INSERT INTO dependencies VALUES (?, ?)", (number, "\n".join(f"{name}\tb" for name in names)))
             put("INSERT INTO manifest VALUES (?, ?, '1.0.0', ?, 'ament_cmake')", (ids[distro], number, number))
 
-    def rows(self, sql, parameters=()):
+    def fetch(self, sql, parameters=()):
         return self._data.execute(sql, parameters).fetchall()
 
-    def row(self, sql, parameters=()):
-        return next(iter(self.rows(sql, parameters)), None)
+    def query_row(self, sql, parameters=()):
+        return next(iter(self.fetch(sql, parameters)), None)
 
 
 def noon(day):

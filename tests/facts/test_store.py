@@ -207,13 +207,13 @@ def test_another_process_that_keeps_the_file_locked(tmp_path, monkeypatch):
 WRITER = """
 import sys
 from rosimpact.impact.cache import cache_folder
-from rosimpact.impact.facts.store import Store, fact_key, pack
+from rosimpact.impact.facts.store import Store, make_fact_key, pack
 folder, start, count = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 store = Store(folder)
 print("ready", flush=True)
 sys.stdin.readline()
 for n in range(start, start + count):
-    store.put([(fact_key(f"{n:040x}", "cpp.1"), pack(f"{n}:".encode() + b"x" * 50))])
+    store.put([(make_fact_key(f"{n:040x}", "cpp.1"), pack(f"{n}:".encode() + b"x" * 50))])
     print(n, flush=True)
 print(store.notes, flush=True)
 store.close()

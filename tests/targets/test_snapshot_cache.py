@@ -170,7 +170,7 @@ def test_broken_shipped_data_is_named(tmp_path, name):
 def test_two_runs_at_once_both_answer(tmp_path):
     code = (
         "from rosimpact.impact.targets.distro.distro import DistroTarget;"
-        "print(DistroTarget('jazzy').version('rclcpp'))"
+        "print(DistroTarget('jazzy').find_version('rclcpp'))"
     )
     environment = {**os.environ, "ROSIMPACT_CACHE": str(tmp_path)}
     runs = [
