@@ -111,7 +111,14 @@ def open_base(tree: Tree, opened: OpenedWorkspace, *, jobs: int | None = None) -
     second = make_code_selector(tree) if opened.gathered.second is not None else None
     watched = load_tracked_names(opened.store)
     gathered = extract_all(tree, opened.store, jobs=jobs, second=second, along=watched.make_searches)
-    workspace = link(tree, gathered, opened.store, opened.workspace.ros, watched, jobs, asked=opened.asked)
-    views = [TargetView(workspace, view.target, view.providers, view.config, view.asked) for view in opened.views]
+    linked = {
+        ros: link(tree, gathered, opened.store, ros, watched, jobs, asked=opened.asked)
+        for ros in {opened.workspace.ros, *(view.workspace.ros for view in opened.views)}
+    }
+    views = [
+        TargetView(linked[view.workspace.ros], view.target, view.providers, view.config, view.asked)
+        for view in opened.views
+    ]
+    workspace = linked[opened.workspace.ros]
     # What is installed is of no revision.
     return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())

@@ -164,6 +164,7 @@ def read_workspace(
 
 def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -> OpenedWorkspace:
     """A workspace that is read, linked and seen from each of its targets."""
+    from ..model.package import build_type_of
     from ..model.view import TargetView
     from ..model.workspace import link
     from ..targets.asked_versions import AskedVersions
@@ -175,9 +176,15 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
     if len(generations) == 1:
         (ros,) = generations  # packages for both are linked as the targets build them
     workspace = link(tree, gathered, store, ros, tracked_names(), options.jobs, discovered, asked_versions)
+    linked = {ros: workspace}
+    if len(generations) > 1:
+        # Packages for both are linked once more, as the targets of the other generation build them.
+        both = any(build_type_of(package.manifest, 1) != build_type_of(package.manifest, 2) for package in workspace)
+        given = (tree, gathered, store, 3 - ros, tracked_names(), options.jobs, discovered, asked_versions)
+        linked[3 - ros] = link(*given) if both else workspace
     gathered.problems += [*workspace.discovered.problems, *_list_shadowed_packages(workspace)]
     asked = frozenset(chosen.target.distro for chosen in targets)
-    views = [TargetView(workspace, chosen.target, load_providers(), config, asked) for chosen in targets]
+    views = [TargetView(linked[each.target.ros], each.target, load_providers(), config, asked) for each in targets]
     installed, shelves = None, ()
     if options.install is not None:
         from ..model import install_space as built

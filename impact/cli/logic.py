@@ -30,8 +30,6 @@ def logic(
     say_notes([missed] if missed else [])
     if format == "html":
         return timeline.render(found, __version__)
-    return (
-        logic_report.render_json(found, __version__)
-        if format == "json"
-        else logic_report.render_text(found, find_style(output))
-    )
+    if format == "json":
+        return logic_report.render_json(found, __version__)
+    return logic_report.render_text(found, find_style(output))

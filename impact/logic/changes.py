@@ -113,14 +113,8 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
     gone = [at for at in gone if not _has_unclear_call(at, names, new)]
     come = [at for at in come if not _has_unclear_call(at, SAME, old, names)]
     for at in gone:
-        yield _make_change(
-            "gone",
-            at,
-            at.outlets,
-            _format_ways(at.said.ways, at.said),
-            None,
-            _describe_trigger("was published", at.said),
-        )
+        was = _describe_trigger("was published", at.said)
+        yield _make_change("gone", at, at.outlets, _format_ways(at.said.ways, at.said), None, was)
     for at in come:
         yield _make_change(
             "new", at, at.outlets, None, _format_ways(at.said.ways, at.said), _describe_trigger("is published", at.said)
@@ -347,11 +341,9 @@ def _start_differs(old: StatementStart, new: StatementStart, names: Renames) -> 
         if old.kind in _UNSAID or _normalize_detail(names.map_text(old.detail)) == _normalize_detail(new.detail):
             return ""
         if not old.detail or not new.detail:
-            return (
-                f"{_describe_start(new)}, was without pace"
-                if new.detail
-                else f"{new.kind} without pace, was `{old.detail}`"
-            )
+            if new.detail:
+                return f"{_describe_start(new)}, was without pace"
+            return f"{new.kind} without pace, was `{old.detail}`"
         return f"{_describe_start(new)}, was `{old.detail}`"
     if _UNLED & {old.kind, new.kind}:
         return ""

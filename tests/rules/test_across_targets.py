@@ -95,3 +95,39 @@ def test_parameters_mean_something_else(folder, added, depends, expected, tmp_pa
     )
     found = check(tmp_path, Options(targets=("humble", "kilted"), cache=tmp_path / "cache", jobs=1)).findings
     assert [(f.line, f.targets) for f in found if f.rule == "changed-behaviour"] == expected
+
+
+_FOR_BOTH = {
+    "winch/package.xml": """<package format="3">
+<name>winch</name><version>1.0.0</version><description>winch</description>
+<maintainer email="robots@example.org">Robots</maintainer><license>Apache-2.0</license>
+<buildtool_depend condition="$ROS_VERSION == 1">catkin</buildtool_depend>
+<buildtool_depend condition="$ROS_VERSION == 2">ament_cmake</buildtool_depend>
+<build_depend>ros_environment</build_depend>
+<depend condition="$ROS_VERSION == 1">roscpp</depend><depend condition="$ROS_VERSION == 2">rclcpp</depend>
+<export><build_type condition="$ROS_VERSION == 1">catkin</build_type>
+<build_type condition="$ROS_VERSION == 2">ament_cmake</build_type></export></package>""",
+    "winch/CMakeLists.txt": """cmake_minimum_required(VERSION 3.8)
+project(winch)
+if($ENV{ROS_VERSION} EQUAL 1)
+  find_package(catkin REQUIRED COMPONENTS roscpp tf)
+  catkin_package()
+else()
+  find_package(ament_cmake REQUIRED)
+  find_package(rclcpp REQUIRED)
+  find_package(pluginlib REQUIRED)
+  ament_package()
+endif()
+""",
+}
+
+
+@pytest.mark.parametrize("targets", [("noetic", "jazzy"), ("jazzy", "noetic", "humble"), ("noetic",), ("jazzy",)])
+def test_a_package_for_both_generations_is_checked_as_each_target_builds_it(tmp_path, targets):
+    options = Options(targets=targets, cache=tmp_path / "cache")
+    found = rule_cases.check_files(_FOR_BOTH, options).findings
+    expected = {"noetic": "tf", "jazzy": "pluginlib", "humble": "pluginlib"}
+    errors = {(target, f.subject) for f in found if f.severity == "error" for target in f.targets}
+    assert errors == {(target, expected[target]) for target in targets}
+    # What was there before is not new on either.
+    assert not any(f.new for f in rule_cases.check_files(_FOR_BOTH, options, _FOR_BOTH).findings)

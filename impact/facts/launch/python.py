@@ -797,11 +797,8 @@ class Walker:
         if isinstance(value, (FilledFile, TypedValue)):
             return value.value if isinstance(value, FilledFile) else self.make_text(value.value, node)
         if isinstance(value, Either):
-            return (
-                ValuePart(
-                    "choose", "", (value.condition, self.make_text(value.yes, node), self.make_text(value.no, node))
-                ),
-            )
+            yes, no = self.make_text(value.yes, node), self.make_text(value.no, node)
+            return (ValuePart("choose", "", (value.condition, yes, no)),)
         if isinstance(value, Items) and value.kind != "launch":
             return join_all([self.make_text(item, node) for item in value.items])
         if isinstance(value, Unknown):

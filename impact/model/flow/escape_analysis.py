@@ -36,6 +36,7 @@ _WHOLE = frozenset(
      "get_param_names", "searchParam", "search_param", "get_parameter_overrides", "allow_undeclared_parameters",
      "automatically_declare_parameters_from_overrides", "ParamListener", "set_parameters_from_yaml", "TransportHints")
 )  # fmt: skip
+_GIVES_NODE = ("shared_from_this", "getNodeHandle", "getPrivateNodeHandle")
 _OPTIONS = ("automatically_declare_parameters_from_overrides", "allow_undeclared_parameters")
 # Frameworks that read parameters of the node they are given.
 _ASKING = frozenset(
@@ -216,11 +217,7 @@ class Seeing:
             return bool(calls.find_own_kinds(fn) & {"node", "handle"})
         if value.kind == "other":
             return value.text == "*this" and bool(calls.find_own_kinds(fn) & {"node", "handle"})
-        if value.kind == "call" and get_tail(value.text) in (
-            "shared_from_this",
-            "getNodeHandle",
-            "getPrivateNodeHandle",
-        ):
+        if value.kind == "call" and get_tail(value.text) in _GIVES_NODE:
             return True
         if value.kind in ("name", "call"):
             return bool(calls.find_kinds(self.join.code.resolve_type(value, fn), fn) & {"node", "handle"})

@@ -149,15 +149,8 @@ def list_built(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[
             for target in targets
             if target.kind == "executable" and (target.sources or target.name not in running)
         }
-        yield BuiltPackage(
-            package.name,
-            executables,
-            libraries,
-            components,
-            _find_scripts(package, files),
-            links,
-            _collect_plugins(package),
-        )
+        scripts, plugins = _find_scripts(package, files), _collect_plugins(package)
+        yield BuiltPackage(package.name, executables, libraries, components, scripts, links, plugins)
 
 
 def _collect_plugins(package: Package) -> dict[str, str]:

@@ -103,19 +103,13 @@ class Providers(ShippedDatabase):
 
         An empty provider name: CMake's own find module succeeds on every machine that builds (Threads, PkgConfig).
         """
-        found = self._find_facts("cmake", name) + self._find_ros("ros_cmake", name) + self._find_system("cmake", name)
-        found += self._find_sought(name)
+        found = [*self._find_everywhere("cmake", name), *self._find_sought(name)]
         if not found:
             # find_package(SDL2) also reads sdl2-config.cmake.
             found = self._find_system("cmake", f"{name.lower()}-config")
         if not found:
             for other in self._folded_cmake.get(name.lower(), ()):
-                found += (
-                    self._find_facts("cmake", other)
-                    + self._find_ros("ros_cmake", other)
-                    + self._find_system("cmake", other)
-                )
-                found += self._find_sought(other)
+                found += [*self._find_everywhere("cmake", other), *self._find_sought(other)]
             found = [provider._replace(sure=False) for provider in found]
         return _deduplicate(found)
 
@@ -158,11 +152,7 @@ class Providers(ShippedDatabase):
         parts_ = dotted.split(".")
         for size in range(min(len(parts_), 2), 0, -1):
             name = ".".join(parts_[:size])
-            found = (
-                self._find_facts("module", name)
-                + self._find_ros("ros_module", name)
-                + self._find_system("module", name)
-            )
+            found = self._find_everywhere("module", name)
             if found:
                 return _deduplicate(found)
         return []
@@ -260,6 +250,10 @@ class Providers(ShippedDatabase):
             if found:
                 return [provider._replace(sure=False) for provider in found]
         return []
+
+    def _find_everywhere(self, kind: str, name: str) -> list[Provider]:
+        """Reviewed facts, released packages and those of the system, in this order. kind: `cmake` or `module`."""
+        return [*self._find_facts(kind, name), *self._find_ros(f"ros_{kind}", name), *self._find_system(kind, name)]
 
     def _find_facts(self, kind: str, name: str) -> list[Provider]:
         entries = self._reviewed.get((kind, name))
