@@ -130,7 +130,7 @@ class Workers:
         return done
 
     def _wait(self) -> list[tuple[selectors.SelectorKey, int]]:
-        """What the selector says once a process has an answer; until then, the steps of meanwhile() are taken."""
+        """What the selector says once a process has an answer; until then, the steps of run_meanwhile() are taken."""
         ready = self._selector.select(0)
         while not ready and _take_step():
             ready = self._selector.select(0)
@@ -195,7 +195,7 @@ class _Worker:
 
 
 @contextlib.contextmanager
-def meanwhile(steps: Iterable[object]) -> Iterator[None]:
+def run_meanwhile(steps: Iterable[object]) -> Iterator[None]:
     """Within it, this process takes the steps one at a time while it has to wait for others, as long as there are any.
 
     steps: done in iterating over them. They only prepare what comes later: not all of them may be reached, and where
@@ -210,7 +210,7 @@ def meanwhile(steps: Iterable[object]) -> Iterator[None]:
 
 
 def _take_step() -> bool:
-    """Takes a step of meanwhile(), of the innermost that has one; False when none has."""
+    """Takes a step of run_meanwhile(), of the innermost that has one; False when none has."""
     for steps in reversed(_MEANWHILE):
         with contextlib.suppress(Exception):
             if next(steps, _END) is not _END:

@@ -214,14 +214,14 @@ def test_steps_are_taken_while_others_work(tmp_path):
             time.sleep(0.001)
         return "done"
 
-    with processes.meanwhile(steps()):
+    with processes.run_meanwhile(steps()):
         assert dict(processes.run_forked(wait_for_gate, [1, 2], 2)) == {1: "done", 2: "done"}
     assert taken == [0, 1, 2] and not processes._MEANWHILE
 
 
 @needs_fork
 def test_steps_are_not_taken_by_the_others():
-    with processes.meanwhile(iter(range(5))):
+    with processes.run_meanwhile(iter(range(5))):
         assert dict(processes.run_forked(_tell_steps_left, [1], 1)) == {1: 0}
 
 
@@ -234,7 +234,7 @@ def test_a_step_that_fails_ends_the_steps_and_nothing_else():
         raise ValueError("no step")
         yield
 
-    with processes.meanwhile(iter([])), processes.meanwhile(steps()):
+    with processes.run_meanwhile(iter([])), processes.run_meanwhile(steps()):
         assert dict(processes.run_forked(_slowly, [1, 2], 1)) == {1: 1, 2: 2}
     assert taken == ["failing"]
 
@@ -246,7 +246,7 @@ def test_an_interrupt_in_a_step_leaves_no_process():
         yield
 
     born_before = children()
-    with pytest.raises(KeyboardInterrupt), processes.meanwhile(steps()):
+    with pytest.raises(KeyboardInterrupt), processes.run_meanwhile(steps()):
         list(processes.run_forked(_endless, [1, 2], 2))
     assert children() == born_before and not processes._MEANWHILE
 

@@ -11,7 +11,7 @@ from ...impact.facts.condition import Condition
 from ...impact.facts.place import Problem
 from ...impact.facts.python.reader import EXCEPT, IMPORT_ERRORS, TRY
 from ...impact.facts.python.source import read
-from ...impact.facts.python.surface import LATE, Bound, ModuleSurface, Taken, even_source, make_parameters
+from ...impact.facts.python.surface import LATE, Bound, ModuleSurface, Taken, make_parameters, unparse_even
 from ...impact.facts.python.text import format_dotted, list_caught_exceptions
 
 LONGEST = 80
@@ -76,7 +76,7 @@ class _Module:
                     self.bind_target(target, node.value, "", scope, conditions)
             elif isinstance(node, ast.AnnAssign):
                 if node.value is not None or scope:  # `x: int` binds nothing in a module
-                    self.bind_target(node.target, node.value, even_source(node.annotation), scope, conditions)
+                    self.bind_target(node.target, node.value, unparse_even(node.annotation), scope, conditions)
             elif isinstance(node, ast.AugAssign):
                 self.extend_exports(node, scope)
             elif isinstance(node, ast.Import):
@@ -119,7 +119,7 @@ class _Module:
                 self.bind_target(target, None, "", scope, conditions)
 
     def visit_choice(self, node: ast.If, scope: str, conditions: tuple[Condition, ...]) -> None:
-        test = even_source(node.test)
+        test = unparse_even(node.test)
         if test == "__name__ == '__main__'":
             return
         self.visit_block(node.body, scope, (*conditions, Condition("python", test)))
@@ -154,7 +154,7 @@ class _Module:
         if scope and kind != "staticmethod" and given and given[0].kind in ("positional", "normal"):
             given = given[1:]
         name = f"{scope}.{node.name}" if scope else node.name
-        returns = even_source(node.returns) if node.returns is not None else ""
+        returns = unparse_even(node.returns) if node.returns is not None else ""
         self.names.append(
             Bound(
                 name, kind, node.lineno, () if kind == "property" else given, returns,
@@ -180,7 +180,7 @@ class _Module:
             if isinstance(at, ast.Global):
                 outside.update(at.names)
             elif isinstance(at, (ast.Assign, ast.AnnAssign, ast.AugAssign)):
-                annotation = even_source(at.annotation) if isinstance(at, ast.AnnAssign) else ""
+                annotation = unparse_even(at.annotation) if isinstance(at, ast.AnnAssign) else ""
                 of_module = isinstance(at.value, ast.Subscript) and _format_dotted(at.value.value) == "sys.modules"
                 for target in _flatten_targets(at.targets if isinstance(at, ast.Assign) else [at.target]):
                     if isinstance(target, ast.Attribute) and me and _format_dotted(target.value) == me:
@@ -206,7 +206,7 @@ class _Module:
         decorators = tuple(_format_dotted(decorator) for decorator in node.decorator_list)
         metaclass = [_format_dotted(keyword.value) for keyword in node.keywords if keyword.arg == "metaclass"]
         place = len(self.names)
-        bases = tuple(even_source(base) for base in node.bases)
+        bases = tuple(unparse_even(base) for base in node.bases)
         self.names.append(
             Bound(
                 name, "class", node.lineno, bases=bases, decorators=tuple(d for d in decorators if d),
@@ -346,11 +346,11 @@ class _Module:
                 self.open.append((scope, "setattr()"))
             elif isinstance(owner, ast.Name) and self.is_class(owner.id):
                 self.open.append((owner.id, "setattr()"))
-            elif owner is not None and ("sys.modules" in even_source(owner) or even_source(owner) in self.modules):
+            elif owner is not None and ("sys.modules" in unparse_even(owner) or unparse_even(owner) in self.modules):
                 self.open.append(("", "setattr()"))
         elif me and name == f"{me}.__dict__.update":
             self.open.append((scope, "__dict__.update()"))
-        elif node.func.attr == "update" and even_source(node.func.value) == "globals()":
+        elif node.func.attr == "update" and unparse_even(node.func.value) == "globals()":
             self.open.append(("", "globals().update()"))
 
 
@@ -378,11 +378,11 @@ def _format_dotted(node: ast.AST) -> str:
 def _format_literal(node: ast.expr | None) -> str:
     """The source of a literal, empty for what is none or is long."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub) and isinstance(node.operand, ast.Constant):
-        return even_source(node)
+        return unparse_even(node)
     if isinstance(node, ast.Constant):
         if isinstance(node.value, (str, bytes)) and len(node.value) > LONGEST:
             return ""
-        text = even_source(node)
+        text = unparse_even(node)
         return text if len(text) <= LONGEST else ""
     return ""
 

@@ -45,7 +45,7 @@ def run(
     started = time.perf_counter()
     compared = bool(options.base) or base_tree is not None
     with (
-        processes.meanwhile(import_rules()),
+        processes.run_meanwhile(import_rules()),
         read_workspace(path, options, progress, report_cache.asks_flow, tree) as read,
     ):
         key = None if compared else report_cache.report_key(read, options)
@@ -53,7 +53,7 @@ def run(
             return known
         from .check_opened import check_opened
 
-        with processes.meanwhile(_load_changes(read)):
+        with processes.run_meanwhile(_load_changes(read)):
             opened = link_workspace(read, path, options)
         checked = check_opened(path, options, opened, base_tree=base_tree, started=started)
         if key is not None and opened.workspace.whole and not checked.report.failure:

@@ -62,7 +62,7 @@ def run_rules(
                 opened.store.close()  # no process that is forked now may go on with a connection of this one
                 yield
 
-    with processes.meanwhile(run_on_all_targets()):
+    with processes.run_meanwhile(run_on_all_targets()):
         by_target, on_flow = _run_remembered(
             opened, target_rules, flow_rules, crashed, before, jobs or processes.count_cores()
         )

@@ -140,7 +140,7 @@ def find_size_limit(kind: str) -> int:
     """Bytes above which a file of a kind is taken for generated, or for an attack, and not read."""
     budget = get_limits()
     if "." in kind:
-        return getattr(budget, import_module(_module_of(kind)).LIMITS[kind.partition(":")[2]])
+        return getattr(budget, import_module(_find_module(kind)).LIMITS[kind.partition(":")[2]])
     module = EXTRACTORS[kind][0]
     if kind in _BUDGETS:
         return getattr(budget, _BUDGETS[kind])
@@ -164,16 +164,16 @@ _BUDGETS = {
 
 def make_version(kind: str) -> str:
     """The part of a store key that changes when the code of an extractor does, or what it may read at most."""
-    modules = {_module_of(each) for each in (kind, *_OTHERS_READ_TOO.get(kind, ()))} - {""}
+    modules = {_find_module(each) for each in (kind, *_OTHERS_READ_TOO.get(kind, ()))} - {""}
     return f"{kind}.{compute_source_key(_HERE, *sorted(modules))}{format_limits()}"
 
 
 def make_overall_version() -> str:
     """The same for all extractors together."""
-    return compute_source_key(_HERE, *sorted({_module_of(kind) for kind in EXTRACTORS} - {""}))
+    return compute_source_key(_HERE, *sorted({_find_module(kind) for kind in EXTRACTORS} - {""}))
 
 
-def _module_of(kind: str) -> str:
+def _find_module(kind: str) -> str:
     """The full name of the module that makes a kind of facts, empty where others make it."""
     if "." in kind:
         return kind.partition(":")[0]
@@ -224,7 +224,7 @@ def search(kind: str, data: bytes, facts: Any, table: Any) -> FileFacts[Any]:
 
 
 def _load_extractor(kind: str) -> Callable[..., Any]:
-    return getattr(import_module(_module_of(kind)), kind if kind in SEARCHES else "extract")
+    return getattr(import_module(_find_module(kind)), kind if kind in SEARCHES else "extract")
 
 
 def _extract_content(kind: str, data: bytes) -> Any:
@@ -283,7 +283,7 @@ def make_empty(kind: str, *problems: Problem) -> Any:
 @cache
 def _get_type(kind: str) -> type[Any]:
     struct = EXTRACTORS[kind][1] if kind in EXTRACTORS else "Facts"
-    return getattr(import_module(_module_of(kind)), struct)
+    return getattr(import_module(_find_module(kind)), struct)
 
 
 _encoder = msgspec.msgpack.Encoder()

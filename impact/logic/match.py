@@ -69,7 +69,7 @@ def match_statements(
     most in common, unless that is too little."""
     pairs: list[tuple[StatementPlace, StatementPlace]] = []
     for key in (_make_exact_key, _make_near_key):
-        found, old, new = _equal(old, new, key, names)
+        found, old, new = _is_equal(old, new, key, names)
         pairs += found
     found, gone, come = _pair_closest(
         old, new, lambda one, other: _score(one, other, names), lambda one, other: abs(one.said.line - other.said.line)
@@ -83,13 +83,13 @@ def match_outlets(
     """Pairs of publishers that are the same one; those that are new or gone are in none."""
     pairs: list[tuple[OutletAt, OutletAt]] = []
     for key in (_make_outlet_key, _make_outlet_place_key):
-        found, old, new = _equal(old, new, key, names)
+        found, old, new = _is_equal(old, new, key, names)
         pairs += found
     found, _, _ = _pair_closest(old, new, lambda one, other: _score_outlets(one, other, names), lambda *_: 0)
     return pairs + found
 
 
-def _equal(
+def _is_equal(
     old: Sequence[_T], new: Sequence[_T], key: Callable[[_T, Renames], tuple], names: Renames
 ) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
     """Pairs of one key, in their order; and what is left of both."""

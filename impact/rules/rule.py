@@ -252,13 +252,13 @@ def group_rules(rules: Mapping[str, Rule]) -> dict[str, list[Rule]]:
 
 def import_rules() -> Iterator[None]:
     """Imports the modules of all families, one in each step."""
-    for name in _modules():
+    for name in _list_modules():
         importlib.import_module(name)
         yield
 
 
 @cache
-def _modules() -> list[str]:
+def _list_modules() -> list[str]:
     package = importlib.import_module(__name__.rpartition(".")[0])
     found = []
     for family in pkgutil.iter_modules(package.__path__, package.__name__ + "."):

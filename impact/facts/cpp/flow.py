@@ -108,7 +108,7 @@ class _File(CppStatements):
             if read is not None:
                 read(self, child, name, owner, conditions)
 
-    def scope_namespace_definition(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_namespace_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         said = node.child_by_field_name("name")
         body = node.child_by_field_name("body")
         if body is None:
@@ -119,12 +119,12 @@ class _File(CppStatements):
             self.namespaces.add(inner)
         self.visit_scope(body.children, inner, "", conditions)
 
-    def scope_linkage_specification(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_linkage_specification(self, node: Node, name: str, owner: str, conditions) -> None:
         self.visit_scope(node.children, name, owner, conditions)
 
-    scope_declaration_list = scope_template_instantiation = scope_friend_declaration = scope_linkage_specification
+    enter_declaration_list = enter_template_instantiation = enter_friend_declaration = enter_linkage_specification
 
-    def scope_template_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_template_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         before, parameters = self.types, node.child_by_field_name("parameters")
         self.types = tuple(map(self.find_type_parameter, parameters.named_children)) if parameters is not None else ()
         self.visit_scope(node.children, name, owner, conditions)
@@ -139,7 +139,7 @@ class _File(CppStatements):
         )
         return self.spell_node(named) if named is not None else ""
 
-    def scope_ERROR(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_ERROR(self, node: Node, name: str, owner: str, conditions) -> None:
         """What did not parse: whatever is a whole piece in it is read."""
         for child in node.children:
             read = SCOPED.get(child.kind_id)
@@ -149,7 +149,7 @@ class _File(CppStatements):
                 self.go_outside(owner)
                 self.visit_statement(child, -1)
 
-    def scope_preproc_if(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_preproc_if(self, node: Node, name: str, owner: str, conditions) -> None:
         asked, statements, rest = self.split_branch(node)
         if not rest and not owner and asked.startswith("!(defined(") and is_include_guard(node, statements):
             self.visit_scope(statements, name, owner, conditions)
@@ -163,26 +163,26 @@ class _File(CppStatements):
             inner = (*conditions, (asked, line)) if asked else conditions
             self.visit_scope(statements, name, owner, inner)
 
-    scope_preproc_ifdef = scope_preproc_if
+    enter_preproc_ifdef = enter_preproc_if
 
-    def scope_alias_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_alias_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         said = node.child_by_field_name("name")
         target = node.child_by_field_name("type")
         if said is not None and target is not None:
             self.aliases.append(Alias(self.spell_node(said), self.spell_node(target), name))
 
-    def scope_type_definition(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_type_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         children = list_children(node)
         target = self.find_written_type(children)
         for child in children:
             if child.kind_id in DECLARED_TYPES:
-                self.scope_class_specifier(child, name, owner, conditions)
+                self.enter_class_specifier(child, name, owner, conditions)
         for child in node.children_by_field_name("declarator"):
             said, marks = self.split_declarator(child)
             if said is not None:
                 self.aliases.append(Alias(self.spell_node(said), target + marks, name))
 
-    def scope_using_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_using_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         children = list_children(node)
         target = next((child for child in children if child.kind_id in NAMES), None)
         if target is None:
@@ -193,12 +193,12 @@ class _File(CppStatements):
         else:
             self.aliases.append(Alias(said.rpartition("::")[2], said, name))
 
-    def scope_namespace_alias_definition(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_namespace_alias_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         children = list_children(node)
         if len(children) >= 4:
             self.aliases.append(Alias(self.spell_node(children[1]), strip_template(self.spell_node(children[3])), name))
 
-    def scope_preproc_def(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_preproc_def(self, node: Node, name: str, owner: str, conditions) -> None:
         children = node.children
         if len(children) < 3:
             return
@@ -212,7 +212,7 @@ class _File(CppStatements):
         if value is not None:
             self.constants.append(DataMember(self.spell_node(said), "", self.find_line(node), value))
 
-    def scope_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_declaration(self, node: Node, name: str, owner: str, conditions) -> None:
         """A declaration outside of functions: variables; what declares functions tells only their names."""
         self.go_outside(owner)
         base = self.add_guards(conditions)
@@ -220,7 +220,7 @@ class _File(CppStatements):
         type_ = ""
         for child in children:
             if child.kind_id in DECLARED_TYPES:
-                self.scope_class_specifier(child, name, owner, conditions)
+                self.enter_class_specifier(child, name, owner, conditions)
         typed = False
         for index, child in enumerate(children):
             number = child.kind_id
@@ -231,7 +231,7 @@ class _File(CppStatements):
             self.go_outside(owner)
             self.add_variable(node, child, index, type_, name, owner, base)
 
-    scope_field_declaration = scope_declaration
+    enter_field_declaration = enter_declaration
 
     def add_variable(self, node: Node, child: Node, index: int, type_: str, name: str, owner: str, base: int) -> None:
         said, marks = self.split_declarator(child)
@@ -296,7 +296,7 @@ class _File(CppStatements):
     members: list[DataMember]
     methods: list[str]
 
-    def scope_class_specifier(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_class_specifier(self, node: Node, name: str, owner: str, conditions) -> None:
         """A class; also one in a function, whose name is then its scope."""
         body = node.child_by_field_name("body")
         if body is None or node.kind_id == KIND.enum_specifier:
@@ -321,10 +321,10 @@ class _File(CppStatements):
         found = FlowClass(inner, tuple(bases), tuple(members), tuple(dict.fromkeys(methods)), *lines, types)
         self.classes.append(found)
 
-    scope_struct_specifier = scope_union_specifier = scope_enum_specifier = scope_class_specifier
+    enter_struct_specifier = enter_union_specifier = enter_enum_specifier = enter_class_specifier
 
     def add_local_type(self, node: Node) -> None:
-        self.scope_class_specifier(node, self.name or self.owner, "", ())
+        self.enter_class_specifier(node, self.name or self.owner, "", ())
 
     def add_local_name(self, node: Node) -> None:
         SCOPED[node.kind_id](self, node, self.name, "", ())
@@ -332,7 +332,7 @@ class _File(CppStatements):
     def find_end_line(self, node: Node) -> int:
         return bisect_right(self.starts, node.end_byte)
 
-    def scope_function_definition(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_function_definition(self, node: Node, name: str, owner: str, conditions) -> None:
         """A function with its body."""
         declarator: Node | None = None
         body: Node | None = None
@@ -351,7 +351,7 @@ class _File(CppStatements):
             elif number in DECLARATORS and (number not in NAMES or node.field_name_for_child(index) == "declarator"):
                 declarator = child
             elif number in DECLARED_TYPES and child.child_by_field_name("body") is not None:
-                self.scope_class_specifier(child, name, owner, conditions)
+                self.enter_class_specifier(child, name, owner, conditions)
         while declarator is not None and declarator.kind_id in (KIND.pointer_declarator, KIND.reference_declarator):
             mark = declarator.children[0]
             marks += self.text[mark.start_byte : mark.end_byte]
@@ -427,7 +427,7 @@ class _File(CppStatements):
                 value = FlowExpr("make", "", self.visit_arguments(given, guard, PASS) if inner else ())
             self.assignments.append(Assignment(target, value, self.find_line(child), guard))
 
-    def scope_expression_statement(self, node: Node, name: str, owner: str, conditions) -> None:
+    def enter_expression_statement(self, node: Node, name: str, owner: str, conditions) -> None:
         """Macros and other statements outside of functions."""
         self.go_outside(owner)
         self.visit_statement(node, self.add_guards(conditions))
@@ -449,4 +449,4 @@ def is_include_guard(node: Node, statements: list[Node]) -> bool:
     return asked.text == defined.text
 
 
-SCOPED = find_node_readers(_File, "scope_")
+SCOPED = find_node_readers(_File, "enter_")

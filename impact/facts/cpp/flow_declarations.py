@@ -61,7 +61,7 @@ class Declarations(FunctionReader):
                 return None, marks
         return None, marks
 
-    def value_declaration(self, node: Node, guard: int, position: str, target: str) -> FlowExpr:
+    def evaluate_declaration(self, node: Node, guard: int, position: str, target: str) -> FlowExpr:
         """Local variables."""
         children = node.children
         kind_ = ""
@@ -160,7 +160,7 @@ class Declarations(FunctionReader):
         types = get_items(listed)
         if not types or kind_ == "void":
             return
-        parts = self.taken_for_parameters(types, guard)
+        parts = self.follow_mistaken_parameters(types, guard)
         if parts is not None:
             self.assign(name, FlowExpr("make", kind_, parts), guard, kind_ + marks)
 
@@ -175,12 +175,12 @@ class Declarations(FunctionReader):
         line, column = self.place(name.start_byte)
         inner = self.guard("if", asked, line, guard)
         callee = strip_template(self.text[name.start_byte : name.end_byte])
-        parts = self.taken_for_parameters(get_items(listed), inner)
+        parts = self.follow_mistaken_parameters(get_items(listed), inner)
         if parts is not None:
             self.calls.append(FlowCall(callee, parts, line, column, inner))
         return True
 
-    def taken_for_parameters(self, nodes: list[Node], guard: int) -> tuple[FlowExpr, ...] | None:
+    def follow_mistaken_parameters(self, nodes: list[Node], guard: int) -> tuple[FlowExpr, ...] | None:
         """Arguments that the grammar took for the types of parameters; None when one of them is a parameter."""
         parts: list[FlowExpr] = []
         for node in nodes:
@@ -202,7 +202,7 @@ class Declarations(FunctionReader):
             return FlowExpr("name", name)
         if len(children) == 2 and children[1].kind_id == KIND.abstract_function_declarator:
             listed = next((child for child in children[1].children if child.kind_id == KIND.parameter_list), None)
-            parts = self.taken_for_parameters(get_items(listed) if listed is not None else [], guard)
+            parts = self.follow_mistaken_parameters(get_items(listed) if listed is not None else [], guard)
             if parts is None:
                 return None
             line, column = self.place(children[0].start_byte)
@@ -248,7 +248,7 @@ class Declarations(FunctionReader):
             result.append(FlowParameter(said, flatten(written), default))
         return tuple(result)
 
-    def value_lambda_expression(self, node: Node, guard: int, position: str, target: str) -> FlowExpr:
+    def evaluate_lambda_expression(self, node: Node, guard: int, position: str, target: str) -> FlowExpr:
         """A lambda becomes a Function; what it is called is its Expr."""
         line, column = self.place(node.start_byte)
         name = f"{self.name}::lambda@{line}:{column}" if self.name else f"lambda@{line}:{column}"
@@ -303,4 +303,4 @@ class Declarations(FunctionReader):
         raise NotImplementedError
 
 
-VALUES.update(find_node_readers(Declarations, "value_"))
+VALUES.update(find_node_readers(Declarations, "evaluate_"))

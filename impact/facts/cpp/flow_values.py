@@ -174,30 +174,30 @@ class FunctionReader:
                 self.visit_anything(child, guard, position, None)
         return NOTHING if target is None else self.make_other(node)
 
-    def value_comment(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_comment(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return self.make_other(node)
 
-    value_type_descriptor = value_template_argument_list = value_primitive_type = value_comment
-    value_type_identifier = value_field_identifier = value_comment
+    evaluate_type_descriptor = evaluate_template_argument_list = evaluate_primitive_type = evaluate_comment
+    evaluate_type_identifier = evaluate_field_identifier = evaluate_comment
 
-    def value_identifier(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_identifier(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         name = self.text[node.start_byte : node.end_byte]
         if name in self.known:
             self.touch(name, position)
         return FlowExpr("name", name)
 
-    def value_number_literal(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_number_literal(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return FlowExpr("number", self.text[node.start_byte : node.end_byte])
 
-    value_true = value_false = value_null = value_char_literal = value_number_literal
+    evaluate_true = evaluate_false = evaluate_null = evaluate_char_literal = evaluate_number_literal
 
-    def value_string_literal(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_string_literal(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         text = self.text[node.start_byte : node.end_byte]
         if text[0:1] == '"' and "\\" not in text:
             return FlowExpr("text", text[1:-1])
         return FlowExpr("text", self.unquote_literal(node))
 
-    value_raw_string_literal = value_string_literal
+    evaluate_raw_string_literal = evaluate_string_literal
 
     def unquote_literal(self, node: Node) -> str:
         """The value of a string literal."""
@@ -210,7 +210,7 @@ class FunctionReader:
             text = _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], "" if match[1] == "\n" else match[0]), text)
         return text
 
-    def value_concatenated_string(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_concatenated_string(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         parts: list[FlowExpr] = []
         for child in node.children:
             number = child.kind_id
@@ -225,12 +225,12 @@ class FunctionReader:
             return parts[0]
         return FlowExpr("join", "+", tuple(parts))
 
-    def value_qualified_identifier(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_qualified_identifier(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return FlowExpr("name", strip_template(self.text[node.start_byte : node.end_byte]))
 
-    value_template_function = value_this = value_qualified_identifier
+    evaluate_template_function = evaluate_this = evaluate_qualified_identifier
 
-    def value_field_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_field_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         path, local = self.visit_path(node, guard)
         if local:
             self.touch(path, position)
@@ -272,7 +272,7 @@ class FunctionReader:
                 method = self.find_member_name(function.children[-1])
                 if method in ELEMENTS or method in POINTEES:
                     if method in POINTEES:
-                        self.value_call_expression(node, guard, READ, "")
+                        self.evaluate_call_expression(node, guard, READ, "")
                         receiver = self.find_plain_path(function.children[0])
                         return receiver if receiver is not None else (self.find_receiver(node), False)
                     path, local = self.visit_path(function.children[0], guard)
@@ -283,7 +283,7 @@ class FunctionReader:
                 arguments = get_items(children[-1])
                 if len(arguments) == 1 and self.find_callee(node) in THROUGH:
                     return self.visit_path(arguments[0], guard)
-            self.received = self.value_call_expression(node, guard, ESCAPE, "")
+            self.received = self.evaluate_call_expression(node, guard, ESCAPE, "")
             return self.find_callee(node) + "()", False
         self.received = self.follow(node, guard, ESCAPE)
         return "()", False
@@ -351,7 +351,7 @@ class FunctionReader:
         types = flatten(self.text[written.start_byte + 1 : written.end_byte - 1])
         return self.text[name.start_byte : name.end_byte], types
 
-    def value_call_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_call_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         """A call, which is noted, and its Expr."""
         children = node.children
         if len(children) != 2:
@@ -446,7 +446,7 @@ class FunctionReader:
         given = (child for child in listed.named_children if child.kind_id != KIND.comment)
         return tuple(VALUES[child.kind_id](self, child, guard, position, "") for child in given)
 
-    def value_subscript_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_subscript_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = list_children(node)
         path, local = self.visit_path(children[0], guard)
         index = FlowExpr("other")
@@ -456,7 +456,7 @@ class FunctionReader:
             self.touch(f"{path}.[]", position)
         return FlowExpr("index", "", (FlowExpr("name", path), index))
 
-    def value_parenthesized_expression(
+    def evaluate_parenthesized_expression(
         self, node: Node, guard: int, position: str, target: str | None
     ) -> FlowExpr:
         children = list_children(node)
@@ -464,7 +464,7 @@ class FunctionReader:
             return self.visit_anything(node, guard, position, target)
         return self.follow(children[1], guard, position, target)
 
-    def value_pointer_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_pointer_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = list_children(node)
         inner = children[-1]
         if self.text.startswith("&", node.start_byte):
@@ -477,12 +477,12 @@ class FunctionReader:
                     return FlowExpr("function", name)
         return self.follow(inner, guard, position, target)
 
-    def value_cast_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_cast_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return self.follow(list_children(node)[-1], guard, position, target)
 
-    value_initializer_pair = value_co_await_expression = value_cast_expression
+    evaluate_initializer_pair = evaluate_co_await_expression = evaluate_cast_expression
 
-    def value_binary_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_binary_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         """Operators in a row are walked through, since a long row is a deep tree."""
         operands: list[Node] = []
         signs: list[str] = []
@@ -546,14 +546,14 @@ class FunctionReader:
         other = operands[index - 1] if index else operands[1] if len(operands) > 1 else operands[0]
         return other.kind_id in LITERALS
 
-    def value_unary_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_unary_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = list_children(node)
         inner = self.follow(children[-1], guard, READ, None)
         if inner.kind == "number" and self.text[node.start_byte] == "-":
             return FlowExpr("number", "-" + inner.text)
         return NOTHING if target is None else self.make_other(node)
 
-    def value_update_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_update_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = list_children(node)
         operand = children[0] if children[-1].child_count == 0 and not children[-1].is_named else children[-1]
         path, local = self.visit_path(operand, guard)
@@ -567,7 +567,7 @@ class FunctionReader:
         self.assignments.append(Assignment(path, FlowExpr("number", "1"), self.find_line(node), guard, "", sign))
         return FlowExpr("name", path)
 
-    def value_assignment_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_assignment_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = list_children(node)
         if len(children) != 3:
             return self.visit_anything(node, guard, position, target)
@@ -590,7 +590,7 @@ class FunctionReader:
         inner = get_items(list_children(node)[1])
         return self.follow(inner[0], guard) if len(inner) == 1 and inner[0].kind_id in LITERALS else None
 
-    def value_conditional_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_conditional_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = list_children(node)
         if len(children) != 5:
             return self.visit_anything(node, guard, position, target)
@@ -615,7 +615,7 @@ class FunctionReader:
             node = children[1]
         return self.spell_node(node)
 
-    def value_initializer_list(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_initializer_list(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         if self.nesting > DEEPEST:
             self.visit_anything(node, guard, ESCAPE, "")
             return self.make_other(node)
@@ -624,7 +624,7 @@ class FunctionReader:
         self.nesting -= 1
         return FlowExpr("list", "", parts)
 
-    def value_new_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_new_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         """`new T(...)` and `T{...}`."""
         children = list_children(node)
         kind_ = ""
@@ -640,19 +640,19 @@ class FunctionReader:
             return self.make_other(node)
         return FlowExpr("make", kind_, parts)
 
-    value_compound_literal_expression = value_new_expression
+    evaluate_compound_literal_expression = evaluate_new_expression
 
-    def value_throw_statement(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_throw_statement(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         return self.visit_anything(node, guard, ESCAPE, "")
 
-    def value_sizeof_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
+    def evaluate_sizeof_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         for child in node.children:
             read = VALUES.get(child.kind_id)
             if read is not None:
                 read(self, child, guard, READ, "")
         return self.make_other(node)
 
-    value_delete_expression = value_sizeof_expression
+    evaluate_delete_expression = evaluate_sizeof_expression
 
 
 class _Readers(dict[int, Callable[..., FlowExpr]]):
@@ -662,4 +662,4 @@ class _Readers(dict[int, Callable[..., FlowExpr]]):
         return FunctionReader.visit_anything
 
 
-VALUES = _Readers(find_node_readers(FunctionReader, "value_"))
+VALUES = _Readers(find_node_readers(FunctionReader, "evaluate_"))

@@ -328,17 +328,17 @@ class Walker:
             return True
         return (make_other(get_source(node)),)
 
-    def value_Compare(self, node: ast.Compare) -> Any:
+    def evaluate_Compare(self, node: ast.Compare) -> Any:
         if len(node.ops) != 1:
             return Unknown(get_source(node))
         op = node.ops[0]
         left, right = self.evaluate(node.left), self.evaluate(node.comparators[0])
         same: Any = None
         if isinstance(op, (ast.Eq, ast.NotEq, ast.Is, ast.IsNot)):
-            same = self.equal(left, right)
+            same = self.are_equal(left, right)
         elif isinstance(op, (ast.In, ast.NotIn)) and isinstance(right, (Items, Pairs)):
             items = [key for key, _ in right.items] if isinstance(right, Pairs) else right.items
-            outcomes = [self.equal(left, item) for item in items]
+            outcomes = [self.are_equal(left, item) for item in items]
             if any(outcome is True for outcome in outcomes):
                 same = True
             elif all(outcome is False for outcome in outcomes):
@@ -358,7 +358,7 @@ class Walker:
             return LaunchConstant(same != negated)
         return TextValue((ValuePart("not", "", (same,)),) if negated else same)
 
-    def equal(self, left: Any, right: Any) -> bool | Value | None:
+    def are_equal(self, left: Any, right: Any) -> bool | Value | None:
         """Whether two values are the same; None when that cannot be told."""
         if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
             return left.value == right.value
@@ -382,18 +382,18 @@ class Walker:
             return Unknown(get_source(node))
         return handler(self, node)
 
-    def value_Constant(self, node: ast.Constant) -> Any:
+    def evaluate_Constant(self, node: ast.Constant) -> Any:
         if isinstance(node.value, str):
             return TextValue(make_literal(node.value))
         if node.value is None or isinstance(node.value, (bool, int, float)):
             return LaunchConstant(node.value)
         return Unknown(get_source(node))
 
-    def value_Name(self, node: ast.Name) -> Any:
+    def evaluate_Name(self, node: ast.Name) -> Any:
         found = self.scope.look(node.id)
         return LaunchModule(node.id) if found is None else found
 
-    def value_Attribute(self, node: ast.Attribute) -> Any:
+    def evaluate_Attribute(self, node: ast.Attribute) -> Any:
         receiver = self.evaluate(node.value)
         name = node.attr
         if isinstance(receiver, LaunchModule):
@@ -413,7 +413,7 @@ class Walker:
             return Unknown(get_source(node))
         return Method(receiver, name)
 
-    def value_Subscript(self, node: ast.Subscript) -> Any:
+    def evaluate_Subscript(self, node: ast.Subscript) -> Any:
         holder = self.evaluate(node.value)
         key = self.evaluate(node.slice) if not isinstance(node.slice, ast.Slice) else None
         if isinstance(holder, LaunchModule) and holder.path == "os.environ" and isinstance(key, TextValue):
@@ -430,7 +430,7 @@ class Walker:
             return holder.items[place]
         return Unknown(get_source(node))
 
-    def value_List(self, node: ast.List | ast.Tuple) -> Any:
+    def evaluate_List(self, node: ast.List | ast.Tuple) -> Any:
         items: list[Any] = []
         for element in node.elts:
             if isinstance(element, ast.Starred):
@@ -443,9 +443,9 @@ class Walker:
                 items.append(self.evaluate(element))
         return Items(items, len(self.conditions), "tuple" if isinstance(node, ast.Tuple) else "list")
 
-    value_Tuple = value_List
+    evaluate_Tuple = evaluate_List
 
-    def value_Dict(self, node: ast.Dict) -> Any:
+    def evaluate_Dict(self, node: ast.Dict) -> Any:
         made = Pairs([], len(self.conditions))
         for key, item in zip(node.keys, node.values, strict=True):
             value = self.evaluate(item)
@@ -458,14 +458,14 @@ class Walker:
                 made.set(Unknown(get_source(item)), value)
         return made
 
-    def value_JoinedStr(self, node: ast.JoinedStr) -> Any:
+    def evaluate_JoinedStr(self, node: ast.JoinedStr) -> Any:
         values: list[Value] = []
         for part in node.values:
             inner = part.value if isinstance(part, ast.FormattedValue) else part
             values.append(self.make_text(self.evaluate(inner), inner))
         return TextValue(join_all(values))
 
-    def value_BinOp(self, node: ast.BinOp) -> Any:
+    def evaluate_BinOp(self, node: ast.BinOp) -> Any:
         left, right = self.evaluate(node.left), self.evaluate(node.right)
         if isinstance(node.op, ast.Add):
             return self.add(left, right, node)
@@ -506,7 +506,7 @@ class Walker:
             return calculate_result(node, left.value, right.value)
         return Unknown(get_source(node))
 
-    def value_BoolOp(self, node: ast.BoolOp) -> Any:
+    def evaluate_BoolOp(self, node: ast.BoolOp) -> Any:
         """`and` and `or`: known where what comes first decides, else a value that tells at launch."""
         is_or = isinstance(node.op, ast.Or)
         open_: list[Value] = []
@@ -525,7 +525,7 @@ class Walker:
         joined: Value = (ValuePart("or" if is_or else "and", "", tuple(open_)),)
         return TextValue(joined if len(open_) > 1 else open_[0])
 
-    def value_UnaryOp(self, node: ast.UnaryOp) -> Any:
+    def evaluate_UnaryOp(self, node: ast.UnaryOp) -> Any:
         if isinstance(node.op, ast.Not):
             truth = self.evaluate_test(node.operand)
             known = isinstance(truth, bool)
@@ -536,24 +536,24 @@ class Walker:
             return LaunchConstant(-value.value) if isinstance(node.op, ast.USub) else value
         return Unknown(get_source(node))
 
-    def value_IfExp(self, node: ast.IfExp) -> Any:
+    def evaluate_IfExp(self, node: ast.IfExp) -> Any:
         truth = self.evaluate_test(node.test)
         if isinstance(truth, bool):
             return self.evaluate(node.body if truth else node.orelse)
         return Either(truth, self.evaluate(node.body), self.evaluate(node.orelse))
 
-    def value_Lambda(self, node: ast.Lambda) -> Any:
+    def evaluate_Lambda(self, node: ast.Lambda) -> Any:
         return LaunchFunction(node, self.scope)
 
-    def value_NamedExpr(self, node: ast.NamedExpr) -> Any:
+    def evaluate_NamedExpr(self, node: ast.NamedExpr) -> Any:
         value = self.evaluate(node.value)
         self.bind(node.target, value)
         return value
 
-    def value_Starred(self, node: ast.Starred) -> Any:
+    def evaluate_Starred(self, node: ast.Starred) -> Any:
         return self.evaluate(node.value)
 
-    def value_ListComp(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp) -> Any:
+    def evaluate_ListComp(self, node: ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp) -> Any:
         outer, self.scope = self.scope, LaunchScope(self.scope)
         made: list[Any] = []
         depth = len(self.conditions)
@@ -596,7 +596,7 @@ class Walker:
             del self.conditions[depth:]
         return Pairs(made, depth) if isinstance(node, ast.DictComp) else Items(made, depth)
 
-    value_GeneratorExp = value_SetComp = value_DictComp = value_ListComp
+    evaluate_GeneratorExp = evaluate_SetComp = evaluate_DictComp = evaluate_ListComp
 
     def add_conditions(self, value: Any, depth: int) -> Any:
         return add_conditions(value, tuple(self.conditions[depth:]))
@@ -607,7 +607,7 @@ class Walker:
             if len(holder.items) > MOST_STEPS:
                 raise TooMuch(STEPS)
 
-    def value_Call(self, node: ast.Call) -> Any:
+    def evaluate_Call(self, node: ast.Call) -> Any:
         function = self.evaluate(node.func)
         self.line = node.lineno
         arguments: list[Any] = []
@@ -846,4 +846,4 @@ def _jumps_to_next_turn(body: Sequence[ast.stmt]) -> bool:
 
 
 _STATEMENTS = collect_node_methods(Walker, "run_")
-_EXPRESSIONS = collect_node_methods(Walker, "value_")
+_EXPRESSIONS = collect_node_methods(Walker, "evaluate_")

@@ -121,18 +121,18 @@ class Constants:
         found = evaluate(self, node) if evaluate is not None else None
         return UnknownValue(node) if found is None else found
 
-    def value_Constant(self, node: ast.Constant) -> Any:
+    def evaluate_Constant(self, node: ast.Constant) -> Any:
         return TextConstant(node.value, node.lineno) if isinstance(node.value, str) else node.value
 
-    def value_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
+    def evaluate_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
         return [self.find_value(element) for element in node.elts]
 
-    value_Tuple = value_Set = value_List
+    evaluate_Tuple = evaluate_Set = evaluate_List
 
-    def value_Starred(self, node: ast.Starred) -> Any:
+    def evaluate_Starred(self, node: ast.Starred) -> Any:
         return self.find_value(node.value)
 
-    def value_Dict(self, node: ast.Dict) -> Any:
+    def evaluate_Dict(self, node: ast.Dict) -> Any:
         merged: dict[str, Any] = {}
         for key_node, value_node in zip(node.keys, node.values, strict=True):
             key, value = None if key_node is None else self.find_value(key_node), self.find_value(value_node)
@@ -142,17 +142,17 @@ class Constants:
                 merged.update(value)
         return merged
 
-    def value_Name(self, node: ast.Name) -> Any:
+    def evaluate_Name(self, node: ast.Name) -> Any:
         return self.names.get(node.id)
 
-    def value_JoinedStr(self, node: ast.JoinedStr) -> Any:
+    def evaluate_JoinedStr(self, node: ast.JoinedStr) -> Any:
         parts = (self.find_value(v.value if isinstance(v, ast.FormattedValue) else v) for v in node.values)
         return put_together(parts, node.lineno)
 
-    def value_IfExp(self, node: ast.IfExp) -> Any:
+    def evaluate_IfExp(self, node: ast.IfExp) -> Any:
         return self.find_value(node.body)
 
-    def value_BinOp(self, node: ast.BinOp) -> Any:
+    def evaluate_BinOp(self, node: ast.BinOp) -> Any:
         op = node.op.__class__
         if op not in (ast.Add, ast.Div, ast.Mod):
             return None
@@ -167,7 +167,7 @@ class Constants:
                 return _fill_pattern(left.split("%s"), values, node)
         return None
 
-    def value_Call(self, node: ast.Call) -> Any:
+    def evaluate_Call(self, node: ast.Call) -> Any:
         return self.find_result(node)
 
     def find_result(self, call: ast.Call) -> Any:
@@ -199,7 +199,7 @@ def _fill_pattern(pieces: list[str], values: list[str], node: ast.expr) -> TextC
     return TextConstant(pieces[0] + "".join(v + p for v, p in zip(values, pieces[1:], strict=True)), node.lineno)
 
 
-Constants.evaluators = collect_node_methods(Constants, "value_")
+Constants.evaluators = collect_node_methods(Constants, "evaluate_")
 
 
 def get_source(node: ast.expr) -> str:

@@ -265,7 +265,7 @@ class Expressions(SourceText):
         self.visit(node)
         return self.make_other(node)
 
-    def value_Subscript(self, node: ast.Subscript, use: str, target: str) -> FlowExpr:
+    def evaluate_Subscript(self, node: ast.Subscript, use: str, target: str) -> FlowExpr:
         container = self.follow(node.value, "read")
         if node.slice.__class__ is ast.Slice:
             self.visit(node.slice)
@@ -281,7 +281,7 @@ class Expressions(SourceText):
                 self.touch(path + suffix, use)
         return FlowExpr("index", "", (container, index))
 
-    def value_IfExp(self, node: ast.IfExp, use: str, target: str) -> FlowExpr:
+    def evaluate_IfExp(self, node: ast.IfExp, use: str, target: str) -> FlowExpr:
         saved = self.guard
         self.visit(node.test)
         text, line = self.format_source(node.test), node.test.lineno
@@ -297,7 +297,7 @@ class Expressions(SourceText):
             del self.guards[count:]
         return FlowExpr("choice", "", (FlowExpr("other", text[:LONGEST_OTHER]), true, false))
 
-    def value_BoolOp(self, node: ast.BoolOp, use: str, target: str) -> FlowExpr:
+    def evaluate_BoolOp(self, node: ast.BoolOp, use: str, target: str) -> FlowExpr:
         """`a or b` is a choice between a and b; `a and b` one between b and a."""
         saved, count = self.guard, len(self.guards)
         both = node.op.__class__ is ast.And
@@ -322,14 +322,14 @@ class Expressions(SourceText):
             result = FlowExpr("choice", "", (asked, result, first) if both else (asked, first, result))
         return result
 
-    def value_UnaryOp(self, node: ast.UnaryOp, *_: object) -> FlowExpr:
+    def evaluate_UnaryOp(self, node: ast.UnaryOp, *_: object) -> FlowExpr:
         operand = node.operand
         if node.op.__class__ is ast.USub and operand.__class__ is ast.Constant:
             return FlowExpr("number", self.format_source(node))
         self.visit(operand)
         return self.make_other(node)
 
-    def value_Tuple(self, node, use: str, target: str) -> FlowExpr:
+    def evaluate_Tuple(self, node, use: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
         elements = node.elts
         kept = [self.follow(each, "escape", element) for each in elements[:LONGEST_LIST]]
@@ -339,9 +339,9 @@ class Expressions(SourceText):
             kept.append(FlowExpr("other", f"{len(elements) - LONGEST_LIST} more"))
         return FlowExpr("list", "", tuple(kept))
 
-    value_List = value_Set = value_Tuple
+    evaluate_List = evaluate_Set = evaluate_Tuple
 
-    def value_Dict(self, node: ast.Dict, use: str, target: str) -> FlowExpr:
+    def evaluate_Dict(self, node: ast.Dict, use: str, target: str) -> FlowExpr:
         element = target + ".[]" if target and target != "return" else ""
         pairs: list[FlowExpr] = []
         for key, value in zip(node.keys, node.values, strict=False):
@@ -356,19 +356,19 @@ class Expressions(SourceText):
                 pairs.append(FlowExpr("list", "", (name, self.follow(value, "escape", element))))
         return FlowExpr("list", "", tuple(pairs))
 
-    def value_Starred(self, node: ast.Starred, use: str, *_: object) -> FlowExpr:
+    def evaluate_Starred(self, node: ast.Starred, use: str, *_: object) -> FlowExpr:
         return FlowExpr("keyword", "*", (self.follow(node.value, "escape"),))
 
-    def value_Await(self, node: ast.Await, use: str, target: str) -> FlowExpr:
+    def evaluate_Await(self, node: ast.Await, use: str, target: str) -> FlowExpr:
         return self.follow(node.value, use, target)
 
-    def value_NamedExpr(self, node: ast.NamedExpr, use: str, *_: object) -> FlowExpr:
+    def evaluate_NamedExpr(self, node: ast.NamedExpr, use: str, *_: object) -> FlowExpr:
         target = self.find_target(node.target)
         value = self.follow(node.value, "read", target)
         self.bind(node.target, value, node.lineno)
         return value
 
-    def value_Lambda(self, node: ast.Lambda, use: str, *_: object) -> FlowExpr:
+    def evaluate_Lambda(self, node: ast.Lambda, use: str, *_: object) -> FlowExpr:
         around = self.body.name
         own = f"lambda@{node.lineno}:{self.find_column(node.lineno, node.col_offset)}"
         name = f"{around}.{own}" if around else own
@@ -402,7 +402,7 @@ class Expressions(SourceText):
             found.append(FlowParameter(name, self.format_annotation(argument.annotation), value))
         return tuple(found)
 
-    def value_ListComp(self, node, use: str, target: str) -> FlowExpr:
+    def evaluate_ListComp(self, node, use: str, target: str) -> FlowExpr:
         saved, in_class = self.guard, self.in_class
         self.in_class = False
         for generator in node.generators:
@@ -419,7 +419,7 @@ class Expressions(SourceText):
         self.guard, self.in_class = saved, in_class
         return FlowExpr("other", self.make_other(node).text, (each,))
 
-    value_SetComp = value_GeneratorExp = value_DictComp = value_ListComp
+    evaluate_SetComp = evaluate_GeneratorExp = evaluate_DictComp = evaluate_ListComp
 
     def walk_loop_head(self, target, iterated, line: int) -> None:
         """The head of a for: what is walked through and the variable that is each of it, under the loop's guard."""
@@ -499,7 +499,7 @@ class Expressions(SourceText):
 
     # Strings and paths that are put together: joins of their pieces
 
-    def value_BinOp(self, node: ast.BinOp, use: str, target: str) -> FlowExpr:
+    def evaluate_BinOp(self, node: ast.BinOp, use: str, target: str) -> FlowExpr:
         op = node.op.__class__
         if op is ast.Add:
             # Long sums lean to the left.
@@ -579,7 +579,7 @@ class Expressions(SourceText):
             return self.make_other(node)
         return self.put_together(node, format_pieces(node.func.value.value), values)  # type: ignore[attr-defined]
 
-    def value_JoinedStr(self, node: ast.JoinedStr, use: str, *_: object) -> FlowExpr:
+    def evaluate_JoinedStr(self, node: ast.JoinedStr, use: str, *_: object) -> FlowExpr:
         outermost = not self.unplaced and node.lineno != node.end_lineno
         if outermost:
             # Where things stand in a string of several lines, interpreters before 3.12 do not know.
@@ -682,4 +682,4 @@ def find_made_class(value: FlowExpr) -> str:
 
 
 _VISITORS = collect_node_methods(Expressions, "visit_")
-_VALUES = collect_node_methods(Expressions, "value_")
+_VALUES = collect_node_methods(Expressions, "evaluate_")

@@ -103,16 +103,16 @@ def is_private(part: str) -> bool:
 def make_parameters(arguments: ast.arguments) -> Iterator[PythonParameter]:
     """Parameters in order, `self` and `cls` among them."""
     for kind, argument, default in list_parameters(arguments):
-        annotation = even_source(argument.annotation) if argument.annotation is not None else ""
-        yield PythonParameter(argument.arg, kind, None if default is None else even_source(default), annotation)
+        annotation = unparse_even(argument.annotation) if argument.annotation is not None else ""
+        yield PythonParameter(argument.arg, kind, None if default is None else unparse_even(default), annotation)
 
 
-def even_source(node: ast.AST) -> str:
+def unparse_even(node: ast.AST) -> str:
     """An expression's source, written evenly."""
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.Constant):
         return "..." if node.value is ... else repr(node.value).encode("utf-8", "replace").decode()
     if isinstance(node, ast.Attribute):
-        return f"{even_source(node.value)}.{node.attr}"
+        return f"{unparse_even(node.value)}.{node.attr}"
     return " ".join(ast.unparse(node).encode("utf-8", "replace").decode().split())

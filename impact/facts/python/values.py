@@ -75,18 +75,18 @@ class PythonValues(Constants):
             value = put_together(_flatten_list(value))
         return str(value) if isinstance(value, str) else value if isinstance(value, PackagePath) else None
 
-    def value_Name(self, node: ast.Name) -> Any:
+    def evaluate_Name(self, node: ast.Name) -> Any:
         for scope in self.scope.chain:
             if node.id in scope.values or node.id in scope.bound:
                 return scope.values.get(node.id)
         return None
 
-    def value_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
-        return super().value_List(node) if len(node.elts) <= 20 else None  # a longer one is data
+    def evaluate_List(self, node: ast.List | ast.Tuple | ast.Set) -> Any:
+        return super().evaluate_List(node) if len(node.elts) <= 20 else None  # a longer one is data
 
-    value_Tuple = value_List
+    evaluate_Tuple = evaluate_List
 
-    def value_IfExp(self, node: ast.IfExp) -> None:
+    def evaluate_IfExp(self, node: ast.IfExp) -> None:
         return None
 
     def find_result(self, call: ast.Call) -> Any:
@@ -144,7 +144,7 @@ class PythonValues(Constants):
         return None
 
 
-PythonValues.evaluators = collect_node_methods(PythonValues, "value_")
+PythonValues.evaluators = collect_node_methods(PythonValues, "evaluate_")
 
 
 def _flatten_list(value: Any) -> Iterator[Any]:

@@ -67,7 +67,7 @@ class WorkspaceFlow:
         """What its launch files start, see launches()."""
         from .launches import list_launches
 
-        with processes.meanwhile(self._prepare_graph()):
+        with processes.run_meanwhile(self._prepare_graph()):
             return list_launches(self._workspace, lambda: self.code, self.jobs)
 
     def _prepare_graph(self) -> Iterator[None]:

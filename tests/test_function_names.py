@@ -1,0 +1,35 @@
+"""Functions begin with a verb, as verbs.txt lists them: one that is missing there is added, a noun is not."""
+
+import ast
+from pathlib import Path
+
+ROOT = Path(__file__).parent.parent
+VERBS = frozenset((Path(__file__).parent / "verbs.txt").read_text(encoding="utf-8").split())
+# Searches are called as the facts that they make, and what libraries call has the name that they call.
+_NAMED_OTHERWISE = ("main", "searched_cpp", "searched_text", "called_cpp", "getresponse", "getheaders", "frombuf")
+
+
+def list_functions():
+    for room in ("impact", "corpus", "classifier", "databuild", "edges"):
+        for path in sorted((ROOT / room).rglob("*.py")):
+            place = path.relative_to(ROOT).as_posix()
+            for node in ast.walk(ast.parse(path.read_bytes())):
+                if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                    decorated = " ".join(ast.unparse(each) for each in node.decorator_list)
+                    shown = "cli" in place or decorated.startswith(("rule", "property", "cached_property"))
+                    if not (shown or "_property" in decorated or node.name.startswith("__")):
+                        yield f"{place}:{node.lineno}", node.name
+
+
+def test_functions_begin_with_a_verb():
+    others = [
+        f"{place} {name}"
+        for place, name in list_functions()
+        if name.lstrip("_") not in _NAMED_OTHERWISE and name.strip("_").partition("_")[0] not in VERBS
+    ]
+    assert others == []
+
+
+def test_the_list_has_no_verb_that_nobody_uses():
+    used = {name.strip("_").partition("_")[0] for _, name in list_functions()}
+    assert used >= VERBS
