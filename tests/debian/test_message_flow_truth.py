@@ -190,7 +190,7 @@ def compare(truth, code):
         run = truth[case]
         if isinstance(run, NodeFailed):
             pytest.fail(str(run))
-        graph = code(case.source).build_graph(launch=rosrun(case.package, case.program, case.arguments))
+        graph = code(case.source).build(launch=rosrun(case.package, case.program, case.arguments))
         assert [node.executable for node in graph.nodes] == [case.program]
         # `/image_rotate_1795328266704156340`, `/transform_18151_1795221221877`: nodes that call themselves anonymous.
         plain = re.sub(r"(_\d+)+\Z", "", run.name)
