@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ...edges.memory import cache_method
-from ...edges.reach import Reach
+from ...edges.reach import Reach, walk
 from ..conditions import Environment, evaluate_all
 from ..conditions.cmake import list_tested_packages
 from ..config import Config
@@ -20,7 +20,7 @@ from ..facts.condition import Condition
 from ..facts.manifest import Dependency
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, find_coming_changes, list_horizons
 from ..targets.changes import DISTROS, ChangeRow
-from ..targets.distro.distro import DistroTarget
+from ..targets.distro.distro import DistroTarget, ReleasedDependency
 from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, load_apt
@@ -235,12 +235,13 @@ class TargetView:
                 years.extend(get_year(max(t.standard, t.public_standard)) for t in own.build.targets)
         return max(years)
 
-    def compute_asked_language(self, package: Package) -> int:
-        """The same, and what the released packages ask for that come along with those which it finds."""
-        found = (
-            self.list_transitive(found.name for found in package.build.found) - self.workspace.packages.keys()
-        )
-        return max(self.compute_language(package), *(get_year(self.offers.find_standard(name)) for name in found), 0)
+    def compute_asked_language(self, package: Package, offers: Offers) -> int:
+        """The same, and what the released packages ask for that come along with those which it finds. offers: those of
+        the target, or of the newest distro, where other packages may come along."""
+        found = self.list_transitive(found.name for found in package.build.found) - self.workspace.packages.keys()
+        if offers.target is not self.target:
+            found = frozenset(walk(found, lambda name: _list_installed_with(offers.target.list_dependencies(name))))
+        return max(self.compute_language(package), *(get_year(offers.find_standard(name)) for name in found), 0)
 
     def is_built(self, role: str) -> bool:
         """True for code that is built or run wherever the package is: colcon builds tests along, catkin on request."""
@@ -284,6 +285,11 @@ class TargetView:
     def offers(self) -> Offers:
         """What the released packages offer here, beside what other versions of them do."""
         return Offers(self.target)
+
+    @cached_property
+    def later_offers(self) -> Offers:
+        """What they offer on the newest distro, see newest; here where there is none."""
+        return Offers(self.newest) if self.newest is not None else self.offers
 
     @cached_property
     def python_offers(self) -> PythonOffers:
@@ -606,8 +612,7 @@ class TargetView:
         package = self.workspace.packages.get(name)
         if package is not None:
             return tuple(n for n, kinds in self.collect_declared(package).items() if kinds & _INSTALLED_WITH)
-        released = self.target.list_dependencies(name) or self.target.list_similar(name) or ()
-        return tuple(d.name for d in released if d.kind in _INSTALLED_WITH)
+        return _list_installed_with(self.target.list_dependencies(name) or self.target.list_similar(name))
 
     @cache_method
     def build_environment(self, package: Package) -> frozenset[str]:
@@ -1017,6 +1022,10 @@ class TargetView:
 def _find_role(conditions: Iterable[Condition]) -> str:
     """What is built under conditions: tests or the rest."""
     return "test" if is_for_tests(conditions) else "build"
+
+
+def _list_installed_with(dependencies: Iterable[ReleasedDependency] | None) -> tuple[str, ...]:
+    return tuple(each.name for each in dependencies or () if each.kind in _INSTALLED_WITH)
 
 
 def _collect_reached(

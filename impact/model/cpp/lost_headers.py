@@ -8,9 +8,9 @@ along by an earlier version it is known who brought them.
 from __future__ import annotations
 
 import re
-from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from ....edges.memory import cache_method
 from ...targets.providers.includes import HeadersOfMachine, list_announcing_headers, load_offered
 from ...targets.providers.message_headers import find_package, parse_type
 from ...targets.providers.standard import find_named, find_oldest_gcc, get_bit, index_headers
@@ -62,17 +62,18 @@ class LostHeaders:
         self._reaches = {path: [view.find_outward(p) for p in found] for path, found in package.digest.reaches}
         self._year = view.compute_language(package)
 
-    @cached_property
-    def _year_asked(self) -> int:
+    @cache_method
+    def _find_year_asked(self, now: bool) -> int:
         """The C++ standard that packages from elsewhere ask for, looked up for the few that need it."""
-        return self._view.compute_asked_language(self._package)
+        offers = self._view.offers if now else self._view.later_offers
+        return self._view.compute_asked_language(self._package, offers)
 
     def find(self, need: NeededHeader) -> LostHeader | None:
         """The header that a use of a name lacks on the target or, where it lacks none, on the newest distro."""
         for times in self._list_times(need):
             lost = _find_lost(self._view, need, self._reaches[need.at.path], self._year, times)
-            if lost is not None and lost.standard and self._year_asked > self._year:
-                return _find_lost(self._view, need, self._reaches[need.at.path], self._year_asked, times)
+            if lost is not None and lost.standard and (asked := self._find_year_asked(times.now)) > self._year:
+                return _find_lost(self._view, need, self._reaches[need.at.path], asked, times)
             if lost is not None:
                 return lost
         return None
