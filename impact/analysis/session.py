@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -175,13 +175,16 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
     generations = {chosen.target.ros for chosen in targets}
     if len(generations) == 1:
         (ros,) = generations  # packages for both are linked as the targets build them
-    workspace = link(tree, gathered, store, ros, tracked_names(), options.jobs, discovered, asked_versions)
+    link_for = partial(
+        link, tree, gathered, store,
+        watched=tracked_names(), jobs=options.jobs, discovered=discovered, asked=asked_versions,
+    )  # fmt: skip
+    workspace = link_for(ros)
     linked = {ros: workspace}
     if len(generations) > 1:
         # Packages for both are linked once more, as the targets of the other generation build them.
         both = any(build_type_of(package.manifest, 1) != build_type_of(package.manifest, 2) for package in workspace)
-        given = (tree, gathered, store, 3 - ros, tracked_names(), options.jobs, discovered, asked_versions)
-        linked[3 - ros] = link(*given) if both else workspace
+        linked[3 - ros] = link_for(3 - ros) if both else workspace
     gathered.problems += [*workspace.discovered.problems, *_list_shadowed_packages(workspace)]
     asked = frozenset(chosen.target.distro for chosen in targets)
     views = [TargetView(linked[each.target.ros], each.target, load_providers(), config, asked) for each in targets]
