@@ -269,10 +269,10 @@ def _tell_quota(server: GitHub, count: int, reporter: Reporter) -> None:
     if quota is None or quota.remaining >= count:
         return
     hours = (count - quota.remaining) / max(1, quota.limit)
-    cure = "" if server.has_token else "; GITHUB_TOKEN raises it to 5,000"
+    remedy = "" if server.has_token else "; GITHUB_TOKEN raises it to 5,000"
     reporter.print_line(
         f"GitHub: {format_count(count, 'report')} to ask for, {format_count(quota.remaining, 'request')} left of "
-        f"{quota.limit:,} an hour: that is {format_span(hours * 3600)} or more{cure}"
+        f"{quota.limit:,} an hour: that is {format_span(hours * 3600)} or more{remedy}"
     )
 
 

@@ -408,7 +408,7 @@ class TargetView:
         return found
 
     def find_successor(self, name: str) -> str:
-        """What the known-changes table says to use instead of a package, as a cure; empty when it says nothing."""
+        """What the known-changes table says to use instead of a package; empty when it says nothing."""
         for change in self.list_changes("package-renamed", "package-removed"):
             if change.new and name in (change.old, change.package):
                 return f"depend on `{change.new}`"

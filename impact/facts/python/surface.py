@@ -1,6 +1,6 @@
 """What one Python module offers: the names it binds, with parameters, defaults, decorators and deprecations.
 
-Nothing outside of the file is looked at: what an import or a base class stands for is told by the join
+Nothing outside of the file is looked at: what an import or a base class means is resolved by the join
 (targets/surface/python.py).
 """
 
