@@ -456,7 +456,7 @@ def test_a_rule_that_fails_is_named_and_the_others_are_heard(say, ws, monkeypatc
 def test_an_unforeseen_error_is_one_line(say, ws, monkeypatch):
     from rosimpact.impact.model import workspace
 
-    monkeypatch.setattr(workspace, "link", lambda *a: 1 / 0)
+    monkeypatch.setattr(workspace, "link", lambda *_, **__: 1 / 0)
     said = say("check", ws, "--format", "json")
     assert said.status == 2
     assert "ZeroDivisionError" in json.loads(said.out)["failure"]
