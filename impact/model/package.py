@@ -74,7 +74,9 @@ def _is_part(facts: PythonFile) -> bool:
     return any(item.level and not item.lazy for item in facts.imports)
 
 
-_ASIDE_NAME = re.compile(r"(?:^|_)(?:example|examples|demo|demos|tutorial|sample)(?:_|\.|\d|$)")
+_ASIDE_NAME = re.compile(r"(?:^|[_-])(?:example|demo|tutorial|sample)s?(?:[_-]|\.|\d|$)")
+# Modules and sources of tests, and launch files by which a node is tried out.
+_TEST_NAME = re.compile(r"(?:test_.*|.*_test|conftest)\.\w+$|(?:.*[_-])?test\.launch(?:\.\w+)?$")
 
 
 # So many of the sources that compile a header are looked at.
@@ -317,6 +319,11 @@ def build_type_of(manifest: Manifest, ros: int) -> str:
     return "catkin" if manifest.format < 3 or "catkin" in tools else "cmake"
 
 
+def is_called_example(path: str) -> bool:
+    """Whether the name of a file calls it an example, a demonstration, a sample or a tutorial."""
+    return _ASIDE_NAME.search(path.rsplit("/", 1)[-1].lower()) is not None
+
+
 def find_folder_role(path: str) -> str | None:
     """`test` or `aside` when a folder of the path says so, else None. Hidden folders hold what development needs. path
     is relative to the package."""
@@ -324,9 +331,9 @@ def find_folder_role(path: str) -> str | None:
     if any(part in TESTS or part.startswith("test_") or part.endswith("_test") for part in parts):
         return "test"
     name = path.rsplit("/", 1)[-1].lower()
-    if re.match(r"(test_.*|.*_test|conftest)\.\w+$", name) or name.startswith("test_"):
+    if name.startswith("test_") or _TEST_NAME.match(name):
         return "test"
-    if any(part in ASIDE or part[:1] == "." for part in parts) or _ASIDE_NAME.search(name):
+    if any(part in ASIDE or part[:1] == "." for part in parts) or is_called_example(name):
         return "aside"
     return None
 

@@ -33,6 +33,16 @@ _IN_BUILD = re.compile(r"\$\{(?:CMAKE|PROJECT)(?:_CURRENT)?_BINARY_DIR\}/")
 _PLAIN_FOLDERS = frozenset(("include", "src", "lib"))
 
 
+def _may_be_called_after(name: str, wanted: str) -> bool:
+    """Whether a library's package may be called after what is wanted of it. A package that carries one library is
+    called after all of the library's name; a release of many may be called after its beginning."""
+    if name.endswith("_vendor"):
+        whole = re.sub(r"[^a-z]", "", re.split(r"/|::", wanted.lower())[0])
+        return len(whole) >= _SHORTEST and whole in name.replace("_", "")
+    stem = re.split(r"[^a-z]", wanted.lower())[0]
+    return len(stem) >= _SHORTEST and stem in name
+
+
 class UnknownContents:
     """What may be there for the packages of a workspace on one target although nobody is known to have it."""
 
@@ -65,10 +75,9 @@ class UnknownContents:
         """Whether something wanted is most likely there, since something of unknown contents is called after it: made
         apart, or coming along as the release of a library that is built with plain CMake or Meson, or that a package of
         ROS carries (`mrpt2`, `sdformat_vendor`)."""
-        stem = re.split(r"[^a-z]", wanted.lower())[0]
-        return self.is_made_apart(package, wanted) or (
-            len(stem) >= _SHORTEST
-            and any(stem in name and self.is_carried_library(name) for name in self._view.build_environment(package))
+        return self.is_made_apart(package, wanted) or any(
+            _may_be_called_after(name, wanted) and self.is_carried_library(name)
+            for name in self._view.build_environment(package)
         )
 
     def is_made_apart(self, package: Package, wanted: str) -> bool:
@@ -103,7 +112,16 @@ class UnknownContents:
         """What CMake finds and nobody is known to provide, so that it may find anything else in turn."""
         view, modules = self._view, self._view.workspace.find_modules
         found = {f.name for f in package.build.found if f.how in FINDING and view.applies(f.conditions)}
-        return tuple(name for name in found if "$" not in name and name not in modules and not view.find_cmake(name))
+        # Of what is declared, ament_auto looks for keys too, which are no packages of CMake.
+        keys = {f.name for f in package.build.found if f.how == "ament_auto" and self._is_known_key(f.name)}
+        return tuple(
+            name for name in found - keys if "$" not in name and name not in modules and not view.find_cmake(name)
+        )
+
+    def _is_known_key(self, name: str) -> bool:
+        """Whether a name is a rosdep key whose packages' contents are all known."""
+        debs = () if self._view.is_package(name) else self._view.list_debs(name)
+        return bool(debs) and all(self._view.apt.knows(debian) for debian in debs)
 
     @cache_method
     def _list_unknown_along(self, package: Package) -> tuple[str, ...]:

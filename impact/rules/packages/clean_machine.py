@@ -7,6 +7,7 @@ of the workspace bring.
 
 import re
 
+from ...model.package import is_called_example
 from ..vocabulary import Doubt, Need, Package, TargetView
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
@@ -92,7 +93,9 @@ def is_chance(view: TargetView, package: Package, need: Need, name: str) -> bool
 
 def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
     """Of modules, and of what launch files and scripts start. What depends on the package itself cannot be declared,
-    and who wants both has it."""
+    and who wants both has it; who tries an example out sees what it lacks."""
+    if is_called_example(need.at.path):
+        return (Doubt.EXAMPLE,)
     if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
         return (Doubt.DISPENSABLE,)
     if is_circular(view, package, name):

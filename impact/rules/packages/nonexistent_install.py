@@ -138,8 +138,8 @@ def _calls_unknown(package: Package) -> bool:
 def _list_unset(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Catkin's variables for places, misspelt or of a time before Groovy."""
     others = {found.name for found in package.build.found} - {"catkin"} - view.workspace.packages.keys()
-    if any(view.offers.find_package(name) is None for name in others if view.is_package(name)):
-        return  # a package whose CMake is not known may set variables of its own that are called so
+    # A package whose CMake is not known may set variables of its own that are called as catkin's are.
+    may_be_set = any(view.offers.find_package(name) is None for name in others if view.is_package(name))
     seen = set()
     for use in package.build.uses:
         if use.kind != "variable" or use.context != "install" or not use.name.startswith("CATKIN_"):
@@ -155,5 +155,7 @@ def _list_unset(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             if package.build.catkin_package is None and (package.build.unresolved or _calls_unknown(package)):
                 continue  # a command that is not known may call it
             kind = "early" if package.build.catkin_package else "never"
+        if kind == "unset" and may_be_set:
+            continue
         seen.add(use.name)
         yield Diagnostic(use.at, use.name, package.name, kind=kind)
