@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 
-from tree_sitter import Node
+from tree_sitter import Node, Tree
 
 from ..flow import Alias, Assignment, DataMember, FlowClass, FlowExpr, FlowFile
 from ..place import Problem
@@ -40,13 +40,14 @@ INCLUDED = re.compile(r"#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]")
 def extract(data: bytes) -> FlowFile:
     """The flow of one C or C++ file. Never raises; what did not parse is in `unread`, what went wrong in `problems`."""
     source = clean_source(data)
-    root = PARSER.parse(source.source).root_node
+    tree = PARSER.parse(source.source)
+    root = tree.root_node
     wrong = find_errors(root, source.starts)
     reader = None if wrong else read(source, root)
     if reader is None or reader.misread:
         further = clean_further(data, source)
         if further.source != source.source:
-            again = PARSER.parse(further.source).root_node
+            again = _parse_again(tree, source.source, further.source)
             still_wrong = find_errors(again, further.starts)
             if len(still_wrong) <= len(wrong):
                 source, root, wrong, reader = further, again, still_wrong, None
@@ -61,6 +62,18 @@ def extract(data: bytes) -> FlowFile:
         "cpp", tuple(reader.aliases), tuple(reader.classes), tuple(reader.functions), tuple(reader.constants), exports,
         tuple(sorted(wrong.union(source.hidden))), tuple(reader.problems), tuple(dict.fromkeys(included)),
     )  # fmt: skip
+
+
+def _parse_again(tree: Tree, before: bytes, after: bytes) -> Node:
+    """The root of a source some of whose bytes were replaced by as many others: only what the lines touch in which they
+    lie is parsed anew. tree: of the source as it was; it is changed, and places in it are by bytes alone."""
+    start = 0
+    for row, line in enumerate(before.splitlines(keepends=True)):
+        end = start + len(line)
+        if after[start:end] != line:
+            tree.edit(start, end, end, (row, 0), (row + 1, 0), (row + 1, 0))
+        start = end
+    return PARSER.parse(after, tree).root_node
 
 
 def read(source: Cleaned, root: Node) -> _File:

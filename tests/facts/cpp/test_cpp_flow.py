@@ -6,7 +6,8 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.cpp.flow import extract
+from rosimpact.impact.facts.cpp.flow import PARSER, _parse_again, extract, find_errors
+from rosimpact.impact.facts.cpp.flow_clean import clean_further, clean_source
 from rosimpact.impact.facts.flow import FlowExpr, FlowFile
 
 
@@ -516,3 +517,24 @@ def test_any_text_comes_back(text):
 @given(st.binary(max_size=200))
 def test_any_bytes_come_back(data):
     assert extract(data).language == "cpp"
+
+
+# What is rewritten where a source did not parse as it was, and what such lines stand among.
+_PIECES = (
+    "#if A\nif (a) {\n#else\nif (b) {\n#endif\n}\n", "#ifdef A\n", "#endif\n", "#else\n", "void f() {\n", "}\n",
+    "FOO_DECL class K {\n", "};\n", "x = new (std::nothrow) T[3];\n", "emit(SIGNAL(s(const T &)));\n", "MACRO(a, b)\n",
+    "for_each (T t, ts)\n", "BOOST_FOREACH (T t, ts) {\n", "if (a <b> (c)) {\n", 'printf("%" PRIu64, a);\n', "\n",
+    "public slots:\n", "typename T::X x{};\n", "  pub.publish(m);\n", "é\n", '"\n', "/*\n", "*/\n", "\\\n", "\0\r\n",
+)  # fmt: skip
+
+
+@given(st.lists(st.sampled_from(_PIECES), max_size=14).map("".join))
+def test_what_is_parsed_again_is_as_if_parsed_at_once(text):
+    before = clean_source(text.encode())
+    tree = PARSER.parse(before.source)
+    after = clean_further(text.encode(), before)
+    assert len(after.source) == len(before.source)
+    at_once = PARSER.parse(after.source).root_node
+    assert find_errors(_parse_again(tree, before.source, after.source), after.starts) == find_errors(
+        at_once, after.starts
+    )
