@@ -25,7 +25,7 @@ _WITH_INTERFACES = (
     "rosidl_default_generators", "rosidl_default_runtime", "message_generation", "message_runtime",
 )  # fmt: skip
 # How CMake finds packages whose configurations find others in turn.
-FINDING = ("find_package", "catkin", "ament_auto", "ament_lint_auto")
+FINDING = ("find_package", "catkin", "declared", "ament_lint_auto")
 _SHORTEST = 3
 """Letters of a name by which something else is called after it."""
 _IN_BUILD = re.compile(r"\$\{(?:CMAKE|PROJECT)(?:_CURRENT)?_BINARY_DIR\}/")
@@ -74,9 +74,10 @@ class UnknownContents:
     def is_likely(self, package: Package, wanted: str) -> bool:
         """Whether something wanted is most likely there, since something of unknown contents is called after it: made
         apart, or coming along as the release of a library that is built with plain CMake or Meson, or that a package of
-        ROS carries (`mrpt2`, `sdformat_vendor`)."""
+        ROS carries (`mrpt2`, `sdformat_vendor`), or one that no index has (`glog_catkin`)."""
         return self.is_made_apart(package, wanted) or any(
-            _may_be_called_after(name, wanted) and self.is_carried_library(name)
+            _may_be_called_after(name, wanted)
+            and (self.is_carried_library(name) or name in self._list_unknown_along(package))
             for name in self._view.build_environment(package)
         )
 
@@ -113,7 +114,7 @@ class UnknownContents:
         view, modules = self._view, self._view.workspace.find_modules
         found = {f.name for f in package.build.found if f.how in FINDING and view.applies(f.conditions)}
         # Of what is declared, ament_auto looks for keys too, which are no packages of CMake.
-        keys = {f.name for f in package.build.found if f.how == "ament_auto" and self._is_known_key(f.name)}
+        keys = {f.name for f in package.build.found if f.how == "declared" and self._is_known_key(f.name)}
         return tuple(
             name for name in found - keys if "$" not in name and name not in modules and not view.find_cmake(name)
         )

@@ -449,6 +449,21 @@ INSTALLS = [
 ]
 
 
+def test_catkin_package_xml_tells_what_is_declared_and_where_things_go():
+    source = """
+    project(p)
+    catkin_package_xml()
+    foreach(name ${${PROJECT_NAME}_BUILD_DEPENDS})
+      find_package(${name} REQUIRED)
+    endforeach()
+    install(FILES a.yaml DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+    """
+    made = build(source, dependencies=("roscpp", "tf"), exported_dependencies=("roscpp",))
+    assert [f.name for f in made.found] == ["roscpp", "tf"]
+    assert [i.destination for i in made.installs] == ["share/p"]
+    assert [use.kind for use in made.uses] == ["command"]
+
+
 @pytest.mark.parametrize(("source", "expected"), INSTALLS)
 def test_installs(source, expected):
     made = build("project(p)\n" + source).installs

@@ -7,10 +7,11 @@ import posixpath
 
 from .blocks import CommandCall
 from .build import FoundPackage, GeneratedInterfaces
+from .find import set_catkin_destinations
 from .interpreter import Interpreter, handles, stands_in_for
 from .names import make_name_set
 from .targets import add_links, add_sources, makes_archives, note_signature, resolve_target
-from .values import Word, group_by_keyword, split_words, wrap
+from .values import CMakeValue, Word, group_by_keyword, split_words, wrap
 
 _CPP_SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
 
@@ -72,8 +73,14 @@ def run_ament_package(run: Interpreter, call: CommandCall, args: list[Word]) -> 
 
 @handles("ament_package_xml", "catkin_package_xml")
 def read_package_xml(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """ament_package_xml() and catkin_package_xml(): the version is known from here on."""
+    """ament_package_xml() and catkin_package_xml(): the version is known from here on, and with catkin where things are
+    installed."""
     run.refuse_project()
+    if call.name == "catkin_package_xml":
+        set_catkin_destinations(run, call, args)
+        for kind, names in (("BUILD", run.declared.build), ("RUN", run.declared.exported)):
+            declared = CMakeValue(tuple(wrap(name, call.at) for name in names))
+            run.assign(run.scope, f"{get_package_name(run)}_{kind}_DEPENDS", declared)
 
 
 @handles("ament_register_extension")
@@ -274,11 +281,11 @@ def find_build_dependencies(run: Interpreter, call: CommandCall, args: list[Word
     declared = run.declared.test if call.name.endswith("test_dependencies") else run.declared.build
     names = [name for name in declared if name not in required]
     for item in split_words(given.get("REQUIRED", [])):
-        run.add_found(FoundPackage(str(item), "ament_auto", run.locate(item.at), True, conditions=run.merge_with(item)))
+        run.add_found(FoundPackage(str(item), "declared", run.locate(item.at), True, conditions=run.merge_with(item)))
         run.extend(str(item), item.at)
     for name in names:
         conditions = run.declared.add_condition(name, run.conditions)
-        run.add_found(FoundPackage(name, "ament_auto", run.locate(call.at), conditions=conditions))
+        run.add_found(FoundPackage(name, "declared", run.locate(call.at), conditions=conditions))
         run.extend(name, call.at)
 
 

@@ -18,10 +18,10 @@ class At(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class FoundPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A package looked for by CMake.
 
-    how: `find_package`, `catkin` (a component of find_package(catkin)), `ament_auto` (declared dependencies found by
-    ament_auto_find_build_dependencies), `pkg_check_modules`, `find_library`, `find_path`, `find_program`,
-    `program` (not looked for: what ExternalProject_Add and FetchContent_Declare start), `passed` (given to a command
-    that nothing defines and that is called like `find_our_package`).
+    how: `find_package`, `catkin` (a component of find_package(catkin)), `declared` (what package.xml declares is looked
+    for, by ament_auto_find_build_dependencies or catkin_simple), `pkg_check_modules`, `find_library`, `find_path`,
+    `find_program`, `program` (not looked for: what ExternalProject_Add and FetchContent_Declare start), `passed` (given
+    to a command that nothing defines and that is called like `find_our_package`).
     version: as asked for, empty when not; components: of find_package, catkin excepted (each is its own Found).
     conditions: everything the call stands under, outermost first. at is the argument's own place.
     prefix: the variable or variable prefix of pkg_check_modules and find_library; its further names are in

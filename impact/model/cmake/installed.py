@@ -43,8 +43,8 @@ def collect_installed_headers(package: Package) -> InstalledHeaders:
         for path, place in list_copied_files(install, destination, package.digest.files):
             if HEADER_NAME.search(place):
                 found[path] = place
-    if any(found_.how == "ament_auto" for found_ in package.build.found):
-        known = known and package.build.ament_package is not None
+    if any(found_.how == "declared" for found_ in package.build.found):
+        known = known and (package.build.ament_package or package.build.catkin_package) is not None
     return InstalledHeaders(found, known)
 
 

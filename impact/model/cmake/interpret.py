@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping
 
 from ...facts.cmake import CMakeFile
 from ...facts.condition import Condition
-from . import ament, catkin, find, install, language, lists, paths, targets
+from . import ament, catkin, catkin_simple, find, install, language, lists, paths, targets
 from .build import Build, DeclaredPackages
 from .interpreter import Interpreter
 
 # Importing these registers what their commands mean.
-_FAMILIES = (language, lists, paths, find, targets, install, catkin, ament)
+_FAMILIES = (language, lists, paths, find, targets, install, catkin, catkin_simple, ament)
 
 
 

@@ -97,7 +97,7 @@ def list_found_names(view: TargetView, package: Package) -> set[str] | None:
     """Every package CMake looks for, under the names others know them by; None when CMake finds by names unknown."""
     names: set[str] = set()
     for found in package.build.found:
-        if found.how == "ament_auto":
+        if found.how == "declared":
             names.update(n for n, kinds in view.collect_declared(package).items() if kinds & {"build", "buildtool"})
         names.add(found.name)
         names.update(p.name for p in view.find_cmake(found.name))

@@ -50,9 +50,21 @@ def list_own_calls(
                 used = function in called and function in spoken(own_header[other])
             else:
                 used = owner in around and (function in said or f".{function}" in called)
-            if used and function not in own:
+            if used and function not in own and not _is_defined_along(name, sources, path, declared):
                 yield path, other, name.removeprefix("::")
                 break
+
+
+def _is_defined_along(
+    name: str,
+    sources: Mapping[str, Collection[str]],
+    path: str,
+    declared: Callable[[Collection[str]], Mapping[str, CalledCpp]],
+) -> bool:
+    """Whether a source that goes into every target of a file defines a function too: two programs may each have their
+    own version of a class."""
+    along = sorted(other for other, targets in sources.items() if other != path and set(sources[path]) <= set(targets))
+    return any(name in facts.functions for facts in declared(along).values())
 
 
 def _get_stem(path: str) -> str:

@@ -13,7 +13,8 @@ def read_installs(view: TargetView, package: Package) -> list[Install] | None:
     """The install rules of a package that count on the target; None where they are not known."""
     if not package.build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
         return None
-    if any(f.how == "ament_auto" for f in package.build.found) and package.build.ament_package is None:
+    packaged = package.build.ament_package or package.build.catkin_package
+    if any(f.how == "declared" for f in package.build.found) and packaged is None:
         return None
     return [i for i in package.build.installs if view.applies(i.conditions)]
 

@@ -57,7 +57,7 @@ _ADD = "add `{subject}` to ament_export_dependencies"
     },
 )
 def missing_export(view: TargetView, package: Package):
-    if package.build.catkin_package is not None:
+    if package.build.catkin_package is not None and not any(f.how == "declared" for f in package.build.found):
         yield from _list_of_messages(view, package)
         yield from _list_of_catkin_headers(view, package)
     ament = read_ament_exports(view, package)

@@ -77,7 +77,7 @@ def missing_find_package(view: TargetView, package: Package):
     shipped = {t.name for t in package.build.targets if t.kind != "test" and not is_for_tests(t.conditions)}
     closure = view.build_environment(package)
     # ament_auto and ament_lint_auto find all that is declared for tests.
-    finds_tested = any(f.how in ("ament_auto", "ament_lint_auto") for f in build.found)
+    finds_tested = any(f.how in ("declared", "ament_lint_auto") for f in build.found)
     near, prefixes = SpellingIndex({*view.collect_declared(package), *found}), {f.prefix for f in package.build.found}
     seen = set()
     for at, name in list_given_names(view, package):

@@ -31,7 +31,7 @@ from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubt
 )
 def package_linked_by_name(view: TargetView, package: Package):
     own = {t.name for t in package.build.targets} | {t.output_name for t in package.build.targets}
-    found = {f.name for f in package.build.found if f.how in ("find_package", "ament_auto")} - own
+    found = {f.name for f in package.build.found if f.how in ("find_package", "declared")} - own
     seen = set()
     if package.build_type != "ament_cmake" or package.build.unresolved:
         return

@@ -37,7 +37,7 @@ _KINDS = frozenset(("build", "buildtool", "test"))
 def undeclared_for_ament_auto(view: TargetView, package: Package):
     named = {d.name for d in package.manifest.dependencies if d.kind in _KINDS}
     for found in package.build.found:
-        if found.how != "ament_auto" or not found.required or found.name in named or "$" in found.name:
+        if found.how != "declared" or not found.required or found.name in named or "$" in found.name:
             continue
         if view.applies(found.conditions):
             doubts = () if view.is_sure(found.conditions) else (Doubt.CONDITIONAL,)
