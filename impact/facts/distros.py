@@ -95,6 +95,12 @@ def find_distros(data: bytes) -> DistroFile | None:
     return DistroFile(tuple(uses), " ".join(sorted(set(_WORD.findall(text))))) if uses else None
 
 
+def list_installed_distros(text: str) -> list[str]:
+    """The distros whose folders or Debian packages a text names, in order."""
+    matches = sorted((m.start(), m[1]) for pattern in (_FOLDER, _PACKAGE) for m in pattern.finditer(text))
+    return list(dict.fromkeys(distro for _, distro in matches))
+
+
 def extract(data: bytes, kind: str) -> ContainerFile:
     """The parts of a file of the kind dockerfile or ci; never raises."""
     lines = [

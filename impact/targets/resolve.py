@@ -257,13 +257,21 @@ _BRANCH = re.compile(r"\bversion[\"']?\s*:\s*[\"']?([\w./-]+)")
 _COMMENT = re.compile(r"^\s*(?:#|//).*|\s#\s.*")
 _SAYS_ROS = re.compile(r"(?i)ros|distro|robostack")
 _ITEM = re.compile(r"^\s*-\s*[\"']?([a-z]+)[\"']?\s*,?\s*$")
+_LOOP = re.compile(r"\bfor\s+(\w+)\s+in\s")
+# Before the variable of a loop over distros that are built for; others are branches, labels or file names.
+_OF_DISTRO = r"(?:ros[-:/_]|(?i:distro)\W{1,4}|image\W.*)\$\{?"
+_INSTALLING = re.compile(
+    r"(?:^|/)(?:(?i:readme|install)[^/]*|[^/]*requirements[^/]*|[^/]+\.(?:sh|bash|zsh)|Makefile|justfile)$"
+)
+"""Files that tell how to install what a workspace needs."""
 
 
 def find_named_distros(text: str, distros: Iterable[str]) -> list[str]:
     """Distros that a CI file or Dockerfile names, in order of first mention; comments do not count.
 
     Many names are ordinary words (iron, rolling, crystal), so a line must speak of ROS or a distro, or, in a file that
-    speaks of ROS, name two distros or be an item of a list.
+    speaks of ROS, name two distros or be an item of a list. What a shell loop runs through counts where its variable
+    names an image, a package or a folder of ROS.
     """
     names = set(distros)
     speaks_of_ros = re.search(r"(?i)\bros|ros[_-]", text) is not None
@@ -272,6 +280,9 @@ def find_named_distros(text: str, distros: Iterable[str]) -> list[str]:
         line = _COMMENT.sub("", line)
         words = [word for word in re.findall(r"[a-z]+", line) if word in names]
         if not words:
+            continue
+        loop = _LOOP.search(line)
+        if loop is not None and not re.search(rf"{_OF_DISTRO}{loop[1]}\b", text):
             continue
         item = _ITEM.match(line)
         listed = item or len(set(words)) > 1
@@ -287,17 +298,20 @@ def choose_default_distros(
     distros: Sequence[KnownDistro],
     environment: Mapping[str, str] = os.environ,
     today: str = "",
+    installing: Iterable[tuple[str, str, str]] = (),
 ) -> tuple[tuple[str, ...], str]:
     """Distros to check against when nobody said any, and the reason as a clause.
 
     ros: generation of the workspace, 1 or 2. texts: (repository, path, text) of CI files, Dockerfiles, pixi.toml, and
     files that list repositories (.repos, .rosinstall). branches: (repository, branch). today: ISO day that tells which
-    distros have ended, the data's day.
+    distros have ended, the data's day. installing: as texts, of files that tell how to install things, which are read
+    where nothing else names a distro.
 
     The sourced environment comes first; then what the workspace's repositories name in their files, else in their
-    branches and in those of the repositories that they list: those distros that most repositories name, at most four of
-    them, and no ended one beside a living one; at last the newest long-term distro of the generation. A repository
-    inside another, which is somebody else's there, counts where the outer one names none.
+    branches and in those of the repositories that they list, else in what tells how to install things: those
+    distros that most repositories name, at most four of them, and no ended one beside a living one; at last the
+    newest long-term distro of the generation. A repository inside another, which is somebody else's there, counts
+    where the outer one names none.
     """
     fitting = {known.name: known for known in distros if known.ros == ros}
     sourced = environment.get("ROS_DISTRO", "")
@@ -326,6 +340,14 @@ def choose_default_distros(
         by_branch = _drop_inner(by_branch)
         if not named or any(lives(distro) for found in by_branch.values() for distro in found):
             named = by_branch
+    if not named:
+        from ..facts.distros import list_installed_distros
+
+        for repository, path, text in installing:
+            for distro in list_installed_distros(text):
+                if distro in fitting and lives(distro):
+                    named.setdefault(repository, {}).setdefault(distro, path)
+        named = _drop_inner(named)
     old: list[str] = []
     if named:
         old = sorted({distro for found in named.values() for distro in found})
@@ -401,7 +423,8 @@ def _choose_targets(
     revision = getattr(tree, "revision", "")
     # What is checked out says nothing of another revision; the name of that one does, if it is a branch or a tag.
     branches = [("", revision)] if revision and not revision.startswith(("HEAD", "@")) else _list_branches(tree)
-    distros, reason = choose_default_distros(ros, _iterate_ci_texts(tree), branches, known, today=day)
+    texts, installing = _iterate_texts(tree, _CI_FILE, _REPOSITORY_FILE), _iterate_texts(tree, _INSTALLING)
+    distros, reason = choose_default_distros(ros, texts, branches, known, today=day, installing=installing)
     return tuple(Chosen(DistroTarget(distro, data=data), reason) for distro in distros)
 
 
@@ -410,14 +433,14 @@ def _list_branches(tree: Tree) -> list[tuple[str, str]]:
     return [(folder, branch) for folder, branch in found if branch]
 
 
-def _iterate_ci_texts(tree: Tree) -> Iterator[tuple[str, str, str]]:
-    """The texts that may name distros, each with the repository that it belongs to. A folder with files that CI
+def _iterate_texts(tree: Tree, *patterns: re.Pattern[str]) -> Iterator[tuple[str, str, str]]:
+    """The files whose paths match a pattern, each with the repository that it belongs to. A folder with files that CI
     services read at the root of a repository alone is one, also where its history was left out."""
     paths = [
         entry.path
         for entry in tree.list_entries()
         if entry.size <= _LARGEST
-        and (_CI_FILE.search(entry.path) or _REPOSITORY_FILE.search(entry.path))
+        and any(pattern.search(entry.path) for pattern in patterns)
         and not is_vendored(entry.path)
     ]
     roots = {path[: at.start()].rstrip("/") for path in paths if (at := _AT_ROOT.search(path))}

@@ -255,6 +255,37 @@ def test_what_stands_when_nothing_is_asked_for(ros, texts, branches, environment
     assert says in reason
 
 
+INSTALLING = [
+    ("sudo apt install ros-jazzy-desktop", [], ("jazzy",), "README.md"),
+    ("source /opt/ros/jazzy/setup.bash  # or /opt/ros/humble", [], ("humble", "jazzy"), "README.md"),
+    ("source /opt/ros/bouncy/setup.bash", [], ("lyrical",), "nothing names another"),  # long ended
+    ("Works with ROS 2 Jazzy", [], ("lyrical",), "nothing names another"),
+    ("ros-jazzy-desktop", [("", "ci.yml", workflow("humble"))], ("humble",), "ci.yml"),
+]
+
+
+@pytest.mark.parametrize(("text", "texts", "expected", "says"), INSTALLING)
+def test_what_tells_how_to_install_things_comes_last(text, texts, expected, says):
+    installing = [("", "README.md", text)]
+    distros, reason = choose_default_distros(2, texts, [("", "main")], DISTROS, {}, DAY, installing)
+    assert distros == expected
+    assert says in reason
+
+
+LOOPS = [
+    ("for DISTRO in humble jazzy; do git checkout $DISTRO; done  # of ROS", []),
+    ("for D in humble jazzy; do docker pull ros:$D-ros-base; done", ["humble", "jazzy"]),
+    ("for D in humble jazzy; do\n  . /opt/ros/${D}/setup.bash\ndone", ["humble", "jazzy"]),
+    ("for D in humble jazzy; do\n  ROS_DISTRO=$D make\ndone", ["humble", "jazzy"]),
+    ("for D in humble jazzy; do\n  build --image=ours/$D\ndone  # ROS", ["humble", "jazzy"]),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), LOOPS)
+def test_what_a_loop_runs_through_counts_where_it_names_something_of_ros(text, expected):
+    assert find_named_distros(f"# ROS\nname: ros\n{text}", [known.name for known in DISTROS]) == expected
+
+
 class OneFile:
     """A tree of one CI file."""
 
@@ -280,12 +311,15 @@ class OneFile:
         ("Dockerfile.ci", "humble"),
         ("src/third_party/a/.gitlab-ci.yml", "lyrical"),
         ("docs/ci.yaml", "lyrical"),
+        ("scripts/apt-requirements.txt", "humble"),
+        ("src/a/install_tools.sh", "humble"),
+        ("src/a/notes.md", "lyrical"),
         ("notes/MyDockerfiles.md", "lyrical"),
     ],
 )
 def test_files_that_are_looked_into(path, distro, monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
-    chosen = choose_targets((), Config(), 2, OneFile(path, "FROM ros:humble"))
+    chosen = choose_targets((), Config(), 2, OneFile(path, "FROM ros:humble  # has ros-humble-desktop"))
     assert [item.target.distro for item in chosen] == [distro]
     assert chosen[0].reason
 

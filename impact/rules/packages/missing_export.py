@@ -24,7 +24,7 @@ Not reported
     one folder, a missing ament_export_dependencies is a note.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from ...model.cmake.links import list_exported_targets, list_public_links, resolve_passed_package
 from ...targets.version import is_at_least
@@ -150,11 +150,26 @@ def _list_of_messages(view: TargetView, package: Package):
     for made in package.build.generated:
         if made.how != "catkin" or not made.offered or not view.is_sure(made.conditions):
             continue
+        owners = _find_field_owners(package, made.files)
         for name, at in made.dependencies:
-            if "$" not in name and name not in reach and name != package.name:
+            if "$" not in name and name not in reach and name in owners:
                 reach |= {name}
                 doubt = Doubt.DISPENSABLE if _comes_with_client_library(view, name) else Doubt.DISTURBS
                 yield Diagnostic(at, name, package.name, kind="messages", doubts=(doubt,), together=_ONCE)
+
+
+def _find_field_owners(package: Package, files: Collection[str]) -> set[str]:
+    """The other packages of whose messages the fields in these files are, and those of actions are made."""
+    fields = (
+        field
+        for interface in package.digest.interfaces
+        if interface.path in files
+        for section in interface.definition.sections
+        for field in section.fields
+    )
+    types = ("std_msgs/Header" if field.type == "Header" else field.type for field in fields)
+    implied = {"actionlib_msgs", "std_msgs"} if any(file.endswith(".action") for file in files) else set()
+    return implied.union(name.partition("/")[0] for name in types if "/" in name) - {package.name}
 
 
 def _list_of_catkin_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
