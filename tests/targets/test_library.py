@@ -3,6 +3,7 @@
 import pytest
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.providers.library import (
+    check_version,
     find_compiled_component,
     find_gone_component,
     find_misspelled_version,
@@ -87,3 +88,17 @@ def test_the_folder_of_a_version_in_a_path(distro, path, expected):
 )
 def test_a_spelling_to_which_a_version_does_not_answer(distro, name, version):
     assert find_misspelled_version(DistroTarget(distro), name) == version
+
+
+@pytest.mark.parametrize(
+    ("platform", "request_", "holds"),
+    [
+        ("robostack", "1.9.7...<1.10.0", False),
+        ("robostack", "1.9.7", True),
+        ("conda-forge", "1.9.7...<1.10.0", False),
+        (None, "1.9.7...<1.10.0", None),  # the distro's own release, whose rules are not known
+    ],
+)
+def test_conda_builds_libraries_that_the_distro_releases_too(platform, request_, holds):
+    answer = check_version(DistroTarget("jazzy", "2026-06-19", platform), "octomap", request_, False)
+    assert (answer and answer.holds) is holds

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from ..distro.conda import CHANNELS
 from ..distro.distro import DistroTarget
 from ..snapshot import DATA, read_table
 from ..version import is_at_least, parse
@@ -148,8 +149,8 @@ class VersionAnswer(NamedTuple):
 def check_version(target: DistroTarget, package: str, request: str, exact: bool) -> VersionAnswer | None:
     """Whether find_package(package request [EXACT]) holds by the platform's version; None when that is not known."""
     known = _KNOWN.packages.get(package, _OTHER)
-    if not known.library and target.find_version(package) is not None:
-        return None  # a released package's own
+    if not known.library and target.platform not in CHANNELS and target.find_version(package) is not None:
+        return None  # a released package's own; conda's channels build libraries that the distro releases too
     version = target.find_library(known.library or package.lower().replace("_", "-"))
     if not version:
         return None
