@@ -94,7 +94,7 @@ def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> I
         if (
             change is None
             or change.kind not in KINDS_OF_NAMES
-            or (change.new and use.text.endswith(change.new))
+            or (change.new and (use.text == change.new or use.text.endswith((f"::{change.new}", f".{change.new}"))))
             or (use.language == "python" and _TRIED.intersection(use.conditions))
             or not view.applies(use.conditions)
             or not view.may_concern(package, change, use.at.path)
