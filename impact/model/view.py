@@ -987,11 +987,14 @@ class TargetView:
         """What a call of pkg_check_modules asks for; modules that a package of the workspace may write are left out."""
         name = re.split(r"[<>=]", found.name)[0]
         providers = tuple(self.providers.find_pkgconfig(name))
-        if not providers or found.name in self.workspace.packages:
+        if name in self.workspace.packages:
             return
         if self.target.find_version(name) is not None and all(p.name != name for p in providers):
-            # A library that is released as a package (fcl, octomap) writes its own.
-            providers = (*providers, Provider("ros", name, "", False))
+            # A library that is released as a package (fcl, octomap) writes its own, and so does catkin.
+            types = {one.partition(":")[0] for one in self.target.build_type(name).split(";")}
+            providers = (*providers, Provider("ros", name, "", bool(types & {"cmake", "catkin"})))
+        if not providers:
+            return
         # Also where its module has more words in its name than the package (orocos-bfl of bfl).
         words = (word for word in re.split(r"[-_.]", name)[1:] if self.target.find_version(word) is not None)
         providers = (*providers, *(Provider("ros", word, "", False) for word in words))
