@@ -32,7 +32,7 @@ def _get_list(run: Interpreter, name: str) -> list[Word]:
     return list(held.words) if held is not None else []
 
 
-def _as_call(call: CommandCall, name: str, argument: str = "") -> CommandCall:
+def _make_call(call: CommandCall, name: str, argument: str = "") -> CommandCall:
     """A command that a macro calls, where the macro is called."""
     place = (call.at.line, call.at.column)
     arguments = (CMakeArgument(argument, "", *place),) if argument else ()
@@ -45,7 +45,7 @@ def find_declared_packages(run: Interpreter, call: CommandCall, args: list[Word]
     required = "ALL_DEPS_REQUIRED" in args
     project = _get_project(run)
     found = [wrap(word, call.at) for word in ("catkin", "REQUIRED")]
-    find_package(run, _as_call(call, "find_package", "catkin"), found)
+    find_package(run, _make_call(call, "find_package", "catkin"), found)
     set_catkin_destinations(run, call, [])
     for name in run.declared.build:
         conditions = run.declared.add_condition(name, run.conditions)
@@ -59,7 +59,7 @@ def find_declared_packages(run: Interpreter, call: CommandCall, args: list[Word]
         if any(run.resolve_tree_path(wrap(folder, call.at)) in run.made for folder in _GENERATED):
             run.give_up(call.at, "catkin_simple(): a program makes the interfaces")
         for folder in folders:
-            add_interface_files(run, _as_call(call, _GENERATED[folder]), [])
+            add_interface_files(run, _make_call(call, _GENERATED[folder]), [])
         if folders:
             names = [wrap(name, call.at) for name in run.declared.build if name != "message_generation"]
             generate_messages(run, call, [wrap("DEPENDENCIES", call.at), *names])
@@ -75,7 +75,7 @@ def find_declared_packages(run: Interpreter, call: CommandCall, args: list[Word]
 def add_simple_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cs_add_executable() and cs_add_library(): what is found is linked, and installed by cs_install()."""
     name, library = args[0], call.name == "cs_add_library"
-    plain = _as_call(call, call.name.removeprefix("cs_"))
+    plain = _make_call(call, call.name.removeprefix("cs_"))
     (add_library if library else add_executable)(run, plain, [item for item in args if item not in _LEFT_OUT])
     draft = resolve_target(run, name)
     if "NO_AUTO_LINK" not in args:
