@@ -174,12 +174,6 @@ SILENT = {
         | {"include/sled/types.macro": "TYPE(int)\n", "include/sled/pull.hpp": "int pull();\n"},
         ("pull.cpp", "types.macro", "kinds.macro"),
     ),
-    "a folder that is not there, of which only matching files are installed": Silent(
-        "nonexistent-install",
-        ("humble",),
-        ament('install(DIRECTORY config DESTINATION share/${PROJECT_NAME} FILES_MATCHING PATTERN "*.yaml")'),
-        ("CMakeLists.txt", ' FILES_MATCHING PATTERN "*.yaml"', ""),
-    ),
     "a header of ROS 1 in a package that ros1_bridge gives it to": Silent(
         "unknown-header",
         ("humble",),

@@ -10,7 +10,8 @@ Why it breaks
     is empty; an empty variable before a path puts the files into a wrong place.
 
 Severity
-    error; warning for generator expressions, at which only installing symbolic links stops.
+    error; warning for generator expressions, at which only installing symbolic links stops, and for folders of which
+    only matching files are installed, since CMake goes on without them.
 
 Example
     install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})     # there is no folder `config`
@@ -36,6 +37,7 @@ from .install_rules import read_installs
     group="missing-install",
     texts={
         "absent": Text("`{subject}` is installed but does not exist", "create it, or drop it from the rule"),
+        "nothing": Text("`{subject}` does not exist, so the rule installs nothing", "correct the folder"),
         "target": Text("install(TARGETS) names `{subject}`, which is no target, so CMake stops", "add it, or drop it"),
         "no destination": Text("install({kind}) has no {subject}, so CMake stops", "add it"),
         "symlinks": Text(
@@ -76,12 +78,15 @@ def _list_absent(view: TargetView, package: Package, installs) -> Iterator[Diagn
                 continue
             if package.path and not path.startswith(package.path + "/"):
                 continue
-            if install.kind == "directory" and (install.only or _may_be_empty(package, path)):
+            if install.kind == "directory" and _may_be_empty(package, path):
                 continue
             if install.kind == "files" and "." in path and _is_written(path):
                 continue
             if is_absent(view, package, path):
-                yield Diagnostic(install.at, path[len(package.path) :].lstrip("/"), package.name, kind="absent")
+                # A folder of which only some files are installed may be missing.
+                kind, doubts = ("nothing", (Doubt.DISTURBS,)) if install.only else ("absent", ())
+                subject = path[len(package.path) :].lstrip("/")
+                yield Diagnostic(install.at, subject, package.name, kind=kind, doubts=doubts)
 
 
 def _list_absent_targets(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
