@@ -464,6 +464,21 @@ def test_catkin_package_xml_tells_what_is_declared_and_where_things_go():
     assert [use.kind for use in made.uses] == ["command"]
 
 
+@pytest.mark.parametrize(
+    ("source", "refused"),
+    [
+        ("target_compile_options(gmock PRIVATE -w)", ["gmock"]),
+        ("if(TARGET gmock)\ntarget_compile_options(gmock PRIVATE -w)\nendif()", []),
+        ("foreach(t gmock gtest)\nif(TARGET ${t})\ntarget_compile_options(${t} PRIVATE -w)\nendif()\nendforeach()", []),
+        ("if(X AND TARGET gmock)\ntarget_compile_options(gmock PRIVATE -w)\nendif()", []),
+        ("if(NOT TARGET gmock)\ntarget_compile_options(gmock PRIVATE -w)\nendif()", ["gmock"]),
+        ("if(TARGET gmock_main)\ntarget_compile_options(gmock PRIVATE -w)\nendif()", ["gmock"]),
+    ],
+)
+def test_what_is_given_to_no_target_is_refused_unless_somebody_asked(source, refused):
+    assert [one.name for one in build("project(p)\n" + source).refused] == refused
+
+
 @pytest.mark.parametrize(("source", "expected"), INSTALLS)
 def test_installs(source, expected):
     made = build("project(p)\n" + source).installs

@@ -126,7 +126,10 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
         return draft
     typesupport = run.is_typesupport(name)
     # add_dependencies() is given what catkin makes (`tests`), and CMake lets it wait for what comes later.
-    if run.command != "add_dependencies" and not typesupport and name not in run.maybe_set and "::" not in name:
+    there = re.compile(rf"(?<!NOT )TARGET {re.escape(name)}(?!\S)")
+    asked = any(there.search(held.text) and not held.negated for held in run.merge_with(name))
+    known = typesupport or asked or name in run.maybe_set or "::" in name
+    if run.command != "add_dependencies" and not known:
         run.refuse("no target", name)
     return run.ensure_target(name, "generated" if typesupport else "unknown", name.at)
 
