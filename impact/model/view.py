@@ -794,7 +794,9 @@ class TargetView:
             if not found:
                 # `gz-sim8` is what gz_sim_vendor brings.
                 vendor = re.sub(r"\d+$", "", name).replace("-", "_").lower() + "_vendor"
-                found = [Provider("ros", n, "", False) for n in (name, vendor) if self.target.was_ever_released(n)]
+                known = (n for n in (name, vendor) if self.target.was_ever_released(n))
+                # What is called as packages of interfaces are is nothing else.
+                found = [Provider("ros", n, "", n == name and INTERFACES.search(n) is not None) for n in known]
         return tuple(found)
 
     def _find_cmake_elsewhere(self, name: str) -> list[Provider]:
