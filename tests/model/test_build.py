@@ -471,11 +471,16 @@ def test_catkin_package_xml_tells_what_is_declared_and_where_things_go():
         ("if(TARGET gmock)\ntarget_compile_options(gmock PRIVATE -w)\nendif()", []),
         ("foreach(t gmock gtest)\nif(TARGET ${t})\ntarget_compile_options(${t} PRIVATE -w)\nendif()\nendforeach()", []),
         ("if(X AND TARGET gmock)\ntarget_compile_options(gmock PRIVATE -w)\nendif()", []),
+        ("cmake_minimum_required(VERSION 2.8.3)\nproject(q VERSION 1.0)", ["q"]),
+        ("cmake_minimum_required(VERSION 2.8.3...3.10)\nproject(q VERSION 1.0)", []),
+        ("cmake_minimum_required(VERSION 2.8.3)\ncmake_policy(SET CMP0048 NEW)\nproject(q VERSION 1.0)", []),
+        ("cmake_minimum_required(VERSION 2.8.3)\ncmake_policy(VERSION 3.5)\nproject(q VERSION 1.0)", []),
+        ("cmake_minimum_required(VERSION 2.8.3)\nproject(q)", []),
         ("if(NOT TARGET gmock)\ntarget_compile_options(gmock PRIVATE -w)\nendif()", ["gmock"]),
         ("if(TARGET gmock_main)\ntarget_compile_options(gmock PRIVATE -w)\nendif()", ["gmock"]),
     ],
 )
-def test_what_is_given_to_no_target_is_refused_unless_somebody_asked(source, refused):
+def test_names_at_which_cmake_stops(source, refused):
     assert [one.name for one in build("project(p)\n" + source).refused] == refused
 
 

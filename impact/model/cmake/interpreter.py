@@ -145,6 +145,7 @@ class Interpreter:
         self.nesting = 0
         self.maybe_break = False
         self.minimum_policy: tuple[int, ...] = (3, 5)
+        self.versions_projects = False  # CMP0048 is set
         self.parsed: dict[str, list[CommandCall | Block] | None] = {}
         self.including: list[str] = []
         self.extended: set[str] = set()

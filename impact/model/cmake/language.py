@@ -200,13 +200,15 @@ def require_cmake_version(run: Interpreter, call: CommandCall, args: list[Word])
 
 @handles("cmake_policy")
 def set_cmake_policy(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """cmake_policy(VERSION) and CMP0054."""
+    """cmake_policy(VERSION), CMP0048 and CMP0054."""
     if len(args) >= 2 and args[0] == "VERSION":
         run.minimum_policy = max(run.minimum_policy, make_version_key(args[1].split("...")[-1]))
     elif args[:1] == ["SET"] and len(args) > 1:
         run.use_feature(str(args[1]), args[1].at)
     if args[:2] == ["SET", "CMP0054"] and args[2:3] == ["NEW"]:
         run.minimum_policy = max(run.minimum_policy, (3, 1))
+    if args[:2] == ["SET", "CMP0048"]:
+        run.versions_projects = True
 
 
 @handles("project", least=1)
@@ -226,6 +228,8 @@ def run_project(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
         f"{name}_BINARY_DIR": binary,
     }
     version = find_next(args, "VERSION")
+    if version is not None and run.minimum_policy < (3,) and not run.versions_projects:
+        run.refuse("version", name)  # CMP0048
     if version is not None:
         values["PROJECT_VERSION"] = values[f"{name}_VERSION"] = CMakeValue((version,), version.sure)
         for part, number in zip(("MAJOR", "MINOR", "PATCH", "TWEAK"), version.split("."), strict=False):

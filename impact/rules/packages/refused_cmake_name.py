@@ -4,8 +4,9 @@ What it does
     Reports names that CMake never accepts: find_package() of an imported target or of a package of Debian, a second
     target with the same name, a name that is given include directories or libraries and is no target, or not yet, a
     project that is not called as package.xml calls the package, a target that is linked with keywords and without, a
-    property of a target whose value is an unset version, commands that are misspelt by a letter, and target names with
-    a slash, including those that install_python_package() makes from its argument.
+    property of a target whose value is an unset version, a version of the project under the policies of a CMake before
+    3.0, commands that are misspelt by a letter, and target names with a slash, including those that
+    install_python_package() makes from its argument.
 
 Why it breaks
     CMake finds no package `a::b` or `liba-dev`, since no configuration file has such a name. It stops at a second
@@ -57,6 +58,10 @@ _SHORTEST = 8
         "project": Text(
             "the project is called `{subject}`, but package.xml names the package `{package}`, so CMake stops",
             "project({package})",
+        ),
+        "version": Text(
+            "project({subject}) is given a version, which CMake refuses as cmake_minimum_required() makes it behave",
+            "ask for CMake 3.0 or newer",
         ),
         "no target": Text("`{subject}` is no target, so CMake stops", "name a target that the package adds"),
         "too early": Text(
@@ -124,7 +129,7 @@ def _list_refused(package: Package) -> Iterator[tuple[str, RefusedName]]:
     added = {target.name for target in build.targets if target.kind != "unknown"}
     for refused in build.refused:
         early = refused.kind == "no target" and refused.name in added
-        if refused.kind in ("twice", "project", "mixed") or not hidden:
+        if refused.kind in ("twice", "project", "mixed", "version") or not hidden:
             yield "too early" if early else refused.kind, refused
 
 
