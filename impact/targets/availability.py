@@ -203,7 +203,8 @@ class Availabilities:
             return Availability(symbol, "present", package, version)
         # `include/PACKAGE` is exported where headers are installed a folder deeper, so that the path stays as it was.
         nested = f"{package}/{symbol.name}" in self._list_made_headers(offer)
-        closed = not nested and all(part != "headers" for part, _ in offer.build.unknown)
+        hidden = offer.build.has_empty_folders or any(part == "headers" for part, _ in offer.build.unknown)
+        closed = not nested and not hidden
         return found if closed else Availability(symbol, "unknown", package, version)
 
     def _find_header_in(self, symbol: Symbol, package: str, version: str) -> Availability:
@@ -252,6 +253,8 @@ class Availabilities:
         if offered is None or not decides(offer, offered):
             return Availability(symbol, "unknown", package, offer.version)
         state = _STATES[offered.state]
+        if side == "c++" and state in ("removed", "not yet") and offer.build.has_empty_folders:
+            return Availability(symbol, "unknown", package, offer.version)
         sure = offered.sure
         if side in _BUILT:
             part, names = _BUILT[side]

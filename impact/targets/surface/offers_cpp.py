@@ -53,7 +53,7 @@ def check_use(
     if how == "override":
         return _check_override(offers, offered, arguments, given)
     if offered.here is None and offered.state in ("removed", "absent"):
-        return _check_lacking(offers, offered, how)
+        return None if offer.build.has_empty_folders else _check_lacking(offers, offered, how)
     if offers.has_name("c++", name, package):
         return _check_present(offers, offered, how, arguments, given, templated)
     return _check_inherited(offers, offer, name, how, arguments, given)

@@ -127,3 +127,8 @@ class BuildSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     headers: tuple[Header, ...] = ()
     unknown: tuple[tuple[str, str], ...] = ()
     pkgconfig: tuple[str, ...] = ()
+
+    @property
+    def has_empty_folders(self) -> bool:
+        """Whether folders of headers are exported and no header is known in them, so that they were not found."""
+        return bool(self.include_dirs) and not self.headers
