@@ -290,7 +290,7 @@ def evaluate(text: str, environment: Environment, declared: Collection[str] = ()
     return _OnMachine(text, environment, declared).evaluate_tokens() if _split_tokens(text) else None
 
 
-_FOUND = re.compile(r"(?<![\w}])(\w+)_FOUND\b")
+_FOUND = re.compile(r"(?<![\w}.+-])([\w.+-]+)_FOUND\b")
 
 
 def list_tested_packages(text: str) -> tuple[str, ...]:

@@ -449,7 +449,10 @@ class TargetView:
         `nested` where it is installed under another path."""
         target, symbol = self.target, Symbol("header", path)
         if path in self.workspace.broken_headers:
-            return Availability(symbol, "removed", form="broken")
+            # A package that was split may share its folder of headers with another.
+            others = (p.name for p in self.providers.find_header(path) if p.sure)
+            known = any(name not in self.workspace.packages for name in others)
+            return None if known else Availability(symbol, "removed", form="broken")
         if self.providers.has_system_header(path, target.platform) is False and all(
             p.kind == "system" for p in self.find_header(path)
         ):
@@ -786,10 +789,10 @@ class TargetView:
         own = self.workspace.provides_cmake.get(name)
         found = [Provider("ros", own)] if own else []
         if not own:
-            # `x-config.cmake` answers to any spelling of X, and ROS packages name theirs so.
-            for spelling in dict.fromkeys((name, name.lower())):
+            # `x-config.cmake` answers to any spelling of X, and ROS packages name theirs so, or with dashes.
+            for spelling in dict.fromkeys((name, name.lower(), name.lower().replace("-", "_"))):
                 if self.target.find_version(spelling) is not None or spelling in self.workspace.packages:
-                    found.append(Provider("ros", spelling))
+                    found.append(Provider("ros", spelling, "", "-" not in name or spelling == name))
             found.extend(self._find_cmake_elsewhere(name))
             if not found:
                 # `gz-sim8` is what gz_sim_vendor brings.
@@ -860,7 +863,7 @@ class TargetView:
             if found.how == "pkg_check_modules" and self.applies(found.conditions):
                 yield from self._list_module_needs(found)
             if found.how == "program" and self.applies(found.conditions):
-                yield from self._list_program_needs(found)
+                yield from self._list_program_needs(package, found)
             if found.how not in ("find_package", "catkin") or not self.applies(found.conditions):
                 continue
             if found.name == package.name or package.name in self.workspace.find_modules.get(found.name, ()):
@@ -1014,12 +1017,15 @@ class TargetView:
                 if providers:
                     yield Need("part", name, providers, at, role, certain)
 
-    def _list_program_needs(self, found: FoundPackage) -> Iterator[Need]:
+    def _list_program_needs(self, package: Package, found: FoundPackage) -> Iterator[Need]:
         """A program that CMake starts; those that every machine has are left out. What a package builds where a library
-        is not found, it builds on some machine."""
+        is not found, it builds on some machine, unless it declares that library."""
         providers = tuple(self.providers.find_executable(found.name))
         if providers and providers[0].name and found.name not in self.apt.base:
-            certain = all(self.is_sure((c,)) or list_tested_packages(c.text) for c in found.conditions)
+            tested = {name for c in found.conditions for name in list_tested_packages(c.text)}
+            declared = self.build_environment(package)
+            there = any(self.is_met(known, declared) for name in tested if (known := self.find_cmake(name)))
+            certain = not there and all(self.is_sure((c,)) or list_tested_packages(c.text) for c in found.conditions)
             required = self.is_sure(found.conditions)
             yield Need("program", found.name, providers, found.at, _find_role(found.conditions), certain, required)
 

@@ -83,6 +83,8 @@ FOUND = [
     ("if(X)\nif(NOT X)\nfind_package(A)\nendif()\nendif()", []),
     ('if("$ENV{ROS_DISTRO}" STREQUAL "noetic")\nfind_package(A)\nendif()', ["A [$ENV{ROS_DISTRO} STREQUAL noetic]"]),
     ("if(A_FOUND)\nfind_package(B)\nendif()", ["B [A_FOUND]"]),
+    ("if(yaml-cpp_FOUND)\nfind_package(A)\nelse()\nfind_package(B)\nendif()",
+     ["A [yaml-cpp_FOUND]", "B [!yaml-cpp_FOUND]"]),
     ("find_package(A REQUIRED)\nif(A_FOUND)\nfind_package(B)\nelse()\nfind_package(C)\nendif()", ["A", "B"]),
     (
         "find_package(A)\nif(NOT A_FOUND)\nmessage(FATAL_ERROR no)\nendif()\nif(A_FOUND)\nfind_package(B)\nendif()",
@@ -383,6 +385,7 @@ STANDARDS = [
     ("set(CMAKE_CXX_STANDARD 17)", 17, False),
     ("if(NOT CMAKE_CXX_STANDARD)\nset(CMAKE_CXX_STANDARD 14)\nendif()", 14, True),
     ('set(CMAKE_CXX_FLAGS "-std=c++11 ${CMAKE_CXX_FLAGS}")', 11, False),
+    ('set(CMAKE_CXX_FLAGS "--std=c++11 ${CMAKE_CXX_FLAGS}")', 11, False),
     ('set(CMAKE_CXX_FLAGS "${CMAKE_CXX_FLAGS} -std=gnu++1z -Wall")', 17, False),
     ("add_compile_options(-std=c++0x)", 11, False),
     ('add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:-std=c++17>")', 17, False),
@@ -482,6 +485,13 @@ def test_catkin_package_xml_tells_what_is_declared_and_where_things_go():
 )
 def test_names_at_which_cmake_stops(source, refused):
     assert [one.name for one in build("project(p)\n" + source).refused] == refused
+
+
+def test_what_is_appended_to_what_a_package_sets_stands_beside_it():
+    added = "list(APPEND catkin_INCLUDE_DIRS other)\ninclude_directories(${catkin_INCLUDE_DIRS})"
+    made = [build(f"project(p)\nfind_package({name})\n{added}") for name in ("catkin", "Boost")]
+    folders = [[folder for folder, _ in one.include_dirs] for one in made]
+    assert folders == [["${catkin_INCLUDE_DIRS}", "pkg/other"], ["pkg/other"]]
 
 
 @pytest.mark.parametrize(("source", "expected"), INSTALLS)

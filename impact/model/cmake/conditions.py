@@ -61,7 +61,7 @@ class _InWorld(CMakeTest):
         if held is None:
             if "${" in token.text or "$ENV{" in token.text:
                 return None
-            return None if _IDENTIFIER.match(token.text) else False
+            return None if _IDENTIFIER.match(token.text) or token.text.endswith("_FOUND") else False
         if not held.sure:
             return None
         if not held.defined:

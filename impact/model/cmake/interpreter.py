@@ -30,6 +30,7 @@ from .build import (
     ReadFile,
     RefusedName,
     UnknownCommand,
+    is_for_tests,
 )
 from .drafts import TargetDraft, Targets
 from .names import BUILTIN_COMMANDS, COMMANDS, FALSE_PLATFORMS, MODULE_OF, READ_SUFFIXES, SINCE
@@ -1252,3 +1253,8 @@ def _register_in(table: dict[str, Handler]) -> Callable[..., Callable[[Handler],
 # Registers the decorated function as the meaning of these commands, where they have at least so many arguments; the
 # second, as one that is used only when the tree itself does not define the command.
 handles, stands_in_for = _register_in(HANDLERS), _register_in(WRAPPERS)
+
+
+def is_modelled(command: str, conditions: Iterable[Condition]) -> bool:
+    """Whether it is known what a command does that nothing in the tree defines, or it is called for tests alone."""
+    return command in HANDLERS or command in WRAPPERS or is_for_tests(conditions)

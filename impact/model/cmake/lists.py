@@ -43,6 +43,9 @@ def _split(text: str) -> list[str]:
     return split_list(text) if "\\;" not in text else re.split(r"(?<!\\);", text)
 
 
+_OF_PACKAGE = re.compile(r"(.+?)_(?:INCLUDE_DIRS?|LIBRARIES|LIBRARY|LIBRARY_DIRS|LIBS|DEFINITIONS|EXPORTED_TARGETS)\Z")
+
+
 @handles("list", least=2)
 def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """list()."""
@@ -57,10 +60,12 @@ def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             rest = rest[1:]
         added = add_conditions(split_words(rest), run.conditions)
         if held is None:
-            before: tuple[Word, ...] = ()
-            sure = True
-            if name.startswith("CMAKE_"):
-                sure = False
+            # What a package that was looked for sets is not known, and is there all the same.
+            set_by = _OF_PACKAGE.match(name)
+            stem = set_by[1].lower() if set_by is not None else ""
+            found = bool(stem) and any(stem in (f.name.lower(), f.prefix.lower()) for f in run.found)
+            before = (wrap(f"${{{name}}}", call.at, (), False),) if found else ()
+            sure = not found and not name.startswith("CMAKE_")
         else:
             before = tuple(item for item in held.words if item)
             sure = held.sure

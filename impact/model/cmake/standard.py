@@ -12,7 +12,7 @@ from .values import Word
 if TYPE_CHECKING:
     from .interpreter import Interpreter
 
-_FLAG = re.compile(r"(?:^|[\s;:,\"])-std=(?:c|gnu)\+\+([0-9][0-9a-z])\b")
+_FLAG = re.compile(r"(?:^|[\s;:,\"])--?std=(?:c|gnu)\+\+([0-9][0-9a-z])\b")
 _FEATURE = re.compile(r"cxx_std_(\d\d)\b")
 _NAMES = {"0x": 11, "1y": 14, "1z": 17, "2a": 20, "2b": 23, "2c": 26, "03": 98}
 

@@ -1,6 +1,6 @@
 """Uses of C++ and Python names of released packages that a target does not serve as they need."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
@@ -79,8 +79,7 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
             continue
         if use.package in view.workspace.may_have:
             continue
-        head = use.name.partition("::")[0]
-        if head != use.package and head in near:
+        if _is_of_another(use.name.partition("::")[0], use.package, near):
             continue  # a name of that package, which this one took over for a while
         if use.name.rpartition("::")[2] in calls or not reviewed.isdisjoint(_list_tails(use.name)):
             continue
@@ -97,6 +96,15 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
         if beside and (extract_class(use.given, use.arguments), use.name) in overridden:
             continue  # another of that name overrides, or is to
         yield UnservedUse(use.at, use.name, found, _collect_cpp_doubts(view, use, found), use.arguments, sure=use.sure)
+
+
+def _is_of_another(space: str, package: str, near: Collection[str]) -> bool:
+    """Whether a namespace is called after something else at hand than the package that has names in it: after that
+    itself, or as the package of a library begins (`tl` of tl_expected, `boost` of libboost-dev)."""
+    if space == package or space in near:
+        return space != package
+    starts = (f"{space}_", f"lib{space}")
+    return not package.startswith(space) and any(name.startswith(starts) for name in near)
 
 
 def _collect_cpp_doubts(view: TargetView, use: CppApiUse, found: Availability) -> tuple[Doubt, ...]:
