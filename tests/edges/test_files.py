@@ -336,8 +336,10 @@ def test_streams_are_written_to(target, capfd):
 
 
 def test_a_descriptor_that_is_not_open_is_refused():
+    closed = os.dup(0)
+    os.close(closed)
     with pytest.raises(OSError):
-        files.check_writable_path("/dev/fd/9999")
+        files.check_writable_path(f"/dev/fd/{closed}")
 
 
 def test_appending(room):
