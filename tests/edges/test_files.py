@@ -336,7 +336,7 @@ def test_streams_are_written_to(target, capfd):
 
 
 def test_a_descriptor_that_is_not_open_is_refused():
-    closed = os.dup(0)
+    closed = os.open(os.devnull, os.O_RDONLY)
     os.close(closed)
     with pytest.raises(OSError):
         files.check_writable_path(f"/dev/fd/{closed}")
