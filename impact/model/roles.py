@@ -113,7 +113,7 @@ class Roles:
         if package.build_type == "cmake":
             return None
         names = [e.item for e in build.exports if e.how in _HANDED_ON and self._view.applies(e.conditions)]
-        if any("$" in name for name in names) or any(f.how == "declared" for f in build.found):
+        if any("$" in name for name in names) or build.finds_declared:
             return None
         names.extend(f.name for f in build.handed_on)
         # rosidl exports what interfaces are made of; generate_messages() leaves that to CATKIN_DEPENDS.

@@ -308,10 +308,10 @@ def choose_default_distros(
     where nothing else names a distro.
 
     The sourced environment comes first; then what the workspace's repositories name in their files, else in their
-    branches and in those of the repositories that they list, else in what tells how to install things: those
-    distros that most repositories name, at most four of them, and no ended one beside a living one; at last the
-    newest long-term distro of the generation. A repository inside another, which is somebody else's there, counts
-    where the outer one names none.
+    branches and in those of the repositories that they list, else in what tells how to install things: those distros
+    that most repositories name, at most four of them, and no ended one beside a living one; at last the newest long-
+    term distro of the generation. A repository inside another, which is somebody else's there, counts where the outer
+    one names none.
     """
     fitting = {known.name: known for known in distros if known.ros == ros}
     sourced = environment.get("ROS_DISTRO", "")

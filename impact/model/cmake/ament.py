@@ -16,11 +16,6 @@ from .values import CMakeValue, Word, group_by_keyword, split_words, wrap
 _CPP_SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
 
 
-def get_package_name(run: Interpreter) -> str:
-    """The name under which the package installs itself."""
-    return run.project or run.package
-
-
 @handles("ament_target_dependencies", least=1)
 def add_target_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_target_dependencies()."""
@@ -63,7 +58,7 @@ def run_ament_package(run: Interpreter, call: CommandCall, args: list[Word]) -> 
     if not run.silent:
         run.ament_package = run.locate(call.at)
     given = group_by_keyword(args, frozenset({"CONFIG_EXTRAS", "CONFIG_EXTRAS_POST"}))
-    held = run.get(f"{get_package_name(run)}_CONFIG_EXTRAS")
+    held = run.get(f"{run.installed_name}_CONFIG_EXTRAS")
     extras = [*given.get("CONFIG_EXTRAS", []), *given.get("CONFIG_EXTRAS_POST", []), *(held.words if held else ())]
     for item in split_words(extras):
         path = run.resolve_tree_path(item)
@@ -80,7 +75,7 @@ def read_package_xml(run: Interpreter, call: CommandCall, args: list[Word]) -> N
         set_catkin_destinations(run, call, args)
         for kind, names in (("BUILD", run.declared.build), ("RUN", run.declared.exported)):
             declared = CMakeValue(tuple(wrap(name, call.at) for name in names))
-            run.assign(run.scope, f"{get_package_name(run)}_{kind}_DEPENDS", declared)
+            run.assign(run.scope, f"{run.installed_name}_{kind}_DEPENDS", declared)
 
 
 @handles("ament_register_extension")
@@ -165,7 +160,7 @@ def register_component_node(run: Interpreter, call: CommandCall, args: list[Word
         run.add_export(item, "component", item.at, run.merge_with(item), str(args[0]), program)
     for item in programs:
         run.ensure_target(item, "executable", item.at)
-        run.add_install("targets", (str(item),), f"lib/{get_package_name(run)}", item)
+        run.add_install("targets", (str(item),), f"lib/{run.installed_name}", item)
 
 
 @handles("pluginlib_export_plugin_description_file", least=2)
@@ -175,7 +170,7 @@ def export_plugin_description(run: Interpreter, call: CommandCall, args: list[Wo
     path = run.resolve_tree_path(item)
     run.add_export(path, "plugin_description", item.at, run.merge_with(item), str(args[0]))
     folder = "" if item.startswith("/") else posixpath.dirname(item)
-    destination = posixpath.join("share", get_package_name(run), folder).rstrip("/")
+    destination = posixpath.join("share", run.installed_name, folder).rstrip("/")
     run.add_install("files", (path,), destination, item)
 
 
@@ -344,7 +339,7 @@ def run_auto_package(run: Interpreter, call: CommandCall, args: list[Word]) -> N
     """
         ),
     )
-    package = get_package_name(run)
+    package = run.installed_name
     path_destination = "bin" if "INSTALL_TO_PATH" in given else f"lib/{package}"
     for draft in run.automatic:
         destination = path_destination if draft.kind == "executable" else "lib"

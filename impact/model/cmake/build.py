@@ -254,6 +254,11 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     asked: tuple[str, ...] = ()
     stops: tuple[tuple[At, str, tuple[Condition, ...]], ...] = ()
 
+    @property
+    def finds_declared(self) -> bool:
+        """Whether CMake looks for what package.xml declares, so that more is found and handed on than it names."""
+        return any(found.how == "declared" for found in self.found)
+
 
 _CONDITIONAL = ("found", "targets", "installs", "exports", "generated", "uses", "links", "handed_on", "refused")
 

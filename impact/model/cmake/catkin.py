@@ -52,7 +52,7 @@ def run_catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) ->
                 text = _resolve_extras_path(run, item)
                 run.hand_on(text, item.at)
             run.add_export(text, how, item.at, run.merge_with(item))
-    package = run.project or run.package
+    package = run.installed_name
     run.set_unknown(f"{package}_EXPORTED_TARGETS", call.at)
 
 
@@ -120,7 +120,7 @@ def generate_messages(run: Interpreter, call: CommandCall, args: list[Word]) -> 
     if run.silent:
         return
     given = group_by_keyword(args, frozenset({"DEPENDENCIES", "LANGS"}))
-    package = run.project or run.package
+    package = run.installed_name
     target = f"{package}_generate_messages"
     files = tuple(path for path, _ in run.message_files)
     wanted = tuple((str(item), run.locate(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
@@ -136,7 +136,7 @@ def generate_dynamic_reconfigure_options(run: Interpreter, call: CommandCall, ar
     """generate_dynamic_reconfigure_options(): its target is X_gencfg."""
     if run.silent:
         return
-    target = f"{run.project or run.package}_gencfg"
+    target = f"{run.installed_name}_gencfg"
     files = tuple(run.resolve_tree_path(item) for item in split_words(args))
     run.generated.append(GeneratedInterfaces("reconfigure", target, files, (), run.locate(call.at), run.conditions))
     run.ensure_target(target, "generated", call.at)
@@ -146,7 +146,7 @@ def generate_dynamic_reconfigure_options(run: Interpreter, call: CommandCall, ar
 def install_python_setup(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """install_python_setup(): what setup.py names is installed."""
     item = run.resolve_tree_path("setup.py")
-    destination = f"lib/python3/dist-packages/{run.project or run.package}"
+    destination = f"lib/python3/dist-packages/{run.installed_name}"
     run.add_install("python", (item,), destination, call)
 
 

@@ -19,10 +19,6 @@ _SHARED = split_names("launch rviz urdf meshes maps worlds Media param")
 _GENERATED = {"action": "add_action_files", "msg": "add_message_files", "srv": "add_service_files"}
 
 
-def _get_project(run: Interpreter) -> str:
-    return run.project or run.package
-
-
 def _has_folder(run: Interpreter, name: str) -> bool:
     return bool(run.has_path(run.resolve(name), True))
 
@@ -43,7 +39,7 @@ def _make_call(call: CommandCall, name: str, argument: str = "") -> CommandCall:
 def find_declared_packages(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """catkin_simple(): finds every build dependency, and makes the package's interfaces."""
     required = "ALL_DEPS_REQUIRED" in args
-    project = _get_project(run)
+    project = run.installed_name
     found = [wrap(word, call.at) for word in ("catkin", "REQUIRED")]
     find_package(run, _make_call(call, "find_package", "catkin"), found)
     set_catkin_destinations(run, call, [])
@@ -81,18 +77,18 @@ def add_simple_target(run: Interpreter, call: CommandCall, args: list[Word]) -> 
     if "NO_AUTO_LINK" not in args:
         add_links(run, draft, [wrap("${catkin_LIBRARIES}", call.at)], "link")
     if "NO_AUTO_DEP" not in args:
-        order = ("${catkin_EXPORTED_TARGETS}", f"${{{_get_project(run)}_EXPORTED_TARGETS}}")
+        order = ("${catkin_EXPORTED_TARGETS}", f"${{{run.installed_name}_EXPORTED_TARGETS}}")
         add_links(run, draft, [wrap(target, call.at) for target in order], "order")
     kept = ("TARGETS", "LIBRARIES") if library and "NO_AUTO_EXPORT" not in args else ("TARGETS",)
     for each in kept:
-        variable = f"{_get_project(run)}_{each}"
+        variable = f"{run.installed_name}_{each}"
         run.assign(run.scope, variable, CMakeValue((*_get_list(run, variable), name)))
 
 
 @stands_in_for("cs_install")
 def install_simple_targets(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cs_install(): targets, headers and the folders that are called as shared content is."""
-    project = _get_project(run)
+    project = run.installed_name
     for name in (*_get_list(run, f"{project}_TARGETS"), *split_words(args)):
         made = run.targets.get(name)
         destination = f"lib/{project}" if made is not None and made.kind == "executable" else "lib"
@@ -110,14 +106,14 @@ def install_simple_targets(run: Interpreter, call: CommandCall, args: list[Word]
 def install_simple_scripts(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cs_install_scripts(): programs beside the executables."""
     for item in split_words(args):
-        run.add_install("programs", (run.resolve_tree_path(item),), f"lib/{_get_project(run)}", item)
+        run.add_install("programs", (run.resolve_tree_path(item),), f"lib/{run.installed_name}", item)
 
 
 @stands_in_for("cs_export")
 def export_simple_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """cs_export(): catkin_package() with the libraries, the include folder and what is declared to run."""
     given = {keyword: list(items) for keyword, items in group_by_keyword(args, _EXPORTED).items()}
-    given["LIBRARIES"] = [*_get_list(run, f"{_get_project(run)}_LIBRARIES"), *given.get("LIBRARIES", [])]
+    given["LIBRARIES"] = [*_get_list(run, f"{run.installed_name}_LIBRARIES"), *given.get("LIBRARIES", [])]
     if _has_folder(run, "include"):
         given["INCLUDE_DIRS"] = [wrap("include", call.at), *given.get("INCLUDE_DIRS", [])]
     words = [word for key, items in given.items() if key and items for word in (wrap(key, call.at), *items)]

@@ -190,7 +190,7 @@ def add(
 
 def _set_catkin_variables(run: Interpreter, call: CommandCall) -> None:
     """What find_package(catkin) sets; destinations as documented for catkin_package()."""
-    package = run.project or run.package
+    package = run.installed_name
     values = {
         "CATKIN_PACKAGE_BIN_DESTINATION": f"lib/{package}",
         "CATKIN_PACKAGE_ETC_DESTINATION": f"etc/{package}",

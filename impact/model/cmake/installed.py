@@ -43,7 +43,7 @@ def collect_installed_headers(package: Package) -> InstalledHeaders:
         for path, place in list_copied_files(install, destination, package.digest.files):
             if HEADER_NAME.search(place):
                 found[path] = place
-    if any(found_.how == "declared" for found_ in package.build.found):
+    if package.build.finds_declared:
         known = known and (package.build.ament_package or package.build.catkin_package) is not None
     return InstalledHeaders(found, known)
 

@@ -1171,6 +1171,11 @@ class Interpreter:
                 RefusedName(kind, str(name), self.locate(name.at), merge(conditions, self.merge_with(name)))
             ] = None
 
+    @property
+    def installed_name(self) -> str:
+        """The name under which the package installs itself."""
+        return self.project or self.package
+
     def refuse_project(self) -> None:
         """Notes the name of the project where it is not that of the package, which ament_package_xml() of
         ament_cmake_core and catkin_package_xml() of catkin compare; they set the version too."""

@@ -126,12 +126,16 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
         return draft
     typesupport = run.is_typesupport(name)
     # add_dependencies() is given what catkin makes (`tests`), and CMake lets it wait for what comes later.
-    there = re.compile(rf"(?<!NOT )TARGET {re.escape(name)}(?!\S)")
-    asked = any(there.search(held.text) and not held.negated for held in run.merge_with(name))
-    known = typesupport or asked or name in run.maybe_set or "::" in name
-    if run.command != "add_dependencies" and not known:
+    known = run.command == "add_dependencies" or typesupport or name in run.maybe_set or "::" in name
+    if not known and not _is_asked_for(run, name):
         run.refuse("no target", name)
     return run.ensure_target(name, "generated" if typesupport else "unknown", name.at)
+
+
+def _is_asked_for(run: Interpreter, name: Word) -> bool:
+    """Whether a place stands under if(TARGET name)."""
+    there = re.compile(rf"(?<!NOT )TARGET {re.escape(name)}(?!\S)")
+    return any(there.search(held.text) and not held.negated for held in run.merge_with(name))
 
 
 # The folders of the prefix that those who link a target search; spaces stand where a list was split.

@@ -40,7 +40,7 @@ def read_ament_exports(view: TargetView, package: Package) -> AmentExports | Non
     dependencies = frozenset(e.item for e in exports if e.how == "ament_export_dependencies")
     if not exports_something(exports) or any("$" in name for name in dependencies):
         return None
-    if any(f.how == "declared" for f in package.build.found):
+    if package.build.finds_declared:
         return None
     return AmentExports(exports, dependencies, view.roles.list_found_with(dependencies | handed))
 

@@ -78,7 +78,7 @@ def list_linked(package: Package, target: str) -> set[str] | None:
     """All that a target is linked to, itself and through targets of its package; None where that cannot be told, as of
     all that a manifest declares, of which some may be known nowhere."""
     items = list_linked_items(package, target)
-    if items is None or ("${catkin_LIBRARIES}" in items and any(f.how == "declared" for f in package.build.found)):
+    if items is None or ("${catkin_LIBRARIES}" in items and package.build.finds_declared):
         return None
     if any("$" in item and not _VARIABLE.fullmatch(item) for item in items):
         return None

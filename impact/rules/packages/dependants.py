@@ -28,7 +28,7 @@ def links_without(view: TargetView, package: Package, target: BuildTarget, neede
         if other.name == package.name or not _links(view, other, package.name, target.export_name or target.name):
             continue
         found = {f.name for f in other.build.found if view.applies(f.conditions)}
-        if any("$" in name for name in found) or any(f.how == "declared" for f in other.build.found):
+        if any("$" in name for name in found) or other.build.finds_declared:
             continue
         if names.isdisjoint(name.lower() for name in view.roles.list_found_with(found)):
             return True

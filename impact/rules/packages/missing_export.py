@@ -32,6 +32,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder
+from .unlisted_field_package import find_field_owner
 
 _ONCE = (Together("not exported"),)
 _EACH = (Together("not exported", few=3),)
@@ -57,7 +58,7 @@ _ADD = "add `{subject}` to ament_export_dependencies"
     },
 )
 def missing_export(view: TargetView, package: Package):
-    if package.build.catkin_package is not None and not any(f.how == "declared" for f in package.build.found):
+    if package.build.catkin_package is not None and not package.build.finds_declared:
         yield from _list_of_messages(view, package)
         yield from _list_of_catkin_headers(view, package)
     ament = read_ament_exports(view, package)
@@ -160,16 +161,15 @@ def _list_of_messages(view: TargetView, package: Package):
 
 def _find_field_owners(package: Package, files: Collection[str]) -> set[str]:
     """The other packages of whose messages the fields in these files are, and those of actions are made."""
-    fields = (
-        field
+    owners = {
+        find_field_owner(package, field.type)
         for interface in package.digest.interfaces
         if interface.path in files
         for section in interface.definition.sections
         for field in section.fields
-    )
-    types = ("std_msgs/Header" if field.type == "Header" else field.type for field in fields)
+    }
     implied = {"actionlib_msgs", "std_msgs"} if any(file.endswith(".action") for file in files) else set()
-    return implied.union(name.partition("/")[0] for name in types if "/" in name) - {package.name}
+    return (owners | implied) - {"", package.name}
 
 
 def _list_of_catkin_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:

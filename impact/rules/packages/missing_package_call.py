@@ -23,7 +23,7 @@ Not reported
     CMake code that calls commands which nobody is known to have, or that is not known in full; code of rosbuild.
 """
 
-from ...model.cmake.interpreter import HANDLERS, WRAPPERS
+from ...model.cmake.interpreter import is_modelled
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _CALLS = {"ament_cmake": "ament_package", "catkin": "catkin_package"}
@@ -41,7 +41,7 @@ def missing_package_call(view: TargetView, package: Package):
         return
     known = view.providers.commands.get(view.target.ros, {})
     called = {use.name for use in build.uses if use.kind == "command"}
-    if any(name.startswith("rosbuild_") or (name not in HANDLERS | WRAPPERS and name not in known) for name in called):
+    if any(name.startswith("rosbuild_") or not (is_modelled(name, ()) or name in known) for name in called):
         return
     found = any(other.name != package.name and _is_found_by(other, package.name) for other in view.list_built())
     path = build.files[0]

@@ -140,11 +140,14 @@ def _calls_unknown(package: Package) -> bool:
     return any(use.kind == "command" and not use.context for use in package.build.uses)
 
 
+def _may_be_set(view: TargetView, package: Package) -> bool:
+    """Whether a package whose CMake is not known may set variables of its own that are called as catkin's are."""
+    others = {found.name for found in package.build.found} - {"catkin"} - view.workspace.packages.keys()
+    return any(view.offers.find_package(name) is None for name in others if view.is_package(name))
+
+
 def _list_unset(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Catkin's variables for places, misspelt or of a time before Groovy."""
-    others = {found.name for found in package.build.found} - {"catkin"} - view.workspace.packages.keys()
-    # A package whose CMake is not known may set variables of its own that are called as catkin's are.
-    may_be_set = any(view.offers.find_package(name) is None for name in others if view.is_package(name))
     seen = set()
     for use in package.build.uses:
         if use.kind != "variable" or use.context != "install" or not use.name.startswith("CATKIN_"):
@@ -160,7 +163,7 @@ def _list_unset(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             if package.build.catkin_package is None and (package.build.unresolved or _calls_unknown(package)):
                 continue  # a command that is not known may call it
             kind = "early" if package.build.catkin_package else "never"
-        if kind == "unset" and may_be_set:
+        if kind == "unset" and _may_be_set(view, package):
             continue
         seen.add(use.name)
         yield Diagnostic(use.at, use.name, package.name, kind=kind)

@@ -11,16 +11,16 @@ Why it breaks
     declares (a build farm, a new colleague, the robot) the configuration, the compiler, or the node stops.
 
 Severity
-    error: an unconditional find_package(REQUIRED), component of it or of catkin, pkg_check_modules(REQUIRED),
-    program, or include of compiled code (or of an installed header that another package here compiles) that is sure
-    to miss its package on a clean machine of the target: nothing that is declared brings it, and where the target's
-    manifest of something declared is not known, no version of that in any distro does. What CMake is asked for
-    where tests are built counts, since it is asked whenever the package is configured, and so do tests of ROS 2,
-    which are compiled along. warning: environment variables, tests of ROS 1, imports, launch files, installed
-    headers that nothing here compiles, or where a dependency is known nowhere and may bring it (one called as
-    interfaces are brings interfaces). note: conditional code, examples (installed ones too, in what they import and
-    start), documentation, files that nothing compiles, and all but the first of more than five imports (in ROS 1,
-    of several), or packages that launch files start, which a package does not declare.
+    error: an unconditional find_package(REQUIRED), component of it or of catkin, pkg_check_modules(REQUIRED), program,
+    or include of compiled code (or of an installed header that another package here compiles) that is sure to miss its
+    package on a clean machine of the target: nothing that is declared brings it, and where the target's manifest of
+    something declared is not known, no version of that in any distro does. What CMake is asked for where tests are
+    built counts, since it is asked whenever the package is configured, and so do tests of ROS 2, which are compiled
+    along. warning: environment variables, tests of ROS 1, imports, launch files, installed headers that nothing here
+    compiles, or where a dependency is known nowhere and may bring it (one called as interfaces are brings interfaces).
+    note: conditional code, examples (installed ones too, in what they import and start), documentation, files that
+    nothing compiles, and all but the first of more than five imports (in ROS 1, of several), or packages that launch
+    files start, which a package does not declare.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen

@@ -104,7 +104,7 @@ def _is_known(package: Package) -> bool:
     build = package.build
     if build.unresolved or build.handed_on or any(e.how == "cfg_extras" or "$" in e.item for e in build.exports):
         return False
-    return not any(f.how == "declared" for f in build.found)
+    return not build.finds_declared
 
 
 def _find_kind(view: TargetView, package: Package) -> str:

@@ -60,15 +60,15 @@ from .include_folders import OFF_PATH
 )
 def unexported_include_directory(view: TargetView, package: Package):
     yield from _list_nothing(view, package)
-    declared = any(f.how == "declared" for f in package.build.found)  # handed on as well
-    if package.build.catkin_package is not None and not declared:
+    of_catkin = package.build.catkin_package is not None and not package.build.finds_declared
+    if of_catkin:
         yield from _list_of_catkin(view, package)
     ament = read_ament_exports(view, package)
     if ament is not None:
         yield from _list_off_path(view, package, ament)
         yield from _list_without_folder(view, package, ament)
         yield from _list_without_library(view, package, ament.exports)
-    elif package.build.catkin_package is not None and not declared:
+    elif of_catkin:
         exports = [e for e in package.build.exports if view.applies(e.conditions)]
         yield from _list_without_library(view, package, exports)
 
@@ -79,7 +79,7 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     exports = [e for e in package.build.exports if view.applies(e.conditions)]
     if exports_something(exports):
         return
-    if not package.digest.public_headers or any(f.how == "declared" for f in package.build.found) or first is None:
+    if not package.digest.public_headers or package.build.finds_declared or first is None:
         return
     installed = list_installed_targets(package)
     alone = _has_headers_alone(view, package)

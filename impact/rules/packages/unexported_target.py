@@ -63,7 +63,7 @@ def _list_names(view: TargetView, owner: Package) -> set[str] | None:
     build = owner.build
     if build.ament_package is None or build.unresolved or build.handed_on or build.generated:
         return None
-    if any(f.how == "declared" for f in build.found) or any(e.how == "cfg_extras" for e in build.exports):
+    if build.finds_declared or any(e.how == "cfg_extras" for e in build.exports):
         return None
     if any(t.kind in ("external", "fetched", "imported", "unknown") for t in build.targets):
         return None

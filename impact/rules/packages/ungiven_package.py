@@ -57,7 +57,7 @@ def ungiven_package(view: TargetView, package: Package):
     everywhere |= {resolve_package(link.item) for link in package.build.links}
     all_found = {f.name for f in package.build.found}
     found = all_found - {package.name}
-    if any("$" in name for name in found) or any(f.how == "declared" for f in package.build.found):
+    if any("$" in name for name in found) or package.build.finds_declared:
         return
     seen = set()
     reach: dict[str, tuple[frozenset[str], set[str]] | None] = {}

@@ -61,10 +61,7 @@ def unlisted_field_package(view: TargetView, package: Package):
         primitive = PRIMITIVES if adapted else _ROS1_PRIMITIVE
         for section in interface.definition.sections:
             for field in section.fields:
-                owner, _, name = field.type.rpartition("/")
-                owner = owner.split("/")[0]
-                if field.type == "Header" and package.build_type == "catkin":
-                    owner = "std_msgs"
+                owner, name = find_field_owner(package, field.type), field.type.rpartition("/")[2]
                 if not owner and field.type not in primitive and "<" not in field.type:
                     names = {i.name for i in package.digest.interfaces}
                     if field.type not in names and field.type not in seen:
@@ -89,6 +86,12 @@ def unlisted_field_package(view: TargetView, package: Package):
                 data = {"type": field.type, "generator": generator}
                 doubts = () if rosidl or field.type != "Header" else (Doubt.INCOMPLETE,)
                 yield Diagnostic(_place_of(interface, field), owner, package.name, data, "dependency", doubts)
+
+
+def find_field_owner(package: Package, type_: str) -> str:
+    """The package that the type of a field names; empty for primitive types and those of the package itself."""
+    owner = type_.rpartition("/")[0].split("/")[0]
+    return "std_msgs" if type_ == "Header" and package.build_type == "catkin" else owner
 
 
 def _list_implied(view: TargetView, files: set[str]) -> set[str]:
