@@ -13,18 +13,27 @@ import msgspec
 from .condition import Condition
 from .cpp.lexical import CppFile, find_word_uses
 from .place import Problem
-from .usage import Rows, UsageTable, WatchedUse, find_methods, find_uses, initializes_variable, list_row_uses
+from .usage import (
+    Rows,
+    UsageTable,
+    WatchedUse,
+    declares,
+    find_methods,
+    find_uses,
+    initializes_variable,
+    list_row_uses,
+)
 
 
 class WordUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The first use of a bare word outside of comments, with the preprocessor conditions around it; line 1, column 0
-    where it stands in directives alone. initialised: the file declares a variable of this name with a value."""
+    where it stands in directives alone. own: the file declares a variable of this name with a value, or a function."""
 
     text: str
     line: int
     column: int
     conditions: tuple[Condition, ...] = ()
-    initialised: bool = False
+    own: bool = False
 
 
 class SearchedCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -46,7 +55,8 @@ def searched_cpp(data: bytes, facts: CppFile, table: UsageTable) -> SearchedCpp:
 
 def _find_word_use(data: bytes, word: str) -> WordUse:
     line, column, conditions = next(iter(find_word_uses(data, word)), (1, 0, ()))
-    return WordUse(word, line, column, conditions, initializes_variable(data, word))
+    own = initializes_variable(data, word) or declares(data, word)
+    return WordUse(word, line, column, conditions, own)
 
 
 class SearchedText(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -102,7 +102,7 @@ _SCOPES = re.compile(rb"(?:[A-Za-z_]\w*::)+\Z")
 _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&)[ \t]+\Z")
 # The same before a variable, which may be a reference or a pointer.
 _TYPE_OF_VARIABLE = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|>)(?:\s*[&*]+\s*|[ \t]+)\Z")
-_ASSIGNED = re.compile(rb"\s*=(?!=)")
+_ASSIGNED = re.compile(rb"\s*(?:\[\w*\]\s*)?=(?!=)")
 _IDENTIFIER = re.compile(r"(?<![\w.>:])[A-Za-z_]\w*(?!\s*[\w(.:<]|->)")
 
 

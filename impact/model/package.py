@@ -754,7 +754,7 @@ class PackageJoin:
             for word in found.words if found is not None else ():
                 if word.text in defined:
                     continue
-                if word.text in watched.words and not word.initialised:  # else it is a variable of the file's own
+                if word.text in watched.words and not word.own:
                     names.append(self.make_bare_use(word, path, role, public, targets, conditions))
                 headers = watched.headers_of.get(word.text)
                 if headers is not None and self.list_reaching_paths(path).isdisjoint(headers):
@@ -776,9 +776,10 @@ class PackageJoin:
 
     def list_defined_names(self) -> Iterator[str]:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
-        namespace that is called like another package whose versions are stored."""
+        namespace that is called like another package, one whose versions are stored or a declared one."""
         asked, surfaces = self.watched.in_tables, self.watched.surfaces
-        others = surfaces.packages if surfaces is not None else frozenset()
+        others = {dependency.name for dependency in self.manifest.dependencies}
+        others.update(surfaces.packages if surfaces is not None else ())
         for name in {name for facts in self.cpp.values() for name in (*facts.defined, *facts.types)}:
             head = name.partition("::")[0]
             if name in asked or (head in others and head != self.name):

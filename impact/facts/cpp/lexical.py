@@ -69,6 +69,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 DEEPEST = 48
 MOST_BRANCHES = 48
 UNTOLD = Condition("cpp", "<too many conditions>")
+IN_MACRO = Condition("cpp", "<where the macro is used>")
 
 _KEYWORD_TEXT = """
     alignas alignof asm auto bool break case catch char char8_t char16_t char32_t class co_await co_return co_yield
@@ -410,6 +411,9 @@ def scan(data: bytes) -> Scan:
             name = _IDENTIFIER.match(body)
             if name:
                 defined[sys.intern(name.group())] = None
+            if "::" in body:  # what a macro stands for is used where the macro is, which may be nowhere
+                segments += ((position, start, conditions), (start, end, (*conditions, IN_MACRO)))
+                position = end
             continue
         segments.append((position, start, conditions))
         position = end

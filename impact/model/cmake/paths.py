@@ -109,7 +109,7 @@ def run_file_command(run: Interpreter, call: CommandCall, args: list[Word]) -> N
         run.set(rest[1], [rest[0]])
     elif action == "REAL_PATH" and len(rest) >= 2:
         run.set_text(rest[1], run.resolve(rest[0]), call.at, rest[0].sure)
-    elif action in ("WRITE", "APPEND", "TOUCH", "DOWNLOAD", "MAKE_DIRECTORY", "GENERATE", "COPY"):
+    elif action in ("WRITE", "APPEND", "TOUCH", "DOWNLOAD", "MAKE_DIRECTORY", "GENERATE", "COPY", "INSTALL"):
         _write(run, action, rest)
     elif action in ("READ", "STRINGS", "TIMESTAMP", "SIZE", "READ_SYMLINK", "MD5", "SHA1", "SHA256") and len(rest) >= 2:
         run.set_unknown(rest[1], call.at)
@@ -119,12 +119,12 @@ def _write(run: Interpreter, action: str, rest: list[Word]) -> None:
     """The forms of file() that write into the tree."""
     if action in ("TOUCH", "MAKE_DIRECTORY"):
         written = rest
-    elif action in ("GENERATE", "COPY"):
+    elif action in ("GENERATE", "COPY", "INSTALL"):
         written = [item for keyword, item in itertools.pairwise(rest) if keyword in ("OUTPUT", "DESTINATION")]
     else:
         written = rest[1:2] if action == "DOWNLOAD" else rest[:1]
     for item in written:
-        note_made(run, run.resolve(item), folder=action in ("MAKE_DIRECTORY", "COPY"))
+        note_made(run, run.resolve(item), folder=action in ("MAKE_DIRECTORY", "COPY", "INSTALL"))
 
 
 def _run_glob(run: Interpreter, call: CommandCall, recursive: bool, rest: list[Word]) -> None:

@@ -216,6 +216,12 @@ def _list_outside(view: TargetView, name: str, reach: frozenset[str], machine: H
         owners = {made.package}
     else:
         owners = {owner[0] for header in load_offered()[name] if (owner := machine.find_owner(header)) is not None}
+    # A header that its package makes from a template is in none of its versions' trees.
+    folders = {path.partition("/")[0] for path in reach if (machine.find_owner(path) or ("",))[0] in owners}
+    if any(
+        path.partition("/")[0] in folders and not view.find_header(path) for path in machine.list_unknown_headers(reach)
+    ):
+        return None
     for path in outside:
         around = view.list_around(path)
         if not around or (path in reach and machine.knows(path)) or not owners.isdisjoint(around):

@@ -209,6 +209,17 @@ class Resolver:
         """Whether the file or a header of the package declares a name itself, outside of functions."""
         return any(file.mentions(word) and word in file.defines for file in self.files)
 
+    def adds(self, scope: str, word: str) -> bool:
+        """Whether the file or a header of the package declares a name in a namespace, which may be another package's:
+        then it is not theirs that is used."""
+        full = f"{scope}::{word}"
+        return any(
+            any(one.scope == scope for one in file.names.get(word, ()))
+            or any(one.name == full for one in file.list_classes(word))
+            for file in self.files
+            if file.mentions(word)
+        )
+
     @cache_method
     def list_own_classes(self, class_: str) -> list[CppClass]:
         """The classes of the package that a name can be: those of that full name, else those that end so."""

@@ -35,6 +35,7 @@ _QOS_TYPES = {
     "profile": re.compile(r"(?:static |const |struct )*rmw_qos_profile_[ts]\s*&?"),
 }
 _DIRECTIVE = re.compile(r"^[ \t]*#", re.M)
+_DECLARED_END = re.compile(r"[;{]|\Z")
 _SPACE = re.compile(r"\s*")
 _MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
 _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
@@ -165,7 +166,7 @@ class ApiUses:
         for full in self.resolver.list_meanings(scope, use.place):
             name = f"{full}::{use.word}"
             if name in self.vocabulary.names:
-                return self._make_use(name, use, True, ())
+                return None if self.resolver.adds(full, use.word) else self._make_use(name, use, True, ())
         type_ = self.resolver.resolve_name(scope, use.place)
         if type_ is None or type_.own or not type_.plain or not type_.name:
             return None
@@ -330,7 +331,7 @@ class ApiUses:
             )
             for word in declared:
                 for method in class_.members[word]:
-                    if method.kind != "function" or "static" in method.traits:
+                    if method.kind != "function" or "static" in method.traits or _is_split(code.text, method.offset):
                         continue
                     for line in lines:
                         member = self._find_first(line, word)
@@ -382,6 +383,11 @@ def _is_declared(text: str, before: int, at: int) -> bool:
     In capitals may be a macro, which is no type."""
     last = _find_ahead(_LAST_WORD, text, before) if "\n" not in text[before:at] else ""
     return last != "" and last not in _NO_TYPES and not last.isupper() and not last.startswith("__")
+
+
+def _is_split(text: str, at: int) -> bool:
+    """Whether a directive stands in the declaration at an offset, so that which parameters it has depends on it."""
+    return _DIRECTIVE.search(text, at, _DECLARED_END.search(text, at).end()) is not None
 
 
 def _may_differ(known: ChangingName, text: str, at: int) -> bool:

@@ -33,6 +33,7 @@ from collections.abc import Iterator
 from ...model.misspelling import SpellingIndex
 from ...targets.providers.library import list_variables
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from .absent_paths import is_absent
 from .ament_exports import list_installed_targets, read_ament_exports
 from .install_rules import is_installed
 
@@ -94,10 +95,10 @@ def _list_directories(view: TargetView, package: Package):
             continue
         item = posixpath.normpath(export.item)
         inside = item[len(package.path) :].lstrip("/") if package.path and item.startswith(package.path + "/") else item
-        if inside in (".", "") or package.has_files(inside) or inside.startswith(".."):
+        if inside.startswith("..") or not is_absent(
+            view, package, posixpath.normpath(posixpath.join(package.path, inside))
+        ):
             continue
-        if view.workspace.is_unread(f"{package.path}/{inside}" if package.path else inside):
-            continue  # a submodule that is not checked out is a folder all the same
         yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
 
 

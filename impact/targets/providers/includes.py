@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ...conditions import Environment
     from ...facts.condition import Condition
     from ..distro.distro import DistroTarget
-    from ..surface.includes import Included
+    from ..surface.includes import Include, Included
     from ..surface.store import Surfaces
 
 
@@ -253,9 +253,18 @@ class HeadersOfMachine:
             written = included.list_includes(header, standing)
             if written is not None:
                 active = (one for one in written if self._may_hold(one.conditions))
-                paths = dict.fromkeys(included.resolve_include(one, header, standing) for one in active)
+                paths = dict.fromkeys(self._resolve_include(included, one, header, standing) for one in active)
                 return _Found(package, version, tuple(paths))
         return None
+
+    def _resolve_include(self, included: Included, include: Include, header: str, version: str) -> str:
+        """The path that dependants would write for what a header includes. What nobody has under a bare name in quotes
+        is made from a template, and lies beside the header where it is installed."""
+        path = included.resolve_include(include, header, version)
+        folder = header.rpartition("/")[0]
+        if include.angled or "/" in path or not folder or self._find(path) is not None:
+            return path
+        return path if len(list_brought(path, self.gcc)) > 1 else f"{folder}/{path}"
 
     def _find_in_libraries(self, header: str) -> _Found | None:
         if not self._platform or header in self._data.owners_of:
