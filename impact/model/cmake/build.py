@@ -176,7 +176,8 @@ class ReadFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
     or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
-    for variable, context is the command it is read in; for a command of one of CMake's modules, the module that would
+    for variable, context is the command it is read in; `unset` is a variable that install() reads and that nothing can
+    have set; for a command of one of CMake's modules, the module that would
     have to be included or found first (`FindPkgConfig` for `pkg_check_modules`); for a `feature`, which is a command,
     module or policy of CMake itself, the version that brought it; an `environment` is a variable that ros_environment
     sets, read by a test. alike: of a variable that nothing can have set, one

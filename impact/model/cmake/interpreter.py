@@ -982,12 +982,15 @@ class Interpreter:
         """Notes a variable that is read and that nothing sets, when its name tells that a package should."""
         if self.silent or name.startswith("CMAKE_"):
             return
+        place = self.locate(at)
+        if self.command == "install" and not name.startswith("CATKIN_") and not self._may_be_set(name):
+            self.uses[UnknownCommand("unset", name, place, self.command, self.conditions)] = None
         alike = "" if name.endswith(READ_SUFFIXES) else self.find_alike(name)
         if not alike and not name.endswith(READ_SUFFIXES) and not (
             name.startswith("CATKIN_") and self.command == "install"
         ):
             return
-        self.uses[UnknownCommand("variable", name, self.locate(at), self.command, self.conditions, alike)] = None
+        self.uses[UnknownCommand("variable", name, place, self.command, self.conditions, alike)] = None
 
     def use_environment(self, test: str, at: At) -> None:
         """Notes the environment variables of ROS whose value a test reads, where no test asks whether they are set."""
@@ -1001,16 +1004,19 @@ class Interpreter:
         """The variable that is set and has one word more or less in its name than one that a command which needs its
         value reads; empty where there is none, or something may have set that one."""
         words = name.split("_")
-        if self.command not in _NEEDS_VALUES or len(name) < 8 or len(words) < 2 or name in self.maybe_set:
-            return ""
-        if any(name.lower().startswith(one.lower()) for one in (*self.renamed, *(found.name for found in self.found))):
-            return ""
-        # A package sets variables that begin as it is called (`find_package(Qt${VERSION})`).
-        if any(re.match(r"(?!find_package\()|find_package\(\$", reason) for _, reason in self.unresolved):
+        if self.command not in _NEEDS_VALUES or len(name) < 8 or len(words) < 2 or self._may_be_set(name):
             return ""
         alike = [other for other in self.scope if abs(other.count("_") + 1 - len(words)) == 1]
         alike = [other for other in alike if _is_longer(other.split("_"), words) or _is_longer(words, other.split("_"))]
         return str(alike[0]) if len(alike) == 1 else ""
+
+    def _may_be_set(self, name: str) -> bool:
+        """Whether something that is not seen here may set a variable: a command of which nothing is known, or a
+        package, whose variables begin as it is called (`find_package(Qt${VERSION})`)."""
+        prefixes = (*self.renamed, *(found.name for found in self.found))
+        if name in self.maybe_set or name.lower().startswith(tuple(prefix.lower() for prefix in prefixes)):
+            return True
+        return any(re.match(r"(?!find_package\()|find_package\(\$", reason) for _, reason in self.unresolved)
 
     def is_target(self, name: str) -> bool | None:
         """True when the tree makes this target."""

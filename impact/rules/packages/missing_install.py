@@ -33,7 +33,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
 from .install_rules import is_installed, list_references, read_installs
 
 _ONCE = (Together("no target installed"),)
-_TARGETS = "add it to install(TARGETS ...)"
+_TARGETS = "add it to install(TARGETS ...)[[, where nothing sets `{unset}`]]"
 
 
 @rule(
@@ -51,7 +51,8 @@ def missing_install(view: TargetView, package: Package):
     if installs is None:
         return
     started = list_references(view, package, "executable")
-    installed = {item for i in installs if i.kind == "targets" for item in i.items}
+    unset = {f"${{{use.name}}}" for use in package.build.uses if use.kind == "unset"}
+    installed = {item for i in installs if i.kind == "targets" for item in i.items} - unset
     if any("$" in item for item in installed) or (any(i.kind == "export" for i in installs) and not installed):
         return
     exported = {e.item for e in package.build.exports if e.how == "libraries"}
@@ -84,9 +85,10 @@ def missing_install(view: TargetView, package: Package):
         if why and (why == "started" or not _is_aside(package, target)):
             # Who finds a package that exports a library stops where the library is neither a target nor installed.
             stops = installed and (why == "exported" or (why == "started" and _is_started(view, package, name)))
-            doubts = () if stops and not package.build.unresolved else (Doubt.DISTURBS,)
+            doubts = () if stops and not (unset or package.build.unresolved) else (Doubt.DISTURBS,)
             together = _ONCE if why == "nothing" else ()
-            yield Diagnostic(target.at, name, package.name, kind=why, doubts=doubts, together=together)
+            data = {"unset": min(unset, default="")}
+            yield Diagnostic(target.at, name, package.name, data, kind=why, doubts=doubts, together=together)
 
 
 def _is_to_be_installed(view: TargetView, package: Package, installs) -> bool:
