@@ -622,6 +622,18 @@ class TargetView:
         """Everything on a machine that has just what the package declares, the package itself included."""
         return self.list_transitive(self._list_built_with(package)).union(self.preinstalled, (package.name,))
 
+    @cache_method
+    def build_known_environment(self, package: Package) -> frozenset[str]:
+        """The same, of what is in the workspace or released on the target alone: whether another distro's version of
+        something that is not there brings anything is a guess."""
+
+        def list_known(name: str) -> Iterable[str]:
+            known = name in self.workspace.packages or self.target.list_dependencies(name) is not None
+            return self.list_installed_with(name) if known else ()
+
+        found = frozenset(walk(self._list_built_with(package), list_known))
+        return found.union(self.preinstalled, (package.name,))
+
     @cached_property
     def brought_to_workspace(self) -> frozenset[str]:
         """Everything on a machine that has just what all packages of the workspace declare."""

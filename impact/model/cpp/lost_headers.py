@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
 # Headers that other ones include and that bring nothing: made of macros while a library is built, of the Apache
 # Portable Runtime, which needs no other library, or of Boost, whose own headers are all known as far as they are there.
-_GENERATED = re.compile(r"(?:_export|_config|visibility(?:_control)?|/export)\.h(?:pp)?$|^apr_?\w*\.h$|^boost/|@")
+_GENERATED = re.compile(r"_config\.h(?:pp)?$|^apr_?\w*\.h$|^boost/|@")
+# Headers that CMake writes for the linker (generate_export_header()): they include nothing.
+_OF_LINKER = re.compile(r"(?:_export|visibility(?:_control)?|/export)\.h(?:pp)?$")
 # Functions that packages add their own forms of.
 _EXTENDED = frozenset({"tf2::toMsg", "tf2::fromMsg", "tf2::convert", "tf2::doTransform"})
 # What compilers have for one processor.
@@ -208,6 +210,7 @@ def _list_outside(view: TargetView, name: str, reach: frozenset[str], machine: H
         for path in machine.list_unknown_headers(reach)
         if not view.is_standard(path)
         and not _OF_PROCESSOR.search(path)
+        and not _OF_LINKER.search(path)
         and (path in reach or (view.find_header(path) and not _GENERATED.search(path)))
     }
     if get_bit(name):

@@ -88,6 +88,8 @@ def is_chance(view: TargetView, package: Package, need: Need, name: str) -> bool
     # Modules and nodes are not handed on: whoever has them can use them.
     if need.how not in ASKED and need.how != "include":
         return False
+    if need.providers[0].kind == "ros" and not view.is_met(need.providers, view.build_known_environment(package)):
+        return True  # as far as is known, only what the target does not have brings it
     return not view.is_met(need.providers, view.roles.list_handed_on(package, need.role, need.how != "include"))
 
 
@@ -123,7 +125,7 @@ def _collect_include_doubts(view: TargetView, package: Package, need: Need, name
     # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
     if not first.sure and first.kind == "system":
         return (*doubts, Doubt.AMBIGUOUS)
-    if not first.sure and not _is_generated(view, first.name, need.subject):
+    if not first.sure and not is_generated(view, first.name, need.subject):
         return doubts if view.has_released_header(first.name, need.subject) is not False else (*doubts, Doubt.AMBIGUOUS)
     return doubts
 
@@ -141,7 +143,7 @@ def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name
     return (Doubt.LUCKY,) if together and view.is_met(need.providers, view.brought_to_workspace) else ()
 
 
-def _is_generated(view: TargetView, name: str, header: str) -> bool:
+def is_generated(view: TargetView, name: str, header: str) -> bool:
     """True for the header of an interface, which no tree of the released package shows."""
     return bool(_OF_INTERFACE.match(header)) and not _RUNTIMES.isdisjoint(view.list_installed_with(name))
 

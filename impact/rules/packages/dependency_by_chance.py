@@ -2,8 +2,8 @@
 
 What it does
     Reports what undeclared-package looks for, where something that the manifest declares brings it by chance: installed
-    for another role (a test tool brings what a node imports), or by a package that does not hand it on (by its CMake
-    exports or `build_export_depend`).
+    for another role (a test tool brings what a node imports), by a package that does not hand it on (by its CMake
+    exports or `build_export_depend`), or by what the target does not have, as far as versions for other distros tell.
 
 Why it breaks
     It is there until the other package drops it. The build farm, which installs no dependencies to run, lacks it today.
@@ -19,7 +19,7 @@ Use instead
     <depend>angles</depend>
 
 Not reported
-    What a declared package exports; modules and nodes that come along with a declared package in the same role; what
+    What a declared package exports (indirect-dependency names it); modules and nodes that come along with a declared package in the same role; what
     whoever starts launch files has; conditional code.
 """
 

@@ -1,0 +1,55 @@
+"""indirect-dependency: packages are used directly, and come with what is declared.
+
+What it does
+    Names in one finding the ROS packages whose headers are included, whose modules are imported or which CMake finds,
+    and which the manifest does not declare, but which declared ones hand on.
+
+Why it matters
+    Nothing breaks today. A declared package that no longer needs what it handed on breaks this one, without a word in
+    the manifest that it was needed.
+
+Example
+    #include <geometry_msgs/msg/twist.hpp>      // and package.xml declares nav_msgs alone
+
+Use instead
+    <depend>geometry_msgs</depend>
+
+Not reported
+    What only happens to be installed (dependency-by-chance reports it), tests, examples and conditional code.
+"""
+
+from ..vocabulary import Diagnostic, Need, Package, TargetView, Text, make_sort_key, rule
+from .clean_machine import is_chance, is_circular, is_generated
+from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
+
+_USED = frozenset(("include", "import", "find_package", "component"))
+_TOOLS = frozenset(("catkin", "ament_cmake", "ament_cmake_auto", "cmake_modules"))
+
+
+@rule(
+    group="undeclared-package",
+    severity="note",
+    texts=Text("{use}, but `{subject}` is not declared and comes with {sources}[[ (nor are {others})]]", DECLARE),
+)
+def indirect_dependency(view: TargetView, package: Package):
+    used = {name: found for name, needs in find_undeclared(view, package).borrowed.items()
+            if (found := _find_first(view, package, name, needs)) is not None}  # fmt: skip
+    if not used:
+        return
+    declared = view.collect_declared(package)
+    name, first = min(used.items(), key=lambda item: make_sort_key(item[1]))
+    sources = tuple(d for d in declared if view.is_met(first.providers, view.list_transitive([d])))
+    data = {**describe_need(package, first), "sources": sources[:1], "others": tuple(sorted(used.keys() - {name}))}
+    fix = tuple(step for other, need in used.items() for step in declare_need(view, package, need, other))
+    yield Diagnostic(first.at, name, package.name, data, fix=fix)
+
+
+def _find_first(view: TargetView, package: Package, name: str, needs: list[Need]) -> Need | None:
+    """The first direct use of a ROS package that is sure to be met."""
+    direct = (need for need in needs if need.how in _USED and need.role in ("build", "run") and need.subject not in _TOOLS
+              and need.certain and need.required and need.providers[0].kind == "ros"
+              and (need.providers[0].sure or is_generated(view, need.providers[0].name, need.subject)))  # fmt: skip
+    first = min(direct, key=make_sort_key, default=None)
+    if first is None or is_chance(view, package, first, name) or is_circular(view, package, name):
+        return None
+    return first
