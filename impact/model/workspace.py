@@ -34,7 +34,7 @@ from ..tree.paths import Tree, is_vendored
 from .cmake.build import Build
 from .cmake.installed import HEADER_NAME
 from .cmake.interpret import interpret, list_extras
-from .cmake.interpreter import is_modelled
+from .cmake.interpreter import calls_unmodelled
 from .discovery import Discovered, PackagePlace, detect_generation, discover, find_manifest
 from .ignored import holds_ignored, is_ignored
 from .package import LinkedPackage, PackageJoin, Watched, build_type_of
@@ -353,9 +353,7 @@ class Workspace:
             return False
         if any("$" in path for g in package.build.generated for path in g.files):
             return False  # generates what another package lists
-        if any(use.kind == "command" and not is_modelled(use.name, use.conditions) for use in package.build.uses):
-            return False  # a function of another package may make headers
-        return bool(package.digest.headers or package.digest.interfaces)
+        return bool(package.digest.headers or package.digest.interfaces) and not calls_unmodelled(package.build)
 
     @cached_property
     def includers(self) -> dict[str, set[str]]:

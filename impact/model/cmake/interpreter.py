@@ -1269,3 +1269,9 @@ handles, stands_in_for = _register_in(HANDLERS), _register_in(WRAPPERS)
 def is_modelled(command: str, conditions: Iterable[Condition]) -> bool:
     """Whether it is known what a command does that nothing in the tree defines, or it is called for tests alone."""
     return command in HANDLERS or command in WRAPPERS or is_for_tests(conditions)
+
+
+def calls_unmodelled(build: Build) -> bool:
+    """Whether a package calls what may make anything, such as headers: a function of another package of which it is not
+    known what it does."""
+    return any(use.kind == "command" and not is_modelled(use.name, use.conditions) for use in build.uses)

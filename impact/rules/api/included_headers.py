@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
+from ...model.cmake.interpreter import calls_unmodelled
 from ...model.misspelling import is_slip
 from ...model.package import IncludeUse
 from ...targets.availability import convert_row
@@ -174,7 +175,7 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
     name = path.rpartition("/")[2]
     if not re.fullmatch(r"[\w./+-]+\.(?:h|hh|hpp|hxx|H)", path) or name in _list_file_names(view):
         return False
-    if any(made.rstrip("/").endswith(name) or made.endswith("/") for made in build.made):
+    if calls_unmodelled(build) or any(made.rstrip("/").endswith(name) or made.endswith("/") for made in build.made):
         return False
     if any(t.kind in ("custom", "external", "fetched", "unknown") for t in build.targets) or view.workspace.unread:
         return False

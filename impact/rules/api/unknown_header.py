@@ -49,7 +49,7 @@ def unknown_header(view: TargetView, package: Package):
         path, at = include.path, include.at
         own, fault = find_misspelt(view, package, path, at.path), find_interface_fault(view, path)
         if own is None and fault is None:
-            if is_nowhere(view, package, include):
+            if is_nowhere(view, package, include) and headers.find_loss(package, include) is None:
                 yield Diagnostic(at, path, package.name, {}, "nowhere", doubts)
             continue
         if headers.find_loss(package, include) is not None:

@@ -46,8 +46,8 @@ def indirect_dependency(view: TargetView, package: Package):
 
 def _find_first(view: TargetView, package: Package, name: str, needs: list[Need]) -> Need | None:
     """The first direct use of a ROS package that is sure to be met."""
-    direct = (need for need in needs if need.how in _USED and need.role in ("build", "run") and need.subject not in _TOOLS
-              and need.certain and need.required and need.providers[0].kind == "ros"
+    used = [need for need in needs if need.how in _USED and need.role in ("build", "run") and need.certain]
+    direct = (need for need in used if need.required and need.subject not in _TOOLS and need.providers[0].kind == "ros"
               and (need.providers[0].sure or is_generated(view, need.providers[0].name, need.subject)))  # fmt: skip
     first = min(direct, key=make_sort_key, default=None)
     if first is None or is_chance(view, package, first, name) or is_circular(view, package, name):
