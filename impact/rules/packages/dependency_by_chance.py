@@ -19,8 +19,8 @@ Use instead
     <depend>angles</depend>
 
 Not reported
-    What a declared package exports (indirect-dependency names it); modules and nodes that come along with a declared package in the same role; what
-    whoever starts launch files has; conditional code.
+    What a declared package exports (indirect-dependency names it); modules and nodes that come along with a declared
+    package in the same role; what whoever starts launch files has; conditional code.
 """
 
 from ..vocabulary import Diagnostic, Package, TargetView, Text, Together, make_sort_key, rule
