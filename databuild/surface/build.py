@@ -67,6 +67,7 @@ class _Surface:
         self.installs = [install for install in self.build.installs if not is_for_tests(install.conditions)]
         self.exports = [export for export in self.build.exports if not is_for_tests(export.conditions)]
         self.generated = [made for made in self.build.generated if made.offered]
+        self.folders = [made for made in self.build.made if made.endswith("/")]  # that CMake makes or copies into
 
     def make_surface(self) -> BuildSurface:
         package, manifest = self.package, self.package.manifest
@@ -282,6 +283,8 @@ class _Surface:
                 yield "", f"{destination}/{install.rename or posixpath.basename(item)}"
             elif "$" in item:
                 self.note("headers" if destination.startswith("include") else "launches", f"`{item}` is installed")
+            elif install.kind == "directory" and any(f"{item.rstrip('/')}/".startswith(one) for one in self.folders):
+                self.note("headers", f"`{item}` is filled while CMake runs")
         for path, installed in list_copied_files(install, destination, self.package.digest.files):
             yield self.strip_prefix(path), installed
 
