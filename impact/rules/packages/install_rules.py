@@ -62,11 +62,13 @@ def list_references(view: TargetView, package: Package, *kinds: str) -> set[str]
 
 @cache_in_derived
 def _list_all_references(view: TargetView) -> dict[str, dict[str, set[str]]]:
-    """Package to kind to names."""
+    """Package to kind to names. An example that is installed is started there as well."""
     found: dict[str, dict[str, set[str]]] = {}
     for package in view.workspace:
+        installs = read_installs(view, package) or []
         for use in package.digest.references:
             r = use.reference
-            if r.package and r.name and use.role == "run":
+            example = use.role == "aside" and r.package == package.name and is_installed(package, installs, use.at.path)
+            if r.package and r.name and (use.role == "run" or example):
                 found.setdefault(r.package, {}).setdefault(r.kind, set()).add(r.name)
     return found
