@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from typing import NoReturn
 
 STATUS = 130
+_FAILED = 2
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 # `timeout` sends a signal to its child and then to the whole group.
 _SAME_SECONDS = 0.5
@@ -76,8 +77,10 @@ def run_interruptible(work: Callable[[], int], explain: Callable[[], None]) -> i
 
 
 def finish(status: int) -> None:
-    """Tells that all is done: a signal from now on ends the program with this status, and quietly."""
-    _State.ended = status
+    """Tells that all is done: a signal from now on ends the program with this status, and quietly. What failed after a
+    signal failed by it: the signal may have ended a process or a callback that the command waited for."""
+    if not (status == _FAILED and _State.since):
+        _State.ended = status
 
 
 def was_interrupted() -> bool:
