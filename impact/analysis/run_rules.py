@@ -261,9 +261,7 @@ def _run_flow_part(
     packages = opened.workspace.packages
     processes.begin_part(0, _estimate_bytes(opened.workspace, packages))
     processes.allow_memory(len(packages) * _PACKAGE_MEMORY)
-    return [
-        (rule.name, each) for rule in rules for each in _run_safely(rule, "", failed, _bind(rule, opened, before))
-    ]
+    return [(rule.name, each) for rule in rules for each in _run_safely(rule, "", failed, _bind(rule, opened, before))]
 
 
 def _run_on_install(opened: OpenedWorkspace, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Diagnostic]]:

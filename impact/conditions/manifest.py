@@ -38,8 +38,10 @@ def _is_condition(node: ast.expr) -> bool:
     """Whether an expression is made of comparisons of two texts."""
     if isinstance(node, ast.BoolOp):
         return all(map(_is_condition, node.values))
-    return isinstance(node, ast.Compare) and len(node.ops) == 1 and not any(
-        isinstance(operand, (ast.BoolOp, ast.Compare)) for operand in (node.left, *node.comparators)
+    return (
+        isinstance(node, ast.Compare)
+        and len(node.ops) == 1
+        and not any(isinstance(operand, (ast.BoolOp, ast.Compare)) for operand in (node.left, *node.comparators))
     )
 
 

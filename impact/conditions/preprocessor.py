@@ -22,9 +22,7 @@ _CPP_TOKEN = re.compile(
 _WORD_OPERATORS = {"and": "&&", "or": "||", "not": "!", "bitand": "&", "bitor": "|", "xor": "^", "not_eq": "!="}
 _PRECEDENCE = {
     sign: strength
-    for strength, signs in enumerate(
-        ("||", "&&", "|", "^", "&", "== !=", "< > <= >=", "<< >>", "+ -", "* / %"), 1
-    )
+    for strength, signs in enumerate(("||", "&&", "|", "^", "&", "== !=", "< > <= >=", "<< >>", "+ -", "* / %"), 1)
     for sign in signs.split()
 }
 _PRESENT = frozenset((

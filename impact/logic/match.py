@@ -77,9 +77,7 @@ def match_statements(
     return pairs + found, gone, come
 
 
-def match_outlets(
-    old: Sequence[OutletAt], new: Sequence[OutletAt], names: Renames
-) -> list[tuple[OutletAt, OutletAt]]:
+def match_outlets(old: Sequence[OutletAt], new: Sequence[OutletAt], names: Renames) -> list[tuple[OutletAt, OutletAt]]:
     """Pairs of publishers that are the same one; those that are new or gone are in none."""
     pairs: list[tuple[OutletAt, OutletAt]] = []
     for key in (_make_outlet_key, _make_outlet_place_key):

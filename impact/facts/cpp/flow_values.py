@@ -456,9 +456,7 @@ class FunctionReader:
             self.touch(f"{path}.[]", position)
         return FlowExpr("index", "", (FlowExpr("name", path), index))
 
-    def evaluate_parenthesized_expression(
-        self, node: Node, guard: int, position: str, target: str | None
-    ) -> FlowExpr:
+    def evaluate_parenthesized_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = list_children(node)
         if len(children) != 3:
             return self.visit_anything(node, guard, position, target)

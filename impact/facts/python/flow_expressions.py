@@ -141,7 +141,6 @@ class Expressions(SourceText):
             return drop_surrogates(node.value)
         return self.format_source(node)
 
-
     # Visiting, for calls and uses alone
 
     def visit(self, node) -> None:
