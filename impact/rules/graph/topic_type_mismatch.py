@@ -22,10 +22,8 @@ Not reported
     Nodes that use several types for one name, if one of them fits; type adapters.
 """
 
-from ...model.cmake.build import At
 from ...model.flow.edges import FlowPair, get_label, list_met_pairs, list_uncompared
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import At, Diagnostic, Doubt, Text, Workspace, rule
 
 _WHAT = {"subscriber": "topic", "client": "service", "action client": "action"}
 

@@ -18,10 +18,8 @@ Not reported
     topics and topics for debugging; types that something in the workspace subscribes to on another topic.
 """
 
-from ...model.cmake.build import At
 from ...model.flow.edges import get_label
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 from .one_sided import find_one_sided
 
 

@@ -23,8 +23,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Text, Workspace, rule
 from .statements import READERS, find_changes
 
 

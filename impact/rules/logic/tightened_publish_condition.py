@@ -24,8 +24,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Diagnostic, Text, Workspace, rule
 from .statements import CONDITIONS, READERS, find_changes
 
 
