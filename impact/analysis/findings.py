@@ -13,8 +13,9 @@ from ...edges.console import UserError, format_json
 from ...edges.documents import load_json
 from ..config import PathSetting
 from ..facts.place import Allow
-from ..rules.rule import SEVERITIES, Diagnostic, Finding, FixAction, Rule
-from ..rules.severity import Doubt
+from ..rules.fix_actions import FixAction
+from ..rules.rule import Diagnostic, Finding, Rule
+from ..rules.severity import SEVERITIES, Doubt
 from ..rules.text import Value, append_targets
 
 _MOST_OF_ONE = 1_000_000

@@ -5,10 +5,8 @@ from typing import NamedTuple
 
 from ..facts.condition import Condition
 from ..model.package import ImportUse, SyntaxUse
-from ..model.view import TargetView
-from ..model.workspace import Package
 from ..targets.distro.distro import DistroTarget
-from .rule import Diagnostic, Doubt, Upcoming, list_place_doubts, rate_upcoming
+from .vocabulary import Diagnostic, Doubt, Package, TargetView, Upcoming, list_place_doubts, rate_upcoming
 
 
 class Refused(NamedTuple):

@@ -44,16 +44,10 @@ from functools import cache
 from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence_record import Evidence
-from .fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
-from .severity import SEVERITIES, Doubt, Together, limit_severity, list_place_doubts
+from .fix_actions import FixAction
+from .severity import SEVERITIES, Doubt, Together, limit_severity
 from .text import Text, Value
 from .upcoming import Upcoming, rate_upcoming
-
-__all__ = [
-    "SEVERITIES", "Declare", "Diagnostic", "Doubt", "Edit", "Finding", "FixAction", "Insert", "Remove", "Replace",
-    "Rule", "Scope", "Text", "Together", "Upcoming", "Value", "group_rules", "limit_severity", "list_place_doubts",
-    "load_rules", "rate_upcoming", "rule",
-]  # fmt: skip
 
 Scope = Literal["package", "target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
 
