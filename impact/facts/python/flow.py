@@ -22,11 +22,8 @@ from .flow_conditions import (
 )
 from .flow_expressions import ANY, Expressions
 from .source import PythonSource, read
+from .text import SIGNS
 
-_OPERATORS = {
-    ast.Add: "+=", ast.Sub: "-=", ast.Mult: "*=", ast.Div: "/=", ast.FloorDiv: "//=", ast.Mod: "%=", ast.Pow: "**=",
-    ast.LShift: "<<=", ast.RShift: ">>=", ast.BitOr: "|=", ast.BitXor: "^=", ast.BitAnd: "&=", ast.MatMult: "@=",
-}  # fmt: skip
 # Calls that never return.
 EXITS = frozenset(("sys.exit", "exit", "quit", "os._exit", "os.abort"))
 # Of `a = b = ...`, each of which repeats the value.
@@ -415,7 +412,7 @@ class PythonStatements(Expressions):
         self.visit(target)
         path = self.find_target(target)
         value = self.follow(node.value, "read", path if node.op.__class__ is ast.Add else "")
-        self.bind(target, value, node.lineno, operator=_OPERATORS[node.op.__class__])
+        self.bind(target, value, node.lineno, operator=f"{SIGNS[node.op.__class__]}=")
         return STAYS
 
     def read_Delete(self, node: ast.Delete) -> Leaving:
