@@ -79,10 +79,7 @@ class PythonStatements(Expressions):
             self.bodies.append(body)
             self.enter(body)
             try:
-                if code.__class__ is list:
-                    self.walk_block(code)  # type: ignore[arg-type]
-                else:
-                    self.give(code)  # type: ignore[arg-type]
+                self.walk_block(code)
             except RecursionError:
                 self.unread.append((body.line, body.end))
                 self.problems.append(Problem(body.line, "nested too deeply"))
@@ -326,12 +323,8 @@ class PythonStatements(Expressions):
     def read_Return(self, node: ast.Return) -> Leaving:
         if node.value is not None:
             value = self.follow(node.value, "escape", "return")
-            self.add_assignment("", value, node.lineno, "return")
+            self.assignments.append(Assignment("", value, node.lineno, self.guard, "", "return"))
         return JUMPS
-
-    def give(self, node: ast.expr) -> None:
-        """The body of a lambda, which is what it returns."""
-        self.add_assignment("", self.follow(node, "escape", "return"), node.lineno, "return")
 
     def read_Raise(self, node: ast.Raise) -> Leaving:
         if node.exc is not None:
@@ -431,9 +424,6 @@ class PythonStatements(Expressions):
 
     read_Nonlocal = read_Global
 
-    def read_Pass(self, node: ast.stmt) -> Leaving:
-        return STAYS
-
     def read_Import(self, node: ast.Import) -> Leaving:
         scope = self.body.name
         for alias in node.names:
@@ -519,9 +509,6 @@ class PythonStatements(Expressions):
         self.enter(outer)
         self.guard, self.in_class, self.own = saved, in_class, own
         return STAYS
-
-    def add_assignment(self, target: str, value: FlowExpr, line: int, operator: str) -> None:
-        self.assignments.append(Assignment(target, value, line, self.guard, "", operator))
 
 
 def can_break(statements: list[ast.stmt]) -> bool:

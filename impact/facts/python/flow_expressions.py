@@ -58,7 +58,7 @@ class Expressions(SourceText):
         self.own: set[str] = set()
         self.constants: list[DataMember] = []
         # Functions whose bodies are still to be read, since they see all variables of the one they stand in.
-        self.waiting: list[tuple[Body, list[ast.stmt] | ast.expr]] = []
+        self.waiting: list[tuple[Body, list[ast.stmt]]] = []
         # Whether names are bound in the body of a class.
         self.in_class = False
 
@@ -372,7 +372,7 @@ class Expressions(SourceText):
         own = f"lambda@{node.lineno}:{self.find_column(node.lineno, node.col_offset)}"
         name = f"{around}.{own}" if around else own
         body = self.make_body(name, node, node.args)
-        self.waiting.append((body, node.body))
+        self.waiting.append((body, [ast.copy_location(ast.Return(node.body), node.body)]))
         return FlowExpr("lambda", name)
 
     def make_body(self, name: str, node, arguments: ast.arguments) -> Body:
