@@ -376,8 +376,10 @@ class _Reading:
             if facts is None:
                 continue
             old_facts = _find_facts(old, was[id(before)]) if before is not None else None
-            old_text = _decode(texts[before.id]) if before is not None else ""
-            result += find_changed_functions(path, old_facts, old_text, facts, _decode(texts[after.id]), words)
+            old_text, text = (
+                texts[file.id].decode("utf-8", "replace") if file is not None else "" for file in (before, after)
+            )
+            result += find_changed_functions(path, old_facts, old_text, facts, text, words)
         return result
 
     def find_package(self, path: str) -> str:
@@ -409,10 +411,6 @@ def _list_declarations(facts: FlowFile | None) -> object:
         return None
     members = [(cls.name, cls.bases, [(m.name, m.type, m.value) for m in cls.members]) for cls in facts.classes]
     return members, [(one.name, one.type, one.value) for one in facts.constants], facts.exports, facts.aliases
-
-
-def _decode(data: bytes) -> str:
-    return data.decode("utf-8", "replace")
 
 
 def select_effects(

@@ -59,10 +59,7 @@ class Element(msgspec.Struct, eq=False):
 
     def get(self, name: str, default: str = "") -> str:
         """Value of an attribute, default when it is not there."""
-        for attribute in self.attributes:
-            if attribute.name == name:
-                return attribute.value
-        return default
+        return next((attribute.value for attribute in self.attributes if attribute.name == name), default)
 
 
 class Document:

@@ -182,8 +182,8 @@ class _Reader(Constants):
                     group = opened.group(1)
                 elif group in _GROUPS:
                     found += _parse_entry_point(text, line + number)
-        for group in _GROUPS if isinstance(value, dict) else ():
-            for text in self.iterate_strings("entry_points", value.get(group)):
+        elif isinstance(value, dict):
+            for text in (text for group in _GROUPS for text in self.iterate_strings("entry_points", value.get(group))):
                 found += _parse_entry_point(text, _find_line(text))
         self.note_unknown("entry_points", value)
         return found

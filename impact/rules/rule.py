@@ -190,7 +190,7 @@ def rule(
         parts = function.__module__.split(".")
         module = importlib.import_module(function.__module__)
         name = parts[-1].replace("_", "-")
-        usual = _lower_severity(severity, doubts)
+        usual = min(severity, limit_severity(*doubts), key=SEVERITIES.index)
         run, called = (_run_on_packages(function), "target") if scope == "package" else (function, scope)
         documentation = _tell_severity(module.__doc__ or "", usual)
         by_kind = {"": texts} if isinstance(texts, Text) else texts
@@ -218,10 +218,6 @@ def _tell_severity(documentation: str, usual: str) -> str:
 
 
 _AFTER_SEVERITY = re.compile(r"\n\n(?:Example|Not reported)\n")
-
-
-def _lower_severity(most: str, doubts: tuple[Doubt, ...]) -> str:
-    return min(most, limit_severity(*doubts), key=SEVERITIES.index)
 
 
 def load_rules() -> dict[str, Rule]:

@@ -330,12 +330,9 @@ class RepositoryObjects:
             raise OSError(errno.EIO, DAMAGED) from None
 
     @cache_method
-    def _index_entries(self, oid: Any) -> dict[str, tuple[int, Any]]:
+    def index_folder(self, oid: Any) -> dict[str, tuple[int, Any]]:
+        """(mode, id) of what a folder has under each name."""
         return {name: (mode, item) for name, mode, item in self.read_folder(oid)}
-
-    def find_entry(self, oid: Any, name: str) -> tuple[int, Any] | None:
-        """(mode, id) of what a folder has under a name."""
-        return self._index_entries(oid).get(name)
 
     @cache_method
     def link(self, oid: Any) -> str:

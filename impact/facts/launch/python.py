@@ -111,7 +111,6 @@ class Walker:
         self.base = 0
         self.calls = 0
         self.steps = 0
-        self.line = 1
 
     def launch(self, tree: ast.Module) -> tuple[tuple[Action, ...], tuple[Problem, ...]]:
         self.walk_block(tree.body)
@@ -609,7 +608,6 @@ class Walker:
 
     def evaluate_Call(self, node: ast.Call) -> Any:
         function = self.evaluate(node.func)
-        self.line = node.lineno
         arguments: list[Any] = []
         for argument in node.args:
             value = self.evaluate(argument)
