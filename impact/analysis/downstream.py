@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 import msgspec
 
+from ...edges.memory import cache_method
 from ..facts.extract import ExtractedFacts
 from ..facts.flow import FlowFile
 from ..facts.store import Store
@@ -105,7 +106,6 @@ class _Reading:
         self.workspace, self.base = workspace, base
         self.differing: Differing = find_differences(workspace, base)
         self.silent = 0
-        self._walked: dict[tuple, list[tuple[int, Hop]]] = {}
 
     def has_flow_changes(self) -> bool:
         """Whether anything differs that message flow can follow; asked before the graphs are made, which are dear."""
@@ -189,15 +189,12 @@ class _Reading:
         told = sorted(found.values(), key=lambda each: each[0])
         return tuple(msgspec.structs.replace(hop, came="") if hop.came in own else hop for _, hop in told)
 
+    @cache_method
     def find_hops(self, out: _Out, reach: DownstreamSearch) -> list[tuple[int, Hop]]:
-        key = (id(reach), out)
-        known = self._walked.get(key)
-        if known is None:
-            known = self._walked[key] = [
-                (len(one.steps), self.make_hop(one.steps[-1], one.steps[-2].node if len(one.steps) > 1 else out.node))
-                for one in reach.find_downstream(out.sent, out.node)
-            ]
-        return known
+        return [
+            (len(one.steps), self.make_hop(one.steps[-1], one.steps[-2].node if len(one.steps) > 1 else out.node))
+            for one in reach.find_downstream(out.sent, out.node)
+        ]
 
     def make_hop(self, step: Step, came: str = "") -> Hop:
         return Hop(step.node, self.packages.get(step.node, ""), came, step.kind, step.name, step.path, step.line)

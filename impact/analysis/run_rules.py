@@ -108,14 +108,15 @@ def _run_remembered(
     key, on_flow = b"", None if flow_rules else []
     if flow_rules:
         key = result_cache.make_flow_key(opened.workspace, before, [rule.name for rule in flow_rules])
-        on_flow = result_cache.load_flow_results(opened.store, key)
+        known = result_cache.load_judgement(opened.store, key)
+        on_flow = known[0] if known is not None else None
     asked = flow_rules if on_flow is None else ()
     failed: Crashes = {}
     for place, yielded in _run_in_parts(opened, rules, fresh, asked, before, crashed, failed, jobs):
         if place == _FLOW:
             on_flow = yielded
             if not failed:
-                result_cache.store_flow_results(opened.store, key, yielded)
+                result_cache.store_judgement(opened.store, key, yielded, {})
             continue
         view = opened.views[place]
         found[view.target.name] = yielded = lower_repeats(yielded, {rule.name: rule for rule in rules})

@@ -23,7 +23,7 @@ WIDE = PLAIN._replace(width=UNBROKEN)
 def render(selection: Selection, base: Graph | None, everything: bool = False, style: Style = WIDE) -> str:
     """The graph for people; everything: all that was not resolved, not the first 20 alone."""
     graph = selection.graph
-    names = name_nodes(graph) | (name_nodes(base) if base is not None else {})
+    names = name_nodes(graph.nodes) | (name_nodes(base.nodes) if base is not None else {})
     found = list_edges(graph, base)
     lines = [*_render_head(found, graph, selection.hidden, style), ""]
     groups: dict[tuple[str, str], list[Edge]] = {}
