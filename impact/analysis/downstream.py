@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
+from itertools import product
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -294,12 +295,8 @@ class _Reading:
         for edge in found:
             if edge.node in before ^ after:
                 has.setdefault(edge.node, set()).add((edge.name, edge.role))
-        result: set[str] = set()
-        for old in before - after:
-            for new in after - before:
-                if has.get(old) and has.get(old) == has.get(new):
-                    result |= {old, new}
-        return result
+        pairs = product((before - after) & has.keys(), after - before)
+        return {node for old, new in pairs if has[old] == has.get(new) for node in (old, new)}
 
     def may_be_unnamed(self, edge: Edge) -> bool:
         """Whether what is new or gone may be what the other side has under a name that is not known."""
