@@ -1,7 +1,5 @@
 """Diagnostics made into findings: merged over targets, fingerprinted, selected, suppressed, compared with a base."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence

@@ -3,8 +3,6 @@
 A second run on unchanged files then judges nothing anew. Time plays no part: the key is made of content ids.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 from collections.abc import Iterable, Sequence

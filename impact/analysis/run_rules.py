@@ -1,8 +1,6 @@
 """Runs the rules on a workspace for every target: in several processes when there is much to do, and not at all when an
 earlier run had the same input."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import Any

@@ -1,7 +1,5 @@
 """Condition attributes of package.xml, after REP 149 and catkin_pkg."""
 
-from __future__ import annotations
-
 import ast
 import re
 from functools import lru_cache

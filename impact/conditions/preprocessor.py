@@ -5,8 +5,6 @@ opencv2/core/version.hpp, pcl/pcl_config.h, boost/version.hpp, Eigen/src/Core/ut
 OgrePrerequisites.h).
 """
 
-from __future__ import annotations
-
 import operator
 import re
 from functools import lru_cache

@@ -6,8 +6,6 @@ Workers are forked where that is safe (processes.py), loky elsewhere; a backend 
 (`parallel_config`) is given the chunks instead.
 """
 
-from __future__ import annotations
-
 import contextlib
 import sys
 from collections import deque

@@ -4,8 +4,6 @@ Expat says whether a file is well-formed; the elements come from a single scan o
 forgotten closing tag does not stop. Entities that a file defines are neither expanded nor fetched.
 """
 
-from __future__ import annotations
-
 import codecs
 import re
 from bisect import bisect_right

@@ -1,7 +1,5 @@
 """setup.py, setup.cfg and pyproject.toml to facts: what an ament_python or catkin package installs."""
 
-from __future__ import annotations
-
 import ast
 import posixpath
 import re

@@ -1,7 +1,5 @@
 """C++ conditions to terms, with tree-sitter. Whatever is not understood is opaque; nothing raises."""
 
-from __future__ import annotations
-
 import re
 from functools import lru_cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Python conditions to terms. Whatever is not understood is opaque; nothing raises."""
 
-from __future__ import annotations
-
 import ast
 import re
 import warnings

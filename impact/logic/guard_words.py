@@ -1,7 +1,5 @@
 """In words, what guards ask for that they did not, and what they ask for no longer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
 

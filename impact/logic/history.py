@@ -1,7 +1,5 @@
 """The commits of a repository and the packages of each, read from git's objects; nothing is checked out."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import os

@@ -1,7 +1,5 @@
 """Which publish statement of one revision is which of the next: they move, and what they stand in is renamed."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple, TypeVar

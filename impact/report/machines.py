@@ -1,7 +1,5 @@
 """What differs between two machines, as text and JSON (see envdiff.schema.json)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any
 

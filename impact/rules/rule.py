@@ -34,8 +34,6 @@ It yields diagnostics: data, not text. What differs between targets (a version, 
 each target; they become one finding, and its text is rendered from the templates of the rule when all are known.
 """
 
-from __future__ import annotations
-
 import importlib
 import pkgutil
 import re

@@ -5,8 +5,6 @@ at before: each must be a file or a folder, and none but objects and packs may b
 alternates may lead elsewhere, as those of shared clones do: only objects whose id is known can be read through them.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import stat

@@ -8,8 +8,6 @@ A use of a parameter or local variable is judged by where it stands: a test or a
 Assignment tells what goes on from there; all that is not known to be safe is an `escape`.
 """
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_right
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Files of parameters: the values of a YAML file with their places, in its order; launch files in YAML too."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Any

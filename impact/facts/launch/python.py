@@ -4,8 +4,6 @@ The tree is walked as Python would run it, with values that are known, substitut
 what is only known at launch are walked both, and what they add stands under their condition.
 """
 
-from __future__ import annotations
-
 import ast
 import string
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """Python sources to facts of message flow: classes, functions, calls and the conditions around them."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator

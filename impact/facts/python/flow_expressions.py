@@ -7,8 +7,6 @@ noted; an argument is a `pass`, a method called on it too; the value of another 
 Assignment tells what goes on from there; what is kept elsewhere, returned or listed is an `escape`.
 """
 
-from __future__ import annotations
-
 import ast
 from itertools import pairwise
 

@@ -6,8 +6,6 @@ and in `self` and `super()` of a subclass; that of a message also in the callbac
 field of another. Nothing outside of the file is looked at.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import sys
