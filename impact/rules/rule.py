@@ -34,6 +34,8 @@ It yields diagnostics: data, not text. What differs between targets (a version, 
 each target; they become one finding, and its text is rendered from the templates of the rule when all are known.
 """
 
+from __future__ import annotations  # docs/queries.md shows types by the names they have here
+
 import importlib
 import pkgutil
 import re
