@@ -255,7 +255,7 @@ def iterate_items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[Offer
 
 
 def show_text(
-    surface: Surface, source: VersionSource, style: Style, everything: bool, hashes: Mapping[str, str]
+    surface: Surface, source: VersionSource, style: Style, everything: bool, hashes: Mapping[str, str] = {}
 ) -> str:
     """What a package offers, for people. everything: members of classes, constants and macros too. hashes: see
     items()."""
