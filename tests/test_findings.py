@@ -28,7 +28,8 @@ from rosimpact.impact.analysis.findings import (
 from rosimpact.impact.config import PathSetting
 from rosimpact.impact.facts.place import Allow
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Diagnostic, Edit, Finding, Rule, group_rules
+from rosimpact.impact.rules.fix_actions import Edit
+from rosimpact.impact.rules.rule import Diagnostic, Finding, Rule, group_rules
 from rosimpact.impact.rules.severity import Doubt, Together
 from rosimpact.impact.rules.text import Text
 from rosimpact.impact.targets.evidence_record import Evidence

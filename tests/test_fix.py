@@ -22,8 +22,8 @@ from rosimpact.impact.analysis.fix import (
     replace_text,
     write,
 )
-from rosimpact.impact.rules.fix_actions import Declare, Insert, Remove, Replace
-from rosimpact.impact.rules.rule import Edit, Finding
+from rosimpact.impact.rules.fix_actions import Declare, Edit, Insert, Remove, Replace
+from rosimpact.impact.rules.rule import Finding
 
 HEAD = '<package format="{}">\n  <name>p</name>\n  <version>1.0.0</version>\n  <description>d</description>\n'
 HEAD += '  <maintainer email="a@b.cd">m</maintainer>\n  <license>BSD</license>\n'

@@ -1,7 +1,5 @@
 """The main job on one page: tree → facts → model → rules → report."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Iterator, Sequence

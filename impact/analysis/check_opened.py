@@ -13,8 +13,8 @@ from ..config import Config, PathSetting
 from ..facts.extract import ExtractedFacts
 from ..model.view import TargetView
 from ..model.workspace import Workspace
-from ..rules.fix_actions import Declare, Insert, Replace
-from ..rules.rule import Diagnostic, Finding, FixAction, Rule, load_rules
+from ..rules.fix_actions import Declare, FixAction, Insert, Replace
+from ..rules.rule import Diagnostic, Finding, Rule, load_rules
 from ..targets.version import compare as compare_versions
 from ..tree import Tree
 from . import result_cache

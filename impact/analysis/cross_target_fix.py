@@ -1,8 +1,6 @@
 """What a finding rests on, for all targets together: which of them have the change, since when, and what to write when
 they need different names."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cmp_to_key
 from typing import NamedTuple

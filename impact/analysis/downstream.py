@@ -4,11 +4,13 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
+from itertools import product
 from pathlib import Path
 from typing import Literal, NamedTuple
 
 import msgspec
 
+from ...edges.memory import cache_method
 from ..facts.extract import ExtractedFacts
 from ..facts.flow import FlowFile
 from ..facts.store import Store
@@ -105,7 +107,6 @@ class _Reading:
         self.workspace, self.base = workspace, base
         self.differing: Differing = find_differences(workspace, base)
         self.silent = 0
-        self._walked: dict[tuple, list[tuple[int, Hop]]] = {}
 
     def has_flow_changes(self) -> bool:
         """Whether anything differs that message flow can follow; asked before the graphs are made, which are dear."""
@@ -189,15 +190,12 @@ class _Reading:
         told = sorted(found.values(), key=lambda each: each[0])
         return tuple(msgspec.structs.replace(hop, came="") if hop.came in own else hop for _, hop in told)
 
+    @cache_method
     def find_hops(self, out: _Out, reach: DownstreamSearch) -> list[tuple[int, Hop]]:
-        key = (id(reach), out)
-        known = self._walked.get(key)
-        if known is None:
-            known = self._walked[key] = [
-                (len(one.steps), self.make_hop(one.steps[-1], one.steps[-2].node if len(one.steps) > 1 else out.node))
-                for one in reach.find_downstream(out.sent, out.node)
-            ]
-        return known
+        return [
+            (len(one.steps), self.make_hop(one.steps[-1], one.steps[-2].node if len(one.steps) > 1 else out.node))
+            for one in reach.find_downstream(out.sent, out.node)
+        ]
 
     def make_hop(self, step: Step, came: str = "") -> Hop:
         return Hop(step.node, self.packages.get(step.node, ""), came, step.kind, step.name, step.path, step.line)
@@ -297,12 +295,8 @@ class _Reading:
         for edge in found:
             if edge.node in before ^ after:
                 has.setdefault(edge.node, set()).add((edge.name, edge.role))
-        result: set[str] = set()
-        for old in before - after:
-            for new in after - before:
-                if has.get(old) and has.get(old) == has.get(new):
-                    result |= {old, new}
-        return result
+        pairs = product((before - after) & has.keys(), after - before)
+        return {node for old, new in pairs if has[old] == has.get(new) for node in (old, new)}
 
     def may_be_unnamed(self, edge: Edge) -> bool:
         """Whether what is new or gone may be what the other side has under a name that is not known."""
@@ -376,8 +370,10 @@ class _Reading:
             if facts is None:
                 continue
             old_facts = _find_facts(old, was[id(before)]) if before is not None else None
-            old_text = _decode(texts[before.id]) if before is not None else ""
-            result += find_changed_functions(path, old_facts, old_text, facts, _decode(texts[after.id]), words)
+            old_text, text = (
+                texts[file.id].decode("utf-8", "replace") if file is not None else "" for file in (before, after)
+            )
+            result += find_changed_functions(path, old_facts, old_text, facts, text, words)
         return result
 
     def find_package(self, path: str) -> str:
@@ -409,10 +405,6 @@ def _list_declarations(facts: FlowFile | None) -> object:
         return None
     members = [(cls.name, cls.bases, [(m.name, m.type, m.value) for m in cls.members]) for cls in facts.classes]
     return members, [(one.name, one.type, one.value) for one in facts.constants], facts.exports, facts.aliases
-
-
-def _decode(data: bytes) -> str:
-    return data.decode("utf-8", "replace")
 
 
 def select_effects(

@@ -1,7 +1,5 @@
 """Diagnostics made into findings: merged over targets, fingerprinted, selected, suppressed, compared with a base."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -13,8 +11,9 @@ from ...edges.console import UserError, format_json
 from ...edges.documents import load_json
 from ..config import PathSetting
 from ..facts.place import Allow
-from ..rules.rule import SEVERITIES, Diagnostic, Finding, FixAction, Rule
-from ..rules.severity import Doubt
+from ..rules.fix_actions import FixAction
+from ..rules.rule import Diagnostic, Finding, Rule
+from ..rules.severity import SEVERITIES, Doubt
 from ..rules.text import Value, append_targets
 
 _MOST_OF_ONE = 1_000_000

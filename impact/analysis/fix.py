@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...edges.files import write_file
-from ..rules.fix_actions import Declare, Insert, Remove, Replace
-from ..rules.rule import Edit, Finding, FixAction
+from ..rules.fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
+from ..rules.rule import Finding
 from ..tree.paths import is_vendored
 
 _BOM = b"\xef\xbb\xbf"

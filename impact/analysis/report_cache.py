@@ -4,8 +4,6 @@ A second run on unchanged files links nothing, runs no rule and does not even lo
 where they are known, and of the state of a file where nothing has read it.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import os

@@ -3,8 +3,6 @@
 A second run on unchanged files then judges nothing anew. Time plays no part: the key is made of content ids.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 from collections.abc import Iterable, Sequence
@@ -85,7 +83,7 @@ def make_results_key(view: TargetView, rules: Iterable[str]) -> bytes:
 
 def load_results(store: Store, view: TargetView, rules: Sequence[str]) -> list[Yielded] | None:
     """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
-    found = _load_results(store, make_results_key(view, rules))
+    found = load_judgement(store, make_results_key(view, rules))
     if found is None:
         return None
     hits, unresolved = found
@@ -97,7 +95,7 @@ def load_results(store: Store, view: TargetView, rules: Sequence[str]) -> list[Y
 def store_results(store: Store, view: TargetView, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
     """Keeps what the rules yielded for later runs."""
     unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
-    _keep(store, make_results_key(view, rules), diagnostics, unresolved)
+    store_judgement(store, make_results_key(view, rules), diagnostics, unresolved)
 
 
 def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
@@ -106,23 +104,16 @@ def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterabl
     return hashlib.sha1(repr((stamps, compute_data_stamp(), sorted(rules))).encode()).digest()
 
 
-def load_flow_results(store: Store, key: bytes) -> list[Yielded] | None:
-    """(rule, hit) on the message flow of an earlier run, None when there was none. key: a make_flow_key()."""
-    found = _load_results(store, key)
-    return found[0] if found is not None else None
-
-
-def store_flow_results(store: Store, key: bytes, diagnostics: Iterable[Yielded]) -> None:
-    """Keeps what rules yielded on the message flow for later runs."""
-    _keep(store, key, diagnostics, {})
-
-
-def _keep(store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]) -> None:
+def store_judgement(
+    store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
+) -> None:
+    """Keeps what rules yielded, and names that were not resolved by their kind, for later runs."""
     stored = tuple(_Stored(rule, _place_of(one.at), one._replace(at=None)) for rule, one in diagnostics)
     store.remember("judgement", encode_rows([(key, _Judgement(stored, unresolved))]))
 
 
-def _load_results(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[str, ...]]] | None:
+def load_judgement(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[str, ...]]] | None:
+    """What store_judgement() kept; None when there is none."""
     data = store.find_memo("judgement", key)
     if data is None:
         return None

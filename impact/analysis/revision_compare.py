@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from .session import OpenedWorkspace
 
 
-
 class BaseError(TreeError):
     """The base cannot be found; the text names what was asked for and what to write."""
 

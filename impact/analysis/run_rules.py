@@ -1,8 +1,6 @@
 """Runs the rules on a workspace for every target: in several processes when there is much to do, and not at all when an
 earlier run had the same input."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from itertools import groupby
 from typing import Any
@@ -108,14 +106,15 @@ def _run_remembered(
     key, on_flow = b"", None if flow_rules else []
     if flow_rules:
         key = result_cache.make_flow_key(opened.workspace, before, [rule.name for rule in flow_rules])
-        on_flow = result_cache.load_flow_results(opened.store, key)
+        known = result_cache.load_judgement(opened.store, key)
+        on_flow = known[0] if known is not None else None
     asked = flow_rules if on_flow is None else ()
     failed: Crashes = {}
     for place, yielded in _run_in_parts(opened, rules, fresh, asked, before, crashed, failed, jobs):
         if place == _FLOW:
             on_flow = yielded
             if not failed:
-                result_cache.store_flow_results(opened.store, key, yielded)
+                result_cache.store_judgement(opened.store, key, yielded, {})
             continue
         view = opened.views[place]
         found[view.target.name] = yielded = lower_repeats(yielded, {rule.name: rule for rule in rules})
@@ -261,9 +260,7 @@ def _run_flow_part(
     packages = opened.workspace.packages
     processes.begin_part(0, _estimate_bytes(opened.workspace, packages))
     processes.allow_memory(len(packages) * _PACKAGE_MEMORY)
-    return [
-        (rule.name, each) for rule in rules for each in _run_safely(rule, "", failed, _bind(rule, opened, before))
-    ]
+    return [(rule.name, each) for rule in rules for each in _run_safely(rule, "", failed, _bind(rule, opened, before))]
 
 
 def _run_on_install(opened: OpenedWorkspace, rule: Rule, crashed: Crashes) -> Iterator[tuple[str, str, Diagnostic]]:

@@ -194,9 +194,7 @@ def render(report: Report, format: str, notes: bool, output: Path | None = None,
         from ..report import text
 
         severities = ("error", "warning", "note") if notes else ("error", "warning")
-        style = (
-            PLAIN._replace(severities=severities) if output else choose_style(sys.stdout, severities=severities)
-        )
+        style = PLAIN._replace(severities=severities) if output else choose_style(sys.stdout, severities=severities)
         return text.render(report, style)
     reporter = import_module(f"...report.{format}", __name__)
     return reporter.render(report, prefix) if format == "github" else reporter.render(report)

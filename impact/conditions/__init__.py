@@ -4,8 +4,6 @@ Each language is parsed once per text and evaluated per machine. Nothing here ra
 language is unknown.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """CMake's if(): its grammar, and its value as far as a machine is known. Source: cmake-commands(7)."""
 
-from __future__ import annotations
-
 import operator
 import re
 from collections.abc import Callable, Collection, Sequence

@@ -1,7 +1,5 @@
 """What is known of one machine, and versions compared as far as they are known."""
 
-from __future__ import annotations
-
 import operator
 import re
 from collections.abc import Callable

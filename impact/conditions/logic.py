@@ -1,7 +1,5 @@
 """Three-valued logic after Kleene: what is unknown (None) stays so unless the rest decides."""
 
-from __future__ import annotations
-
 
 def combine_and(left: bool | None, right: bool | None) -> bool | None:
     if left is False or right is False:

@@ -1,7 +1,5 @@
 """Condition attributes of package.xml, after REP 149 and catkin_pkg."""
 
-from __future__ import annotations
-
 import ast
 import re
 from functools import lru_cache
@@ -38,8 +36,10 @@ def _is_condition(node: ast.expr) -> bool:
     """Whether an expression is made of comparisons of two texts."""
     if isinstance(node, ast.BoolOp):
         return all(map(_is_condition, node.values))
-    return isinstance(node, ast.Compare) and len(node.ops) == 1 and not any(
-        isinstance(operand, (ast.BoolOp, ast.Compare)) for operand in (node.left, *node.comparators)
+    return (
+        isinstance(node, ast.Compare)
+        and len(node.ops) == 1
+        and not any(isinstance(operand, (ast.BoolOp, ast.Compare)) for operand in (node.left, *node.comparators))
     )
 
 

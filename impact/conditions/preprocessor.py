@@ -5,8 +5,6 @@ opencv2/core/version.hpp, pcl/pcl_config.h, boost/version.hpp, Eigen/src/Core/ut
 OgrePrerequisites.h).
 """
 
-from __future__ import annotations
-
 import operator
 import re
 from functools import lru_cache
@@ -22,9 +20,7 @@ _CPP_TOKEN = re.compile(
 _WORD_OPERATORS = {"and": "&&", "or": "||", "not": "!", "bitand": "&", "bitor": "|", "xor": "^", "not_eq": "!="}
 _PRECEDENCE = {
     sign: strength
-    for strength, signs in enumerate(
-        ("||", "&&", "|", "^", "&", "== !=", "< > <= >=", "<< >>", "+ -", "* / %"), 1
-    )
+    for strength, signs in enumerate(("||", "&&", "|", "^", "&", "== !=", "< > <= >=", "<< >>", "+ -", "* / %"), 1)
     for sign in signs.split()
 }
 _PRESENT = frozenset((

@@ -1,7 +1,5 @@
 """Tests in Python sources about the interpreter and the machine: `sys.version_info`, PY3, ROS_DISTRO and the like."""
 
-from __future__ import annotations
-
 import ast
 import warnings
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """The comments that silence a rule: `rosimpact: allow(rule, rule)` in the comment syntax of any file type."""
 
-from __future__ import annotations
-
 import re
 
 from ...edges.limits import get_limits

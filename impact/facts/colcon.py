@@ -4,8 +4,6 @@ Source: colcon-core 0.21, colcon-cmake 0.2.30, colcon-metadata 0.3.1, colcon-pyt
 colcon-defaults 0.2.9.
 """
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

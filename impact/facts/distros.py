@@ -1,8 +1,6 @@
 """Distros that files name: folders of an installed one (`/opt/ros/humble`), and in Dockerfiles and CI files also base
 images and Debian packages."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 

@@ -7,8 +7,6 @@ Nothing that a file claims about itself is believed: what is read of it has limi
 leads back to itself, has 2^31 entries or names without an end costs a second and makes a problem.
 """
 
-from __future__ import annotations
-
 import io
 import re
 from collections.abc import Iterable, Iterator

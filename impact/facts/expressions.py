@@ -1,7 +1,5 @@
 """What a text has to contain so that a regular expression can match: asked first, since that is much cheaper."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from functools import lru_cache

@@ -6,8 +6,6 @@ Workers are forked where that is safe (processes.py), loky elsewhere; a backend 
 (`parallel_config`) is given the chunks instead.
 """
 
-from __future__ import annotations
-
 import contextlib
 import sys
 from collections import deque
@@ -15,7 +13,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import closing
 from functools import cache, partial
 from itertools import chain, islice
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -40,6 +38,7 @@ _Extract = Callable[[list[_Item]], list[_Result]]
 Searches = Mapping[str, tuple[str, Any]]
 # (bytes, path, kinds) of a file to read
 _Unread = tuple[int, str, tuple[str, ...]]
+_T = TypeVar("_T")
 
 
 class ExtractedFacts:
@@ -281,7 +280,7 @@ def _make(
         if progress is not None:
             progress(min(done, total), total)
 
-    chunks = _iterate_chunks(gathered, unread, paths_of, report_progress)
+    chunks = _iterate_batches(_iterate_items(gathered, unread, paths_of, report_progress), lambda item: len(item[3]))
     stamps = {kind: table.stamp for kind, table in along.values()}
     with closing(_extract_chunks(chunks, jobs, along)) as finished:  # an interrupt must reach the workers at once
         for chunk, results in finished:
@@ -301,18 +300,16 @@ def _list_looks(gathered: ExtractedFacts) -> list[ExtractedFacts]:
     return [gathered] if gathered.second is None else [gathered, gathered.second]
 
 
-def _iterate_chunks(
+def _iterate_items(
     gathered: ExtractedFacts,
     unread: list[_Unread],
     paths_of: dict[tuple[str, str], list[tuple[ExtractedFacts, str]]],
     advance: Callable[[int], None],
-) -> Iterator[list[_Item]]:
-    """Reads files as they are needed and yields those whose content has no facts yet, about _CHUNK_BYTES at a time."""
+) -> Iterator[_Item]:
+    """Reads files as they are needed and yields those whose content has no facts yet."""
     looks = _list_looks(gathered)
     seen: set[tuple[str, str]] = set()
-    chunk: list[_Item] = []
-    size = 0
-    for batch in _iterate_batches(unread):
+    for batch in _iterate_batches(unread, lambda file: file[0]):
         rows: set[bytes] = set()
         items: list[tuple[str, str, dict[str, bytes], bytes]] = []
         for expected, path, those in batch:
@@ -344,21 +341,16 @@ def _iterate_chunks(
             if not lacking:
                 advance(len(data))
                 continue
-            chunk.append((path, content, lacking, data))
-            size += len(data)
-            if size >= _CHUNK_BYTES:
-                yield chunk
-                chunk, size = [], 0
-    if chunk:
-        yield chunk
+            yield path, content, lacking, data
 
 
-def _iterate_batches(unread: list[_Unread]) -> Iterator[list[_Unread]]:
-    batch: list[_Unread] = []
+def _iterate_batches(files: Iterable[_T], size_of: Callable[[_T], int]) -> Iterator[list[_T]]:
+    """Files, read or not, about _CHUNK_BYTES at a time."""
+    batch: list[_T] = []
     size = 0
-    for file in unread:
+    for file in files:
         batch.append(file)
-        size += file[0]
+        size += size_of(file)
         if size >= _CHUNK_BYTES:
             yield batch
             batch, size = [], 0

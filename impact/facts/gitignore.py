@@ -1,7 +1,5 @@
 """A .gitignore file to its patterns, as gitignore(5) defines them."""
 
-from __future__ import annotations
-
 import msgspec
 
 from .markup import decode

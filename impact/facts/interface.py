@@ -1,7 +1,5 @@
 """msg, srv, action and IDL definitions to facts."""
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

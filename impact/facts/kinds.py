@@ -1,7 +1,5 @@
 """Which extractor reads a file, told by its name; the one entry to all extractors, and facts as bytes for the store."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from functools import cache

@@ -1,7 +1,5 @@
 """package.xml to facts: places from our own scan, the verdict on what is out of the ordinary from catkin_pkg."""
 
-from __future__ import annotations
-
 import re
 
 import msgspec

@@ -4,8 +4,6 @@ Expat says whether a file is well-formed; the elements come from a single scan o
 forgotten closing tag does not stop. Entities that a file defines are neither expanded nor fetched.
 """
 
-from __future__ import annotations
-
 import codecs
 import re
 from bisect import bisect_right
@@ -59,10 +57,7 @@ class Element(msgspec.Struct, eq=False):
 
     def get(self, name: str, default: str = "") -> str:
         """Value of an attribute, default when it is not there."""
-        for attribute in self.attributes:
-            if attribute.name == name:
-                return attribute.value
-        return default
+        return next((attribute.value for attribute in self.attributes if attribute.name == name), default)
 
 
 class Document:

@@ -3,8 +3,6 @@
 Most files have nothing of what a table describes, and their facts tell so; those that may have it are read again.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 

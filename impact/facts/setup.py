@@ -1,7 +1,5 @@
 """setup.py, setup.cfg and pyproject.toml to facts: what an ament_python or catkin package installs."""
 
-from __future__ import annotations
-
 import ast
 import posixpath
 import re
@@ -67,6 +65,7 @@ REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)")
 ENTRY_POINT = re.compile(r"\s*([^=\s][^=]*)=\s*([\w.]+)(?:\s*:\s*([\w.]+))?(?:\s*\[.*\])?\s*\Z")
 # What each command of setuptools calls the folder that it installs programs into.
 _FOLDER_OPTIONS = {"install": "install_scripts", "develop": "script_dir"}
+_GROUPS = ("console_scripts", "gui_scripts")
 SETUP_CALLS = frozenset({"setup", "generate_distutils_setup"})
 
 
@@ -154,77 +153,71 @@ class _Reader(Constants):
         )
 
     def list_strings(self, argument: str) -> list[str]:
-        """A list argument's strings; the rest is noted as unresolved."""
+        """A list argument's strings."""
         value = self.arguments.get(argument)
-        found: list[str] = []
-        stack = [value] if value is not None else []
-        while stack:
-            item = stack.pop(0)
-            if isinstance(item, str):
-                found.append(str(item))
-            elif isinstance(item, list):
-                stack[:0] = item
-            elif isinstance(item, UnknownValue):
-                self.unresolved.append(f"{argument}: {item.what}")
-        return found
+        return [str(text) for text in self.iterate_strings(argument, value)] if value is not None else []
+
+    def iterate_strings(self, argument: str, value: Any) -> Iterator[str]:
+        """The strings of a value, in lists at any depth; what is not known is noted as unresolved."""
+        if isinstance(value, str):
+            yield value
+        for item in value if isinstance(value, list) else ():
+            yield from self.iterate_strings(argument, item)
+        self.note_unknown(argument, value)
+
+    def note_unknown(self, argument: str, value: Any) -> None:
+        if isinstance(value, UnknownValue):
+            self.unresolved.append(f"{argument}: {value.what}")
 
     def list_entry_points(self, value: Any) -> list[tuple[str, str, int, str]]:
         found: list[tuple[str, str, int, str]] = []
         if isinstance(value, str):
-            line = getattr(value, "line", 1)
+            line = _find_line(value)
             group = ""
             for number, text in enumerate(value.split("\n")):
                 opened = re.match(r"\s*\[([\w.-]+)\]", text)
                 if opened is not None:
                     group = opened.group(1)
-                elif group in ("console_scripts", "gui_scripts") and (entry := ENTRY_POINT.match(text)):
-                    found.append((entry[1].rstrip(), entry[2], line + number, entry[3] or ""))
+                elif group in _GROUPS:
+                    found += _parse_entry_point(text, line + number)
         elif isinstance(value, dict):
-            for group in ("console_scripts", "gui_scripts"):
-                entries = value.get(group, [])
-                for item in entries if isinstance(entries, list) else [entries]:
-                    if isinstance(item, UnknownValue):
-                        self.unresolved.append(f"entry_points: {item.what}")
-                    elif isinstance(item, str) and (entry := ENTRY_POINT.match(item)):
-                        found.append((entry[1].rstrip(), entry[2], getattr(item, "line", 1), entry[3] or ""))
-        elif isinstance(value, UnknownValue):
-            self.unresolved.append(f"entry_points: {value.what}")
+            for text in (text for group in _GROUPS for text in self.iterate_strings("entry_points", value.get(group))):
+                found += _parse_entry_point(text, _find_line(text))
+        self.note_unknown("entry_points", value)
         return found
 
     def list_script_folders(self, value: Any) -> Iterator[tuple[str, str, int]]:
         """Of setup(options={"install": {"install_scripts": ...}})."""
-        if isinstance(value, UnknownValue):
-            self.unresolved.append(f"options: {value.what}")
-        if not isinstance(value, dict):
-            return
-        for command, option in _FOLDER_OPTIONS.items():
+        self.note_unknown("options", value)
+        for command, option in _FOLDER_OPTIONS.items() if isinstance(value, dict) else ():
             options = value.get(command)
             folder = options.get(option) if isinstance(options, dict) else options
             if isinstance(folder, str):
-                yield command, str(folder), getattr(folder, "line", 1)
-            elif isinstance(folder, UnknownValue):
-                self.unresolved.append(f"options: {folder.what}")
+                yield command, str(folder), _find_line(folder)
+            self.note_unknown("options", folder)
 
-    def list_data_files(self, value: Any) -> list[tuple[str, str, int]]:
-        found: list[tuple[str, str, int]] = []
+    def list_data_files(self, value: Any) -> Iterator[tuple[str, str, int]]:
         for item in value if isinstance(value, list) else [value]:
-            if isinstance(item, UnknownValue):
-                self.unresolved.append(f"data_files: {item.what}")
+            self.note_unknown("data_files", item)
             if not isinstance(item, list) or len(item) != 2:
                 continue
             destination, files = item
-            if not isinstance(destination, str):
+            if isinstance(destination, str):
+                for file in self.iterate_strings("data_files", files):
+                    yield str(destination), str(file), _find_line(file)
+            else:
                 what = destination.what if isinstance(destination, UnknownValue) else "a destination"
                 self.unresolved.append(f"data_files: {what}")
-                continue
-            for file in files if isinstance(files, list) else [files]:
-                if isinstance(file, str):
-                    found.append((str(destination), str(file), getattr(file, "line", 1)))
-                elif isinstance(file, UnknownValue):
-                    self.unresolved.append(f"data_files: {file.what}")
-                elif isinstance(file, list):
-                    found.extend((str(destination), str(f), getattr(f, "line", 1)) for f in file if isinstance(f, str))
-        return found
+
+
+def _find_line(text: str) -> int:
+    return getattr(text, "line", 1)
+
+
+def _parse_entry_point(text: str, line: int) -> list[tuple[str, str, int, str]]:
+    """The entry point that a text is, none where it is none."""
+    found = ENTRY_POINT.match(text)
+    return [(found[1].rstrip(), found[2], line, found[3] or "")] if found is not None else []
 
 
 def _parse_requirements(texts: Iterable[str]) -> list[str]:
@@ -269,11 +262,8 @@ def _read_setup_cfg(data: bytes) -> SetupFile:
     for entry in list_entries("options", "package_dir"):
         key, _, value = entry.partition("=")
         directories[key.strip()] = value.strip()
-    points: list[tuple[str, str, int, str]] = []
-    for group in ("console_scripts", "gui_scripts"):
-        for entry in list_entries("options.entry_points", group):
-            if (found := ENTRY_POINT.match(entry)) is not None:
-                points.append((found[1].rstrip(), found[2], lines.find_line(entry), found[3] or ""))
+    entries = [entry for group in _GROUPS for entry in list_entries("options.entry_points", group)]
+    points = [point for entry in entries for point in _parse_entry_point(entry, lines.find_line(entry))]
     files: list[tuple[str, str, int]] = []
     if parser.has_section("options.data_files"):
         for destination in parser.options("options.data_files"):

@@ -3,8 +3,6 @@
 Nothing is resolved: types are as written, brought into one form, so that reformatting a header changes nothing here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator
 
 import msgspec

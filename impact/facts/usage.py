@@ -4,8 +4,6 @@ The tables of known changes say how such a use looks. Here it is looked for in t
 literals are blanked; nothing is resolved, so a pattern has to be particular enough to mean one thing.
 """
 
-from __future__ import annotations
-
 import hashlib
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """The words of a file: what tells cheaply that it cannot have what is looked for."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection
 

@@ -1,7 +1,5 @@
 """What happened to publishing between a commit and its parent: statement by statement, publisher by publisher."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple

@@ -1,7 +1,5 @@
 """Functions whose code differs between two states: comments, white space and what is only logged play no part."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping

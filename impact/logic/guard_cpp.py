@@ -1,7 +1,5 @@
 """C++ conditions to terms, with tree-sitter. Whatever is not understood is opaque; nothing raises."""
 
-from __future__ import annotations
-
 import re
 from functools import lru_cache
 from typing import Any
@@ -21,6 +19,7 @@ from .guard_terms import (
     compare,
     join,
     make_member,
+    make_opaque,
     negate,
     parse_number,
     split_owner,
@@ -56,7 +55,8 @@ def parse_condition(text: str, holds: bool) -> GuardReading:
     reader = _Reader(text)
     node = reader.find_clause()
     if node is None:
-        return GuardReading((make_opaque_piece(text, holds),))
+        term = make_opaque(text)
+        return GuardReading((Conjunct(text if holds else f"!({text})", term if holds else negate(term)),))
     return build_reading(reader.split_pieces(node, holds), reader.names)
 
 
@@ -75,19 +75,10 @@ def parse_directive(text: str, holds: bool) -> GuardReading:
     return parse_condition(text, holds)
 
 
-def make_opaque(text: str) -> Term:
-    return Term("opaque", " ".join(text.split()))
-
-
 def make_caught_term(declared: str) -> Term:
     """That an exception was caught, whatever the variable is called and the namespace is."""
     match = _CAUGHT.fullmatch(" ".join(declared.split()))
     return Term("opaque", f"catch {match[1] if match else ' '.join(declared.split())}")
-
-
-def make_opaque_piece(text: str, holds: bool) -> Conjunct:
-    term = make_opaque(text)
-    return Conjunct(text if holds else f"!({text})", term if holds else negate(term))
 
 
 def loop(head: str) -> GuardReading:

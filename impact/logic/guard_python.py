@@ -1,12 +1,11 @@
 """Python conditions to terms. Whatever is not understood is opaque; nothing raises."""
 
-from __future__ import annotations
-
 import ast
 import re
 import warnings
 
 from ...edges.dispatch import collect_node_methods
+from ..facts.python.text import SIGNS
 from .guard_terms import (
     DEEPEST,
     FALSE,
@@ -21,15 +20,12 @@ from .guard_terms import (
     compare,
     join,
     make_member,
+    make_opaque,
     negate,
     parse_number,
 )
 
 _COMPARED = {ast.Eq: "==", ast.NotEq: "!=", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
-_OPERATORS = {
-    ast.Div: "/", ast.FloorDiv: "//", ast.Mod: "%", ast.Pow: "**", ast.LShift: "<<", ast.RShift: ">>", ast.BitOr: "|",
-    ast.BitAnd: "&", ast.BitXor: "^", ast.MatMult: "@", ast.Add: "+", ast.Sub: "-", ast.Mult: "*",
-}  # fmt: skip
 _MOST_MEMBERS = 50
 
 
@@ -38,7 +34,8 @@ def parse_condition(text: str, holds: bool) -> GuardReading:
     reader = _Reader()
     node = parse_tree(text)
     if node is None:
-        return GuardReading((make_opaque_piece(text, holds),))
+        term = make_opaque(text)
+        return GuardReading((Conjunct(text if holds else f"not ({text})", term if holds else negate(term)),))
     return build_reading(reader.split_pieces(node, holds), reader.names)
 
 
@@ -46,15 +43,6 @@ def parse_expression(text: str) -> Term:
     """The term of an expression."""
     node = parse_tree(text)
     return make_opaque(text) if node is None else _Reader().parse_term(node, 0)
-
-
-def make_opaque(text: str) -> Term:
-    return Term("opaque", " ".join(text.split()))
-
-
-def make_opaque_piece(text: str, holds: bool) -> Conjunct:
-    term = make_opaque(text)
-    return Conjunct(text if holds else f"not ({text})", term if holds else negate(term))
 
 
 def parse_tree(text: str) -> ast.expr | None:
@@ -214,10 +202,7 @@ class _Reader:
         return join("or", [compare("==", left, self.parse_term(part, depth)) for part in listed])
 
     def read_BinOp(self, node: ast.BinOp, depth: int) -> Term:
-        operands, sign = (
-            (self.parse_term(node.left, depth), self.parse_term(node.right, depth)),
-            _OPERATORS[type(node.op)],
-        )
+        operands, sign = (self.parse_term(node.left, depth), self.parse_term(node.right, depth)), SIGNS[type(node.op)]
         return Term(sign, "", operands) if sign in ("+", "-", "*") else Term("op", sign, operands)
 
     def read_IfExp(self, node: ast.IfExp, depth: int) -> Term:

@@ -1,7 +1,5 @@
 """What each kind of guard says, as pieces that must all hold."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """Names that were renamed between two revisions of a text, as far as that is beyond doubt."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Iterable

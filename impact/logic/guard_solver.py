@@ -5,8 +5,6 @@ floating point alike (NaN and overflow aside). That one does *not* hold is belie
 negative, show it too, wherever the terms could be of such a type. What lies between these two is not decided.
 """
 
-from __future__ import annotations
-
 import contextlib
 import re
 from collections.abc import Callable, Iterable, Iterator

@@ -70,6 +70,11 @@ _LARGEST_EXPONENT = 99
 _LARGEST = 500
 
 
+def make_opaque(text: str) -> Term:
+    """What is not understood, as written."""
+    return Term("opaque", " ".join(text.split()))
+
+
 def join(kind: str, parts: Iterable[Term]) -> Term:
     """`and` or `or` of some terms, in a fixed order and each but once."""
     flat: set[Term] = set()

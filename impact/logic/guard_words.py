@@ -1,7 +1,5 @@
 """In words, what guards ask for that they did not, and what they ask for no longer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from itertools import takewhile
 
@@ -32,15 +30,13 @@ def describe_change(before: Sequence[Conjunct], after: Sequence[Conjunct], asked
     if len(removed) == len(added) == 1 and not clauses and _is_block(added[0]) == _is_block(removed[0]):
         return _describe_replacement(removed[0], added[0])
     more = " too" if before else ""
-    for place, pieces in (("when", [p for p in added if not _is_block(p)]), ("inside", list(filter(_is_block, added)))):
-        if pieces:
-            clauses.append(f"only {place} {_format_pieces(pieces)}{more}")
-    for place, pieces in (
-        ("asks for", [piece for piece in removed if not _is_block(piece)]),
-        ("inside", list(filter(_is_block, removed))),
+    for words, pieces, end in (
+        ("only when", [piece for piece in added if not _is_block(piece)], more),
+        ("only inside", list(filter(_is_block, added)), more),
+        ("no longer asks for", [piece for piece in removed if not _is_block(piece)], ""),
+        ("no longer inside", list(filter(_is_block, removed)), ""),
     ):
-        if pieces:
-            clauses.append(f"no longer {place} {_format_pieces(pieces)}")
+        clauses += [f"{words} {_format_pieces(pieces)}{end}"] if pieces else []
     return ", ".join(clauses)
 
 

@@ -8,8 +8,6 @@ the two conditions. That calls have effects and that variables are assigned betw
 guards would then contradict each other: nothing but what stands in both is then known of them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, NamedTuple
 

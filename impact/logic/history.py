@@ -1,7 +1,5 @@
 """The commits of a repository and the packages of each, read from git's objects; nothing is checked out."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import os
@@ -112,7 +110,10 @@ class CommitHistory:
         first, hidden = self._commit(end.lstrip(".") or "HEAD"), self._commit(start or "HEAD") if dots else None
         found: list[Commit] = []
         try:
-            for commit in self._make_walker(first, hidden):
+            walker = self.repo.walk(first, pygit2.enums.SortMode.TOPOLOGICAL | pygit2.enums.SortMode.TIME)
+            if hidden is not None:
+                walker.hide(hidden)
+            for commit in walker:
                 parents = commit.parent_ids
                 if len(parents) > 1 or (oldest is not None and commit.commit_time < oldest):
                     continue
@@ -125,14 +126,6 @@ class CommitHistory:
             reason = shown(" ".join(str(error).split()))
             raise TreeError(f"the history of {self.name} cannot be read: {reason}; `git fsck` says more") from None
         return found
-
-    def _make_walker(self, first, hidden):
-        import pygit2
-
-        walker = self.repo.walk(first, pygit2.enums.SortMode.TOPOLOGICAL | pygit2.enums.SortMode.TIME)
-        if hidden is not None:
-            walker.hide(hidden)
-        return walker
 
     def _commit(self, revision: str):
         import pygit2
@@ -259,14 +252,10 @@ class CommitHistory:
     def _is_python(self, blob) -> bool:
         return kinds.find_script_kind(self.read(blob)[:512]) == "python"
 
-    def read_blob(self, blob) -> bytes:
-        """The bytes of a file. Raises OSError where the object is missing (a partial clone), damaged or too large."""
-        return self.tree.read_blob(blob)
-
     def read(self, blob) -> bytes:
-        """The same; none where it cannot be read."""
+        """The bytes of a file; none where the object is missing (a partial clone), damaged or too large."""
         with contextlib.suppress(OSError):
-            return self.read_blob(blob)
+            return self.tree.read_blob(blob)
         return b""
 
     def find_renames(self, parent: str, commit: str) -> dict[str, str]:

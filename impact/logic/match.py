@@ -1,9 +1,7 @@
 """Which publish statement of one revision is which of the next: they move, and what they stand in is renamed."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 from ..model.flow.code import get_outer, get_tail
@@ -11,7 +9,6 @@ from .statements import Outlet, PackageStatements, Said
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _ENOUGH = 9
-_PLAIN: Mapping[str, str] = {}
 _T = TypeVar("_T")
 
 
@@ -46,8 +43,8 @@ class OutletAt(NamedTuple):
 class Renames(NamedTuple):
     """What is called otherwise in the new revision. words: identifiers; files: paths of the repository."""
 
-    words: Mapping[str, str] = _PLAIN
-    files: Mapping[str, str] = _PLAIN
+    words: Mapping[str, str] = {}
+    files: Mapping[str, str] = {}
 
     def map_text(self, text: str) -> str:
         """A text of the old revision in the words of the new one."""
@@ -67,29 +64,48 @@ def match_statements(
 ) -> tuple[list[tuple[StatementPlace, StatementPlace]], list[StatementPlace], list[StatementPlace]]:
     """(pairs, gone, come). Statements that stand where they stood, as they did, are matched first; then those that have
     most in common, unless that is too little."""
-    pairs: list[tuple[StatementPlace, StatementPlace]] = []
-    for key in (_make_exact_key, _make_near_key):
-        found, old, new = _is_equal(old, new, key, names)
-        pairs += found
-    found, gone, come = _pair_closest(
-        old, new, lambda one, other: _score(one, other, names), lambda one, other: abs(one.said.line - other.said.line)
-    )
-    return pairs + found, gone, come
+    keys = _make_exact_key, _make_near_key
+    return _match(old, new, names, keys, _score, lambda one, other: abs(one.said.line - other.said.line))
 
 
-def match_outlets(
-    old: Sequence[OutletAt], new: Sequence[OutletAt], names: Renames
-) -> list[tuple[OutletAt, OutletAt]]:
+def match_outlets(old: Sequence[OutletAt], new: Sequence[OutletAt], names: Renames) -> list[tuple[OutletAt, OutletAt]]:
     """Pairs of publishers that are the same one; those that are new or gone are in none."""
-    pairs: list[tuple[OutletAt, OutletAt]] = []
-    for key in (_make_outlet_key, _make_outlet_place_key):
-        found, old, new = _is_equal(old, new, key, names)
+    return _match(old, new, names, (_make_outlet_key, _make_outlet_place_key), _score_outlets, lambda *_: 0)[0]
+
+
+def _match(
+    old: Sequence[_T],
+    new: Sequence[_T],
+    names: Renames,
+    keys: Iterable[Callable[[_T, Renames], tuple]],
+    score: Callable[[_T, _T, Renames], int],
+    apart: Callable[[_T, _T], int],
+) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
+    """Pairs that have a key in common, one key after the other; of the rest those that are most alike, of equals the
+    least apart. And what is left of both."""
+    pairs: list[tuple[_T, _T]] = []
+    for key in keys:
+        found, old, new = _pair_equal(old, new, key, names)
         pairs += found
-    found, _, _ = _pair_closest(old, new, lambda one, other: _score_outlets(one, other, names), lambda *_: 0)
-    return pairs + found
+    scored = sorted(
+        (-points, apart(one, other), first, second)
+        for first, one in enumerate(old)
+        for second, other in enumerate(new)
+        if (points := score(one, other, names)) >= _ENOUGH
+    )
+    taken_old: set[int] = set()
+    taken_new: set[int] = set()
+    for _, _, first, second in scored:
+        if first not in taken_old and second not in taken_new:
+            taken_old.add(first)
+            taken_new.add(second)
+            pairs.append((old[first], new[second]))
+    gone = [one for place, one in enumerate(old) if place not in taken_old]
+    come = [one for place, one in enumerate(new) if place not in taken_new]
+    return pairs, gone, come
 
 
-def _is_equal(
+def _pair_equal(
     old: Sequence[_T], new: Sequence[_T], key: Callable[[_T, Renames], tuple], names: Renames
 ) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
     """Pairs of one key, in their order; and what is left of both."""
@@ -106,29 +122,6 @@ def _is_equal(
             left.append(one)
     unmatched = {id(one) for same in waiting.values() for one in same}
     return pairs, left, [one for one in new if id(one) in unmatched]
-
-
-def _pair_closest(
-    old: Sequence[_T], new: Sequence[_T], alike: Callable[[_T, _T], int], apart: Callable[[_T, _T], int]
-) -> tuple[list[tuple[_T, _T]], list[_T], list[_T]]:
-    """Pairs of those that are most alike; of equals, the least apart. And what is left of both."""
-    scored = sorted(
-        (-score, apart(one, other), first, second)
-        for first, one in enumerate(old)
-        for second, other in enumerate(new)
-        if (score := alike(one, other)) >= _ENOUGH
-    )
-    taken_old: set[int] = set()
-    taken_new: set[int] = set()
-    pairs: list[tuple[_T, _T]] = []
-    for _, _, first, second in scored:
-        if first not in taken_old and second not in taken_new:
-            taken_old.add(first)
-            taken_new.add(second)
-            pairs.append((old[first], new[second]))
-    gone = [one for place, one in enumerate(old) if place not in taken_old]
-    come = [one for place, one in enumerate(new) if place not in taken_new]
-    return pairs, gone, come
 
 
 def collect_conditions(said: Said, names: Renames = SAME) -> frozenset[tuple]:

@@ -3,8 +3,6 @@
 A condition that was given a name, or moved into a function that returns it, is then the same condition as before.
 """
 
-from __future__ import annotations
-
 import re
 
 from ...edges.memory import cache_method

@@ -336,7 +336,7 @@ def _load_facts(
     fresh: list[tuple[bytes, bytes]] = []
     for row, (content, kind) in missing.items():
         try:
-            source = history.read_blob(content)
+            source = history.tree.read_blob(content)
         except OSError:
             continue  # what is known of a content is of its bytes
         processes.begin_part(0, len(source))

@@ -1,8 +1,6 @@
 """What a package says of publishing, in short: its publish statements with all that decides when they run, its
 publishers and its subscribers. Small enough to be kept for every commit of a repository's life."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Two states of some packages compared, wherever their files are from; and digests as they are kept."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache

@@ -3,8 +3,6 @@
 It is the comparison that `logic` makes of a commit and its parent, on workspaces instead of commits.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache

@@ -27,17 +27,9 @@ def format_lines(finding: Finding) -> list[tuple[str, str]]:
 def make_object(evidence: Evidence) -> dict[str, Any]:
     """The evidence as findings.schema.json describes it."""
     data: dict[str, Any] = {"package": evidence.package, "change": evidence.change}
-    for key, value in (
-        ("name", evidence.name),
-        ("instead", evidence.instead),
-        ("old", list(evidence.old)),
-        ("new", list(evidence.new)),
-        ("last", evidence.last),
-        ("first", evidence.first),
-        ("source", evidence.source),
-    ):
-        if value:
-            data[key] = value
+    for key in ("name", "instead", "old", "new", "last", "first", "source"):
+        if value := getattr(evidence, key):
+            data[key] = list(value) if isinstance(value, tuple) else value
     data["targets"] = [
         {"target": one.target, "version": one.version, "holds": one.holds} | ({"since": one.since} if one.since else {})
         for one in evidence.targets

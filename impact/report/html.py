@@ -53,9 +53,10 @@ def _build_impact(report: Report) -> dict[str, Any] | None:
     """What the change reaches: a summary, and change, subject, place, why and reached nodes of each; None without."""
     if report.impact is None or not report.impact.effects:
         return None
-    from .impact import collect_node_names, summarize
+    from ..model.flow.connections import name_nodes
+    from .impact import summarize
 
-    names = collect_node_names(report.impact)
+    names = name_nodes(report.impact.nodes)
     rows = []
     for effect in report.impact.effects[:_MOST_EFFECTS]:
         near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in effect.reaches))

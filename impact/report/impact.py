@@ -9,6 +9,7 @@ import msgspec
 
 from ...edges.console import format_count, format_json
 from ..analysis.downstream import KINDS, Effect, Hop, Impact, ImpactResult
+from ..model.flow.connections import name_nodes
 from .columns import LinePart, lay_out
 from .graph.text import WIDE, render_coverage
 from .markdown_text import escape_markdown, quote
@@ -30,7 +31,7 @@ _HEADS = {
 def render_text(impact: Impact, everything: bool = False, style: Style = WIDE) -> str:
     """The changes by kind, each with what it reaches as a tree, nearest first. everything: nothing is cut."""
     lines: list[str] = []
-    names = collect_node_names(impact)
+    names = name_nodes(impact.nodes)
     for kind, same in groupby(group_effects(impact.effects), key=lambda group: group[0].kind):
         lines += [*([""] if lines else []), paint(style, "bold", _HEADS[kind])]
         for group in same:
@@ -55,12 +56,6 @@ def summarize(impact: Impact) -> str:
     counts = Counter(effect.kind for effect in impact.effects)
     told = ", ".join(format_count(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
     return f"{told} changed; {format_count(len(impact.reached), 'node')} of {impact.of:,} reached{silent}"
-
-
-def collect_node_names(impact: Impact) -> dict[str, str]:
-    """How nodes are called for people, by id: the name in the system where one node alone has it."""
-    count = Counter(node.name for node in impact.nodes)
-    return {node.id: node.name if node.name and count[node.name] == 1 else node.id for node in impact.nodes}
 
 
 def group_effects(effects: Iterable[Effect]) -> list[list[Effect]]:
@@ -136,7 +131,7 @@ def _render_tree(effect: Effect, names: dict[str, str], everything: bool, style:
 def render_short(impact: Impact, style: Style, base: str = "", most: int = _MOST_EFFECTS) -> list[str]:
     """Lines for the end of another report: each change with the nearest nodes that it reaches. most: as many changes;
     base: what it is compared with."""
-    names = collect_node_names(impact)
+    names = name_nodes(impact.nodes)
     lines: list[str] = []
     for group in group_effects(impact.effects)[:most]:
         for effect in group[:_MOST_NODES]:
@@ -171,7 +166,7 @@ def _explain_none(effect: Effect) -> str:
 
 def render_markdown(impact: Impact) -> str:
     """The same in short, for a comment: a line for each change."""
-    names = collect_node_names(impact)
+    names = name_nodes(impact.nodes)
     rows = []
     for effect in impact.effects[:_MOST_EFFECTS]:
         near = [names.get(hop.node, hop.node) for hop in effect.reaches]

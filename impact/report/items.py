@@ -1,7 +1,5 @@
 """Things to do, as text and as data: one cause in one package, with all its places."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any
 

@@ -59,11 +59,6 @@ def dump_json(data: dict[str, Any]) -> str:
     return format_json(data) + "\n"
 
 
-def render_failure(version: str, data: str, message: str) -> str:
-    """Valid JSON for a run that failed before it had anything to report."""
-    return render(Report(version, data, (), (), Coverage(), failure=message))
-
-
 def render_schema() -> str:
     """The published JSON schema as text (draft 2020-12)."""
     return Path(__file__).with_name("findings.schema.json").read_text(encoding="utf-8")

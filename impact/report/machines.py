@@ -1,7 +1,5 @@
 """What differs between two machines, as text and JSON (see envdiff.schema.json)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -49,8 +47,7 @@ def _render_versions(found: Machines, style: Style) -> Iterator[str]:
     )
     # No name begins a line: CI systems read what is there.
     rows = [
-        (f"  {escape(each.name)}", escape(each.first or "-"), escape(each.second or "-"))
-        for each, _ in found.versions
+        (f"  {escape(each.name)}", escape(each.first or "-"), escape(each.second or "-")) for each, _ in found.versions
     ]
     widths = [max(measure(row[place]) for row in (head, *rows)) for place in range(3)]
 

@@ -10,6 +10,8 @@ from .markdown_text import _LONGEST, escape_markdown, quote
 
 _LINES = 10
 _SYMBOL = {"error": "❌", "warning": "⚠️", "note": "💡"}
+
+
 def render(report: Report) -> str:
     """Markdown of at most ten lines: the verdict by target, the worst findings, what they rest on."""
     findings = list_new(report)
@@ -85,5 +87,3 @@ def _render_tail(report: Report, findings: list[Finding]) -> str:
     parts += [f"{len(report.known):,} in the baseline"] if report.known else []
     parts.append(f"rosimpact {escape_markdown(report.version)}, data of {escape_markdown(report.data)}")
     return " · ".join(parts)
-
-

@@ -7,7 +7,8 @@ from urllib.parse import quote
 
 from ...edges.console import escape, escape_bytes_in_json, escape_json
 from ..analysis.report import Report, locate_in_excerpt
-from ..rules.rule import Edit, Finding, Rule
+from ..rules.fix_actions import Edit
+from ..rules.rule import Finding, Rule
 from . import evidence
 from .json import build_target_data
 

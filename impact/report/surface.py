@@ -193,9 +193,6 @@ def _dump_json(value: Any) -> str:
     return format_json(msgspec.to_builtins(value)) + "\n"
 
 
-_NONE: Mapping[str, str] = {}
-
-
 class OfferedItem(NamedTuple):
     """Something that a package offers. part: Interfaces, C++, Python, CMake or Programs. where: header or file.
     deprecated: None for what is not."""
@@ -258,7 +255,7 @@ def iterate_items(surface: Surface, hashes: Mapping[str, str]) -> Iterator[Offer
 
 
 def show_text(
-    surface: Surface, source: VersionSource, style: Style, everything: bool, hashes: Mapping[str, str] = _NONE
+    surface: Surface, source: VersionSource, style: Style, everything: bool, hashes: Mapping[str, str] = {}
 ) -> str:
     """What a package offers, for people. everything: members of classes, constants and macros too. hashes: see
     items()."""
@@ -300,7 +297,7 @@ _DETAILS = frozenset(("method", "field", "constructor", "destructor", "conversio
 _WRITTEN = FUNCTIONS | {"class", "struct", "union", "enum", "alias", "variable", "macro"}
 
 
-def show_json(surface: Surface, source: VersionSource, tool: str, hashes: Mapping[str, str] = _NONE) -> str:
+def show_json(surface: Surface, source: VersionSource, tool: str, hashes: Mapping[str, str]) -> str:
     """What a package offers as JSON: `tool`, `source` (see Source), `package`, `items` (see Item), `unknown`."""
     return _dump_json({
         "tool": tool,
@@ -314,7 +311,7 @@ def show_json(surface: Surface, source: VersionSource, tool: str, hashes: Mappin
     })  # fmt: skip
 
 
-def show_markdown(surface: Surface, source: VersionSource, hashes: Mapping[str, str] = _NONE) -> str:
+def show_markdown(surface: Surface, source: VersionSource, hashes: Mapping[str, str]) -> str:
     """What a package offers as a table."""
     lines = [f"## {escape_markdown(surface.package)} {escape_markdown(_shorten(source))}", ""]
     lines += ["| what | name | declaration |", "|---|---|---|"]

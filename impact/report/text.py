@@ -19,6 +19,8 @@ from . import evidence
 from .style import PLAIN, Style, paint
 
 _TAB = "    "
+
+
 def render(report: Report, style: Style = PLAIN) -> str:
     """The report as text that ends in a line end."""
     lines = _render_targets(report, style)

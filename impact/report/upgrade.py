@@ -1,7 +1,5 @@
 """What an upgrade breaks, as text, JSON (see upgrade.schema.json) and a page."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any

@@ -5,10 +5,8 @@ from typing import NamedTuple
 
 from ..facts.condition import Condition
 from ..model.package import ImportUse, SyntaxUse
-from ..model.view import TargetView
-from ..model.workspace import Package
 from ..targets.distro.distro import DistroTarget
-from .rule import Diagnostic, Doubt, Upcoming, list_place_doubts, rate_upcoming
+from .vocabulary import Diagnostic, Doubt, Package, TargetView, Upcoming, list_place_doubts, rate_upcoming
 
 
 class Refused(NamedTuple):
@@ -36,8 +34,8 @@ def report_refused(
             return
         target = ahead.target
     for package in view if target.python else ():
-        if _brings_python(package):
-            continue
+        if any(use.kind == "command" and "virtualenv" in use.name for use in package.build.uses):
+            continue  # a build that makes a virtual environment chooses its Python itself
         found: list[Diagnostic | Upcoming] = []
         for refused in find(package, target):
             use = refused.use
@@ -50,8 +48,3 @@ def report_refused(
             elif view.is_active_on(ahead, refused.conditions):
                 found.append(Upcoming(one, "python", ahead, (use.at.path, use.at.line)))
         yield from rate_upcoming(found)
-
-
-def _brings_python(package: Package) -> bool:
-    """Whether the build of a package makes a virtual environment, whose Python it chooses itself."""
-    return any(use.kind == "command" and "virtualenv" in use.name for use in package.build.uses)

@@ -34,7 +34,7 @@ It yields diagnostics: data, not text. What differs between targets (a version, 
 each target; they become one finding, and its text is rendered from the templates of the rule when all are known.
 """
 
-from __future__ import annotations
+from __future__ import annotations  # docs/queries.md shows types by the names they have here
 
 import importlib
 import pkgutil
@@ -44,16 +44,10 @@ from functools import cache
 from typing import Any, Literal, NamedTuple
 
 from ..targets.evidence_record import Evidence
-from .fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
-from .severity import SEVERITIES, Doubt, Together, limit_severity, list_place_doubts
+from .fix_actions import FixAction
+from .severity import SEVERITIES, Doubt, Together, limit_severity
 from .text import Text, Value
 from .upcoming import Upcoming, rate_upcoming
-
-__all__ = [
-    "SEVERITIES", "Declare", "Diagnostic", "Doubt", "Edit", "Finding", "FixAction", "Insert", "Remove", "Replace",
-    "Rule", "Scope", "Text", "Together", "Upcoming", "Value", "group_rules", "limit_severity", "list_place_doubts",
-    "load_rules", "rate_upcoming", "rule",
-]  # fmt: skip
 
 Scope = Literal["package", "target", "workspace", "change", "flow", "flow_change", "install_space", "targets"]
 
@@ -196,7 +190,7 @@ def rule(
         parts = function.__module__.split(".")
         module = importlib.import_module(function.__module__)
         name = parts[-1].replace("_", "-")
-        usual = _lower_severity(severity, doubts)
+        usual = min(severity, limit_severity(*doubts), key=SEVERITIES.index)
         run, called = (_run_on_packages(function), "target") if scope == "package" else (function, scope)
         documentation = _tell_severity(module.__doc__ or "", usual)
         by_kind = {"": texts} if isinstance(texts, Text) else texts
@@ -224,10 +218,6 @@ def _tell_severity(documentation: str, usual: str) -> str:
 
 
 _AFTER_SEVERITY = re.compile(r"\n\n(?:Example|Not reported)\n")
-
-
-def _lower_severity(most: str, doubts: tuple[Doubt, ...]) -> str:
-    return min(most, limit_severity(*doubts), key=SEVERITIES.index)
 
 
 def load_rules() -> dict[str, Rule]:

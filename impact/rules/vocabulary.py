@@ -4,8 +4,8 @@ from ..model.cmake.build import At
 from ..model.view import Need, TargetView, make_sort_key
 from ..model.workspace import Package, Workspace
 from .fix_actions import Declare, FixAction, Insert, Remove, Replace
-from .rule import SEVERITIES, Diagnostic, Finding, rule
-from .severity import Doubt, Together, limit_severity, list_place_doubts
+from .rule import Diagnostic, Finding, rule
+from .severity import SEVERITIES, Doubt, Together, limit_severity, list_place_doubts
 from .text import Text, Value
 from .upcoming import Upcoming, rate_upcoming
 

@@ -214,7 +214,7 @@ class GitTree(Walked):
                 oids.pop()
                 continue
             try:
-                match = self._objects.find_entry(oids[-1], name)
+                match = self._objects.index_folder(oids[-1]).get(name)
             except OSError:
                 match = None
             if match is None:

@@ -1,7 +1,5 @@
 """Several trees under one root, and a workspace at the merge bases of its repositories."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Mapping
 

@@ -1,7 +1,5 @@
 """What every tree answers, and what its answers are made of."""
 
-from __future__ import annotations
-
 import errno
 import hashlib
 import posixpath

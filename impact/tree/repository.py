@@ -5,8 +5,6 @@ at before: each must be a file or a folder, and none but objects and packs may b
 alternates may lead elsewhere, as those of shared clones do: only objects whose id is known can be read through them.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import stat
@@ -330,12 +328,9 @@ class RepositoryObjects:
             raise OSError(errno.EIO, DAMAGED) from None
 
     @cache_method
-    def _index_entries(self, oid: Any) -> dict[str, tuple[int, Any]]:
+    def index_folder(self, oid: Any) -> dict[str, tuple[int, Any]]:
+        """(mode, id) of what a folder has under each name."""
         return {name: (mode, item) for name, mode, item in self.read_folder(oid)}
-
-    def find_entry(self, oid: Any, name: str) -> tuple[int, Any] | None:
-        """(mode, id) of what a folder has under a name."""
-        return self._index_entries(oid).get(name)
 
     @cache_method
     def link(self, oid: Any) -> str:

@@ -1,7 +1,5 @@
 """A directory as it stands."""
 
-from __future__ import annotations
-
 import os
 import stat
 import time

@@ -4,7 +4,8 @@ import pytest
 from rosimpact.impact.analysis.findings import merge_diagnostics
 from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget, SourceLines
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Diagnostic, Edit, Rule
+from rosimpact.impact.rules.fix_actions import Edit
+from rosimpact.impact.rules.rule import Diagnostic, Rule
 from rosimpact.impact.rules.severity import Doubt
 from rosimpact.impact.rules.text import Text
 

@@ -60,7 +60,7 @@ def test_json_follows_the_published_schema(report, schema):
 
 
 def test_json_of_a_failed_run_is_valid(schema):
-    data = json.loads(findings_json.render_failure("0.1.0", "", "there is no folder `x`"))
+    data = json.loads(findings_json.render(Report("0.1.0", "", (), (), Coverage(), failure="there is no folder `x`")))
     schema.validate(data)
     assert data["failure"] == "there is no folder `x`"
     assert data["findings"] == []

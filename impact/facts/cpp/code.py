@@ -4,8 +4,6 @@ The file is parsed when the first question comes, and only as much of it is walk
 means inside a function is found here; all that crosses files is the resolver's.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """A C++ source made ready for its grammar: macros that break the parse are blanked, and no offset moves."""
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_right
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """What C++ functions declare: variables and what they begin with, parameters, and lambdas as functions of their own."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 
 from tree_sitter import Node

@@ -1,7 +1,5 @@
 """The kinds of nodes of the C++ grammar, by number, and what is asked of nodes of any kind."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Callable
 from types import ModuleType

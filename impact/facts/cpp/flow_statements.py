@@ -5,8 +5,6 @@ switch or loop around it), or, where it depends, the conditions under which what
 with `early` set. A jump out of a loop from inside it says nothing about what follows the loop.
 """
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_right
 from collections.abc import Callable

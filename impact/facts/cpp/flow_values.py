@@ -8,8 +8,6 @@ A use of a parameter or local variable is judged by where it stands: a test or a
 Assignment tells what goes on from there; all that is not known to be safe is an `escape`.
 """
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_right
 from collections.abc import Callable
@@ -456,9 +454,7 @@ class FunctionReader:
             self.touch(f"{path}.[]", position)
         return FlowExpr("index", "", (FlowExpr("name", path), index))
 
-    def evaluate_parenthesized_expression(
-        self, node: Node, guard: int, position: str, target: str | None
-    ) -> FlowExpr:
+    def evaluate_parenthesized_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = list_children(node)
         if len(children) != 3:
             return self.visit_anything(node, guard, position, target)

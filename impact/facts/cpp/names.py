@@ -1,7 +1,5 @@
 """Names and types of C++ as text: their parts."""
 
-from __future__ import annotations
-
 import re
 
 _ARGUMENTS = re.compile(r"<[^<>]*>")

@@ -1,7 +1,5 @@
 """Launch files in XML and YAML as one kind of document, so that what reads them need not know which it is."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

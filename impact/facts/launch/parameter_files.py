@@ -1,7 +1,5 @@
 """Files of parameters: the values of a YAML file with their places, in its order; launch files in YAML too."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Any
@@ -10,6 +8,7 @@ import msgspec
 
 from ..markup import decode
 from ..place import Problem
+from ..python.text import drop_surrogates
 
 
 class ParameterEntry(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -120,7 +119,7 @@ def parse_yaml_tree(text: str) -> tuple[YamlNode | None, list[Problem]]:
             if isinstance(event, yaml.ScalarEvent):
                 is_key = bool(levels) and levels[-1][0].kind == "map" and levels[-1][1] is None
                 bare = event.implicit[0] and not is_key
-                value = parse_scalar(event.value) if bare else _clean(event.value)
+                value = parse_scalar(event.value) if bare else drop_surrogates(event.value)
                 if event.tag is not None and not is_key:
                     value = _parse_tagged(event.tag, value)
                 mark = event.start_mark
@@ -171,14 +170,11 @@ def _parse_tagged(tag: str, value: str) -> Any:
     return number
 
 
-def _clean(text: str) -> str:
-    """Text that any encoding of facts can hold: escapes of YAML can write lone surrogates."""
-    return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")
-
-
 def extract(data: bytes | str) -> ParameterFile:
     """The values of a YAML file of parameters. Never raises; what cannot be read is a problem, the rest is kept."""
-    root, problems = parse_yaml_tree(decode(data) if isinstance(data, bytes) else _clean(data).lstrip("\ufeff"))
+    root, problems = parse_yaml_tree(
+        decode(data) if isinstance(data, bytes) else drop_surrogates(data).lstrip("\ufeff")
+    )
     entries: list[ParameterEntry] = []
     budget = [MOST_ENTRIES]
     if root is not None and root.kind == "map":

@@ -4,8 +4,6 @@ The tree is walked as Python would run it, with values that are known, substitut
 what is only known at launch are walked both, and what they add stands under their condition.
 """
 
-from __future__ import annotations
-
 import ast
 import string
 from collections.abc import Iterator, Sequence
@@ -111,7 +109,6 @@ class Walker:
         self.base = 0
         self.calls = 0
         self.steps = 0
-        self.line = 1
 
     def launch(self, tree: ast.Module) -> tuple[tuple[Action, ...], tuple[Problem, ...]]:
         self.walk_block(tree.body)
@@ -609,7 +606,6 @@ class Walker:
 
     def evaluate_Call(self, node: ast.Call) -> Any:
         function = self.evaluate(node.func)
-        self.line = node.lineno
         arguments: list[Any] = []
         for argument in node.args:
             value = self.evaluate(argument)

@@ -1,7 +1,5 @@
 """Launch XML and YAML, xacro, URDF, plugin descriptions, parameter YAML and shell scripts: what they refer to."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from functools import partial

@@ -1,7 +1,5 @@
 """Python sources to facts of message flow: classes, functions, calls and the conditions around them."""
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator
@@ -22,11 +20,8 @@ from .flow_conditions import (
 )
 from .flow_expressions import ANY, Expressions
 from .source import PythonSource, read
+from .text import SIGNS
 
-_OPERATORS = {
-    ast.Add: "+=", ast.Sub: "-=", ast.Mult: "*=", ast.Div: "/=", ast.FloorDiv: "//=", ast.Mod: "%=", ast.Pow: "**=",
-    ast.LShift: "<<=", ast.RShift: ">>=", ast.BitOr: "|=", ast.BitXor: "^=", ast.BitAnd: "&=", ast.MatMult: "@=",
-}  # fmt: skip
 # Calls that never return.
 EXITS = frozenset(("sys.exit", "exit", "quit", "os._exit", "os.abort"))
 # Of `a = b = ...`, each of which repeats the value.
@@ -82,10 +77,7 @@ class PythonStatements(Expressions):
             self.bodies.append(body)
             self.enter(body)
             try:
-                if code.__class__ is list:
-                    self.walk_block(code)  # type: ignore[arg-type]
-                else:
-                    self.give(code)  # type: ignore[arg-type]
+                self.walk_block(code)
             except RecursionError:
                 self.unread.append((body.line, body.end))
                 self.problems.append(Problem(body.line, "nested too deeply"))
@@ -329,12 +321,8 @@ class PythonStatements(Expressions):
     def read_Return(self, node: ast.Return) -> Leaving:
         if node.value is not None:
             value = self.follow(node.value, "escape", "return")
-            self.add_assignment("", value, node.lineno, "return")
+            self.assignments.append(Assignment("", value, node.lineno, self.guard, "", "return"))
         return JUMPS
-
-    def give(self, node: ast.expr) -> None:
-        """The body of a lambda, which is what it returns."""
-        self.add_assignment("", self.follow(node, "escape", "return"), node.lineno, "return")
 
     def read_Raise(self, node: ast.Raise) -> Leaving:
         if node.exc is not None:
@@ -415,7 +403,7 @@ class PythonStatements(Expressions):
         self.visit(target)
         path = self.find_target(target)
         value = self.follow(node.value, "read", path if node.op.__class__ is ast.Add else "")
-        self.bind(target, value, node.lineno, operator=_OPERATORS[node.op.__class__])
+        self.bind(target, value, node.lineno, operator=f"{SIGNS[node.op.__class__]}=")
         return STAYS
 
     def read_Delete(self, node: ast.Delete) -> Leaving:
@@ -433,9 +421,6 @@ class PythonStatements(Expressions):
         return STAYS
 
     read_Nonlocal = read_Global
-
-    def read_Pass(self, node: ast.stmt) -> Leaving:
-        return STAYS
 
     def read_Import(self, node: ast.Import) -> Leaving:
         scope = self.body.name
@@ -522,9 +507,6 @@ class PythonStatements(Expressions):
         self.enter(outer)
         self.guard, self.in_class, self.own = saved, in_class, own
         return STAYS
-
-    def add_assignment(self, target: str, value: FlowExpr, line: int, operator: str) -> None:
-        self.assignments.append(Assignment(target, value, line, self.guard, "", operator))
 
 
 def can_break(statements: list[ast.stmt]) -> bool:

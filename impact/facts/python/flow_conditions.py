@@ -1,7 +1,5 @@
 """What follows a statement that may jump: the conditions under which control gets there."""
 
-from __future__ import annotations
-
 import ast
 from typing import NamedTuple
 

@@ -7,8 +7,6 @@ noted; an argument is a `pass`, a method called on it too; the value of another 
 Assignment tells what goes on from there; what is kept elsewhere, returned or listed is an `escape`.
 """
 
-from __future__ import annotations
-
 import ast
 from itertools import pairwise
 
@@ -58,7 +56,7 @@ class Expressions(SourceText):
         self.own: set[str] = set()
         self.constants: list[DataMember] = []
         # Functions whose bodies are still to be read, since they see all variables of the one they stand in.
-        self.waiting: list[tuple[Body, list[ast.stmt] | ast.expr]] = []
+        self.waiting: list[tuple[Body, list[ast.stmt]]] = []
         # Whether names are bound in the body of a class.
         self.in_class = False
 
@@ -140,7 +138,6 @@ class Expressions(SourceText):
         if node.__class__ is ast.Constant and node.value.__class__ is str:
             return drop_surrogates(node.value)
         return self.format_source(node)
-
 
     # Visiting, for calls and uses alone
 
@@ -373,7 +370,7 @@ class Expressions(SourceText):
         own = f"lambda@{node.lineno}:{self.find_column(node.lineno, node.col_offset)}"
         name = f"{around}.{own}" if around else own
         body = self.make_body(name, node, node.args)
-        self.waiting.append((body, node.body))
+        self.waiting.append((body, [ast.copy_location(ast.Return(node.body), node.body)]))
         return FlowExpr("lambda", name)
 
     def make_body(self, name: str, node, arguments: ast.arguments) -> Body:

@@ -16,6 +16,7 @@ from ..words import list_words
 from . import python2
 from .bound import find_scope_names
 from .reader import TRY, AttributeUse, Import, PythonReader
+from .text import drop_surrogates
 from .uses import FieldUse, PythonUse
 
 NO_PYTHON = 1000
@@ -97,9 +98,7 @@ def _decode(data: bytes) -> tuple[str, tuple[Problem, ...]]:
         at = error.start if isinstance(error, UnicodeDecodeError) else 0
         problems.append(Problem(data.count(b"\n", 0, at) + 1, f"not {encoding} text"))
         text = data.decode("latin-1")
-    if not text.isascii():
-        # Escapes of odd codecs may give lone surrogates, which no fact can hold.
-        text = text.encode("utf-8", "replace").decode("utf-8")
+    text = drop_surrogates(text)  # which escapes of odd codecs may give
     if "\r" in text:
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     return text, tuple(problems)

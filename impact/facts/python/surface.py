@@ -4,8 +4,6 @@ Nothing outside of the file is looked at: what an import or a base class means i
 (targets/surface/python.py).
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator
 

@@ -6,8 +6,6 @@ and in `self` and `super()` of a subclass; that of a message also in the callbac
 field of another. Nothing outside of the file is looked at.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import sys
@@ -396,10 +394,8 @@ class ObjectUses(PythonValues):
         yield from ((base, len(outside) == 1) for base in outside if base and not _is_stdlib(base))
 
     def find_member_type(self, one: _Class, attribute: str) -> str:
-        for own in (one, *(self.classes[name] for _, name in self.list_bases(one) if name)):
-            if attribute in own.objects:
-                return own.objects[attribute]
-        return ""
+        every = (one, *(self.classes[name] for _, name in self.list_bases(one) if name))
+        return next((own.objects[attribute] for own in every if attribute in own.objects), "")
 
     def list_bases(self, one: _Class) -> Iterator[tuple[str, str]]:
         """All base classes over any number of steps: (dotted, "") of other modules, ("", name) of the file, ("", "")

@@ -173,9 +173,10 @@ class ReadFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...] = ()
 
 
-class UnknownCommand(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class CMakeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A command called that nothing in the tree or in CMake itself defines (`ament_add_gtest`, `catkin_add_nosetests`),
-    or a variable read that nothing sets (`Eigen3_INCLUDE_DIR`). kind: `command` or `variable`.
+    a variable read that nothing sets (`Eigen3_INCLUDE_DIR`), or something known that not every version of CMake or not
+    every machine has. kind: `command`, `variable`, `unset`, `feature` or `environment`.
     for variable, context is the command it is read in; `unset` is a variable that install() reads and that nothing can
     have set; for a command of one of CMake's modules, the module that would
     have to be included or found first (`FindPkgConfig` for `pkg_check_modules`); for a `feature`, which is a command,
@@ -235,7 +236,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     installs: tuple[Install, ...] = ()
     exports: tuple[CMakeExport, ...] = ()
     generated: tuple[GeneratedInterfaces, ...] = ()
-    uses: tuple[UnknownCommand, ...] = ()
+    uses: tuple[CMakeUse, ...] = ()
     include_dirs: tuple[tuple[str, At], ...] = ()
     links: tuple[Link, ...] = ()
     catkin_package: At | None = None

@@ -22,6 +22,7 @@ from .build import (
     At,
     Build,
     CMakeExport,
+    CMakeUse,
     DeclaredPackages,
     DefinedMacro,
     FoundPackage,
@@ -29,7 +30,6 @@ from .build import (
     Install,
     ReadFile,
     RefusedName,
-    UnknownCommand,
     is_for_tests,
 )
 from .drafts import TargetDraft, Targets
@@ -168,7 +168,7 @@ class Interpreter:
         self.installs: dict[Install, None] = {}
         self.exports: dict[CMakeExport, None] = {}
         self.generated: list[GeneratedInterfaces] = []
-        self.uses: dict[UnknownCommand, None] = {}
+        self.uses: dict[CMakeUse, None] = {}
         self.include_dirs: dict[tuple[str, At], None] = {}
         self.links: dict = {}
         self.catkin_package: At | None = None
@@ -375,7 +375,7 @@ class Interpreter:
         """Notes a command, module or policy that only newer versions of CMake have."""
         since = SINCE.get(name)
         if since and not self.silent and name not in self.definitions:
-            self.uses[UnknownCommand("feature", name, self.locate(at), since, self.conditions)] = None
+            self.uses[CMakeUse("feature", name, self.locate(at), since, self.conditions)] = None
 
     def use_command(self, call: CommandCall, words: Sequence[Word] = ()) -> None:
         """Notes a command that neither CMake nor the tree defines. words: its arguments, where what it does is not
@@ -390,7 +390,7 @@ class Interpreter:
         made = (*words[:1], *(to for before, to in itertools.pairwise(words) if before == "DESTINATION"))
         makes = tuple(str(item) for item in made if "$" not in item)
         self.uses[
-            UnknownCommand("command", call.name, self.locate(call.at), module, self.conditions, makes=makes)
+            CMakeUse("command", call.name, self.locate(call.at), module, self.conditions, makes=makes)
         ] = None
 
     def run_block(self, block: Block) -> int:
@@ -984,13 +984,13 @@ class Interpreter:
             return
         place = self.locate(at)
         if self.command == "install" and not name.startswith("CATKIN_") and not self._may_be_set(name):
-            self.uses[UnknownCommand("unset", name, place, self.command, self.conditions)] = None
+            self.uses[CMakeUse("unset", name, place, self.command, self.conditions)] = None
         alike = "" if name.endswith(READ_SUFFIXES) else self.find_alike(name)
         if not alike and not name.endswith(READ_SUFFIXES) and not (
             name.startswith("CATKIN_") and self.command == "install"
         ):
             return
-        self.uses[UnknownCommand("variable", name, place, self.command, self.conditions, alike)] = None
+        self.uses[CMakeUse("variable", name, place, self.command, self.conditions, alike)] = None
 
     def use_environment(self, test: str, at: At) -> None:
         """Notes the environment variables of ROS whose value a test reads, where no test asks whether they are set."""
@@ -998,7 +998,7 @@ class Interpreter:
         for name in dict.fromkeys(_ROS_ENVIRONMENT.findall(test)):
             asks = re.compile(rf'DEFINED ENV\{{{name}\}}|(?:NOT )?\$ENV\{{{name}\}}(?: STREQUAL "")?\Z')
             if not self.silent and not any(map(asks.search, tests_around)):
-                self.uses[UnknownCommand("environment", name, self.locate(at), "", self.conditions)] = None
+                self.uses[CMakeUse("environment", name, self.locate(at), "", self.conditions)] = None
 
     def find_alike(self, name: str) -> str:
         """The variable that is set and has one word more or less in its name than one that a command which needs its

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
 from msgspec import structs
 
-from .graph import Endpoint, Graph, GuardAt, Publish, Qos
+from .graph import Endpoint, Graph, GuardAt, Node, Publish, Qos
 from .select import get_kind
 
 Mark = Literal["", "added", "removed", "changed"]
@@ -102,12 +103,10 @@ def _collect_triggers(publishes: Sequence[Publish]) -> frozenset:
     return frozenset((trigger.kind, trigger.detail) for publish in publishes for trigger in publish.triggers)
 
 
-def name_nodes(graph: Graph) -> dict[str, str]:
-    """How drawings call each node, by its id: the name in the system where it is a name of one node alone."""
-    count: dict[str, int] = {}
-    for node in graph.nodes:
-        count[node.name] = count.get(node.name, 0) + 1
-    return {node.id: node.name if node.name and count[node.name] == 1 else node.id for node in graph.nodes}
+def name_nodes(nodes: Sequence[Node]) -> dict[str, str]:
+    """How people are told of each node, by its id: the name in the system where it is a name of one node alone."""
+    count = Counter(node.name for node in nodes)
+    return {node.id: node.name if node.name and count[node.name] == 1 else node.id for node in nodes}
 
 
 def format_conditions(guards: Sequence[GuardAt]) -> str:

@@ -12,7 +12,7 @@ _SHAPES = {"topic": "box", "service": "diamond", "action": "hexagon"}
 def render(selection: Selection, base: Graph | None) -> str:
     """A digraph in the DOT language (https://graphviz.org/doc/info/lang.html)."""
     graph = selection.graph
-    names = (name_nodes(base) if base is not None else {}) | name_nodes(graph)
+    names = (name_nodes(base.nodes) if base is not None else {}) | name_nodes(graph.nodes)
     found = [edge for edge in list_edges(graph, base) if edge.node in names]
     lines = ["digraph message_flow {", "  rankdir=LR;", "  node [fontname=Helvetica, fontsize=10];"]
     for node in sorted({edge.node for edge in found} | {node.id for node in graph.nodes}):

@@ -13,7 +13,7 @@ def render(selection: Selection, base: Graph | None) -> str:
     from ...model.flow.connections import format_guards
 
     graph = selection.graph
-    names = (name_nodes(base) if base is not None else {}) | name_nodes(graph)
+    names = (name_nodes(base.nodes) if base is not None else {}) | name_nodes(graph.nodes)
     drawn: networkx.MultiDiGraph = networkx.MultiDiGraph()
     packages = {node.id: node.package for node in (*(base.nodes if base is not None else ()), *graph.nodes)}
     for node in graph.nodes:

@@ -54,7 +54,7 @@ def _build_nodes(graph: Graph, base: Graph | None, used: set[str]) -> list[dict[
     """The nodes of the graph, then those of the base alone that have edges, with what is no edge."""
     old = {} if base is None else {node.id: node for node in base.nodes}
     now = {node.id for node in graph.nodes}
-    labels = (name_nodes(base) if base is not None else {}) | name_nodes(graph)
+    labels = (name_nodes(base.nodes) if base is not None else {}) | name_nodes(graph.nodes)
     rows: dict[str, dict[str, Any]] = {}
     for node in (*graph.nodes, *(node for name, node in old.items() if name in used and name not in now)):
         mark = "" if base is None else "removed" if node.id not in now else "" if node.id in old else "added"

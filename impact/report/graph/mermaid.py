@@ -18,7 +18,7 @@ def render(selection: Selection, base: Graph | None) -> str:
     """A flowchart (https://mermaid.js.org/syntax/flowchart.html). What goes beyond MOST edges or ROOM is left out, what
     differs from the base last, and said."""
     graph = selection.graph
-    names = (name_nodes(base) if base is not None else {}) | name_nodes(graph)
+    names = (name_nodes(base.nodes) if base is not None else {}) | name_nodes(graph.nodes)
     found = [edge for edge in list_edges(graph, base) if edge.node in names]
     kept = _select_edges(found, names)
     ids: dict[tuple[str, str], str] = {}

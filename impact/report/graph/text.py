@@ -23,7 +23,7 @@ WIDE = PLAIN._replace(width=UNBROKEN)
 def render(selection: Selection, base: Graph | None, everything: bool = False, style: Style = WIDE) -> str:
     """The graph for people; everything: all that was not resolved, not the first 20 alone."""
     graph = selection.graph
-    names = name_nodes(graph) | (name_nodes(base) if base is not None else {})
+    names = name_nodes(graph.nodes) | (name_nodes(base.nodes) if base is not None else {})
     found = list_edges(graph, base)
     lines = [*_render_head(found, graph, selection.hidden, style), ""]
     groups: dict[tuple[str, str], list[Edge]] = {}
@@ -34,17 +34,13 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
     alone = sorted({names[node.id] for node in graph.nodes} - {names.get(edge.node, "") for edge in found})
     if alone:
         said = f"{format_count(len(alone), 'node')} with none of these: {', '.join(alone)}"
-        lines += [*_render([LinePart(said)], style, 0, 2), ""]
+        lines += [*lay_out([LinePart(said)], style, 0, 2), ""]
     near = graph.coverage.unresolved
     if selection.asked and not everything:
         paths = {each.path for each in (*graph.endpoints, *graph.publishes)}
         near = tuple(one for one in near if one.path in paths)
     lines += render_coverage(graph.coverage, near, everything, style)
     return "\n".join(lines) + "\n"
-
-
-def _render(pieces: Sequence[LinePart], style: Style, indent: int, hang: int = _HANG) -> Iterator[str]:
-    return lay_out(pieces, style, indent, hang)
 
 
 def _render_head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style) -> Iterator[str]:
@@ -56,14 +52,14 @@ def _render_head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style)
     if hidden:
         are, them = ("is", "it") if hidden == 1 else ("are", "them")
         text += f" ({format_count(hidden, 'name')} that most nodes have {are} hidden; --all shows {them})"
-    return _render([LinePart(text)], style, 0)
+    return lay_out([LinePart(text)], style, 0, _HANG)
 
 
 def _render_name(group: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
     types = sorted({kind for edge in group for kind in edge.types})
     # No name begins a line: CI systems read what is there.
     name = LinePart(f"{group[0].kind} {group[0].name}", "bold")
-    yield from _render([name, LinePart(" or ".join(types) if types else "type not known")], style, 0)
+    yield from lay_out([name, LinePart(" or ".join(types) if types else "type not known")], style, 0, _HANG)
     for same in _group_alike(group):
         yield from _render_edge(same, names, style)
 
@@ -92,13 +88,13 @@ def _render_edge(same: Sequence[Edge], names: dict[str, str], style: Style) -> I
         line.append(LinePart("", path=f"{endpoint.path}:{endpoint.line}"))
         beside = _format_note(endpoint, edge, style)
         line += [LinePart(beside, mark or "dim")] if beside else []
-        yield from _render(line, style, _HANG if line[0].path else 0)
+        yield from lay_out(line, style, _HANG if line[0].path else 0, _HANG)
         line = []
     if edge.before is not None:
         yield from _render_differences(edge, edge.before, style)
         return
     for statement in _list_statements(edge.publishes):
-        yield from _render(statement, style, _HANG, _HANG + 2)
+        yield from lay_out(statement, style, _HANG, _HANG + 2)
 
 
 def _render_differences(edge: Edge, before: Edge, style: Style) -> Iterator[str]:
@@ -107,19 +103,19 @@ def _render_differences(edge: Edge, before: Edge, style: Style) -> Iterator[str]
         old, now = said(before), said(edge)
         for sign, role, lines in (("-", "error", old - now), ("+", "good", now - old)):
             for line in sorted(lines):
-                yield from _render([LinePart(f"{sign} {line}", role)], style, _HANG - 2, _HANG + 2)
+                yield from lay_out([LinePart(f"{sign} {line}", role)], style, _HANG - 2, _HANG + 2)
     old, now = ({statement[1:]: statement for statement in _list_statements(each.publishes)} for each in (before, edge))
     for sign, role, lines in (("- ", "error", old.keys() - now.keys()), ("+ ", "good", now.keys() - old.keys())):
         for statement in sorted((old | now)[line] for line in lines):
             first = statement[0]._replace(text=sign + statement[0].text)
             painted = [piece._replace(role=role) for piece in (first, *statement[1:])]
-            yield from _render(painted, style, _HANG - 2, _HANG + 2)
+            yield from lay_out(painted, style, _HANG - 2, _HANG + 2)
     for line in sorted(now.keys() & old.keys(), key=now.__getitem__):
-        yield from _render(now[line], style, _HANG, _HANG + 2)
+        yield from lay_out(now[line], style, _HANG, _HANG + 2)
         was, is_now = (_collect_ways(each.publishes, line) for each in (before, edge))
         for sign, role, ways in (("-", "error", was - is_now), ("+", "good", is_now - was)):
             for way in sorted(ways):
-                yield from _render([LinePart(f"{sign} {way}", role)], style, _HANG + 2, _HANG + 4)
+                yield from lay_out([LinePart(f"{sign} {way}", role)], style, _HANG + 2, _HANG + 4)
 
 
 def _collect_ways(publishes: Sequence[Publish], line: tuple[LinePart, ...]) -> set[str]:
@@ -184,20 +180,20 @@ def render_coverage(
     """How much was resolved, and what was not. near: of that, what may be listed; everything: all of it, not the first
     20 alone."""
     share = f", {coverage.by_default:,} by a parameter's default" if coverage.by_default else ""
-    yield from _render(
+    yield from lay_out(
         [LinePart(f"{coverage.resolved:,} of {format_count(coverage.calls, 'API call')} resolved{share}; "
                f"{format_count(coverage.files, 'file')} read")], style, 0, 2,
     )  # fmt: skip
     if coverage.unread:
         shown = coverage.unread if everything else coverage.unread[:5]
         rest = f" and {len(coverage.unread) - len(shown)} more" if len(shown) < len(coverage.unread) else ""
-        yield from _render([LinePart(f"{len(coverage.unread)} of them in part: {', '.join(shown)}{rest}")], style, 0, 2)
+        yield from lay_out([LinePart(f"{len(coverage.unread)} of them in part: {', '.join(shown)}{rest}")], style, 0, 2)
     shown = near if everything else near[:_SHOWN]
     for one in shown:
         written = f" `{one.written}`" if one.written else ""
         pieces = [LinePart("", path=f"{one.path}:{one.line}:"), LinePart(f"{one.what}{written}: {one.reason}")]
-        yield from _render(pieces, style, 2, 4)
+        yield from lay_out(pieces, style, 2, 4)
     more = len(coverage.unresolved) - len(shown)
     if more:
         said = f"and {more:,} more" if shown else f"{more:,} {'is' if more == 1 else 'are'} not resolved"
-        yield from _render([LinePart(f"{said}; --all lists {'it' if more == 1 else 'them'}")], style, 2)
+        yield from lay_out([LinePart(f"{said}; --all lists {'it' if more == 1 else 'them'}")], style, 2, _HANG)

@@ -88,9 +88,7 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
             continue
         if not (lost.library and _may_be_made(view, package, name)):
             alone = not lost.library or not _may_be_built(view, package, name)
-            yield diagnose(
-                lost, at, name, package.name, (certain or Doubt.CONDITIONAL, alone or Doubt.INCOMPLETE)
-            )
+            yield diagnose(lost, at, name, package.name, (certain or Doubt.CONDITIONAL, alone or Doubt.INCOMPLETE))
 
 
 def _may_be_built(view: TargetView, package: Package, name: str) -> bool:

@@ -22,10 +22,8 @@ Not reported
     every node has.
 """
 
-from ...model.cmake.build import At
 from ...model.flow.launches import GivenRemapping, LaunchedNode
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 from .launch_settings import group_by_line
 
 _COMMON = frozenset(("/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/diagnostics"))

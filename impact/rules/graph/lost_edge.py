@@ -24,12 +24,10 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
 from ...model.flow.edges import Flow
 from ...model.flow.graph import Endpoint
 from ...model.flow.workspace import get_flow
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import At, Diagnostic, Doubt, Text, Workspace, rule
 
 _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
 

@@ -21,9 +21,7 @@ Not reported
     outside of the workspace; values in a file's `/**`, which is for every node.
 """
 
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 from .unasked_parameters import find_unasked
 
 

@@ -21,12 +21,10 @@ Not reported
     publish.
 """
 
-from ...model.cmake.build import At
 from ...model.flow.edges import Flow, Sure, build_unstarted_flow, get_label, list_flows
 from ...model.flow.misspelling import NearNames
 from ...model.flow.workspace import get_flow
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 
 @rule(

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from ...model.flow.edges import Sure, begins, build_whole_flow
-from ...model.workspace import Workspace
+from ...model.flow.edges import begins, build_whole_flow, get_label
+from ..vocabulary import At, Diagnostic, Workspace
 
 _SIDES = {"publisher": "subscriber", "subscriber": "publisher"}
 # Topics that tools, operators or all nodes use.
@@ -15,10 +15,11 @@ _TOOLS = frozenset(
 )  # fmt: skip
 
 
-def find_one_sided(workspace: Workspace, role: str) -> Iterator[Sure]:
-    """Endpoints of a role (publisher or subscriber) whose type nothing in the workspace has on the other side, one for
-    each topic. Topics that tools and people outside of the workspace may use are left out: those of types that the
-    workspace does not define, private ones, and known topics of tools."""
+def find_one_sided(workspace: Workspace, role: str) -> Iterator[Diagnostic]:
+    """A diagnostic for each topic that has endpoints of a role (publisher or subscriber) and whose type nothing in the
+    workspace has on the other side. Its data: that `type`, and the label of the `node`. Topics that tools and people
+    outside of the workspace may use are left out: those of types that the workspace does not define, private ones, and
+    known topics of tools."""
     flow = build_whole_flow(workspace)
     met = {one.type for one in flow.graph.endpoints if one.role == _SIDES[role]}
     reported: set[object] = set()
@@ -35,4 +36,5 @@ def find_one_sided(workspace: Workspace, role: str) -> Iterator[Sure]:
             continue
         if endpoint.topic.rpartition("/")[2] not in _TOOLS and "debug" not in endpoint.topic:
             reported.update((endpoint.topic, place))
-            yield one
+            data = {"type": endpoint.type, "node": get_label(one.node)}
+            yield Diagnostic(At(*place), endpoint.topic, one.node.package, data)

@@ -22,10 +22,9 @@ Not reported
     Nodes that use several types for one name, if one of them fits; type adapters.
 """
 
-from ...model.cmake.build import At
-from ...model.flow.edges import FlowPair, get_label, list_met_pairs, list_uncompared
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Doubt, Text, rule
+from ...model.flow.edges import FlowPair, list_met_pairs, list_uncompared
+from ..qos.offers import make_diagnostic
+from ..vocabulary import At, Diagnostic, Doubt, Text, Workspace, rule
 
 _WHAT = {"subscriber": "topic", "client": "service", "action client": "action"}
 
@@ -50,17 +49,8 @@ def topic_type_mismatch(workspace: Workspace):
         giver, taker = pair.giver.endpoint, pair.taker.endpoint
         other, type = pair.flow.find_type(giver), pair.flow.find_type(taker)
         if other and type and other != type and not _may_have_another_type(pair):
-            data = {
-                "what": _WHAT[taker.role],
-                "type": type,
-                "other": other,
-                "node": get_label(pair.giver.node),
-                "place": f"{giver.path}:{giver.line}",
-                "launch": pair.launch,
-            }
-            doubts = () if pair.launch else (Doubt.CONDITIONAL,)
-            at = At(taker.path, taker.line)
-            yield Diagnostic(at, taker.topic, pair.taker.node.package, data, kind="mismatch", doubts=doubts)
+            found = make_diagnostic(pair, "mismatch", what=_WHAT[taker.role], type=type, other=other)
+            yield found._replace(doubts=() if pair.launch else (Doubt.CONDITIONAL,))
 
 
 def _may_have_another_type(pair: FlowPair) -> bool:

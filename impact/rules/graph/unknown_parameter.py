@@ -21,9 +21,7 @@ Not reported
     (misspelt-parameter).
 """
 
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 from .unasked_parameters import Unasked, find_unasked
 
 

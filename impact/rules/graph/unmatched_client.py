@@ -19,12 +19,10 @@ Not reported
     not known, depends on a node that a launch file may rename, or may get the client's namespace when it is started.
 """
 
-from ...model.cmake.build import At
 from ...model.flow.edges import Flow, Sure, begins, build_unstarted_flow, get_label, list_flows
 from ...model.flow.misspelling import NearNames, is_in_namespace, is_slip_of_name
 from ...model.flow.workspace import get_flow
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 _SERVER = {"client": "server", "action client": "action server"}
 # Packages of the services that nodes have by themselves, and types that tell nothing.

@@ -18,10 +18,7 @@ Not reported
     topics and topics for debugging; types that something in the workspace subscribes to on another topic.
 """
 
-from ...model.cmake.build import At
-from ...model.flow.edges import get_label
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .one_sided import find_one_sided
 
 
@@ -35,7 +32,4 @@ from .one_sided import find_one_sided
     ),
 )
 def unread_topic(workspace: Workspace):
-    for one in find_one_sided(workspace, "publisher"):
-        endpoint = one.endpoint
-        data = {"type": endpoint.type, "node": get_label(one.node)}
-        yield Diagnostic(At(endpoint.path, endpoint.line), endpoint.topic, one.node.package, data)
+    return find_one_sided(workspace, "publisher")

@@ -17,8 +17,7 @@ Use instead
     A new message beside the old one where machines are updated one by one.
 """
 
-from ...model.workspace import Workspace
-from ..rule import Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .comparison import UNMATCHED, diagnose, find_changed_sections
 
 

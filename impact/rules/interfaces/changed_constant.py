@@ -14,8 +14,7 @@ Use instead
     A new constant with a new number.
 """
 
-from ...model.workspace import Workspace
-from ..rule import Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .comparison import UNMATCHED, diagnose, find_changed_sections
 
 _CHANGED = "the constant `{definition}.{subject}` changed from {old} to {new}"

@@ -17,8 +17,7 @@ Use instead
     A new field beside the old one, for one release.
 """
 
-from ...model.workspace import Workspace
-from ..rule import Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .comparison import UNMATCHED, diagnose, find_changed_sections, format_type
 
 

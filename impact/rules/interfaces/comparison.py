@@ -5,10 +5,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from ...facts.interface import Field, Section
-from ...model.cmake.build import At
 from ...model.package import InterfaceFile
-from ...model.workspace import Package, Workspace, is_interface_header
-from ..rule import Diagnostic, Doubt, Value
+from ...model.workspace import is_interface_header
+from ..vocabulary import At, Diagnostic, Doubt, Package, Value, Workspace
 
 # How the message of a changed definition ends: what it means for nodes and bags from before, and who uses it.
 UNMATCHED = "its {hash} changes, so older nodes and bags no longer match; used by {users:nothing in the workspace}"

@@ -16,8 +16,7 @@ Use instead
     Keep the constant for one release.
 """
 
-from ...model.workspace import Workspace
-from ..rule import Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .comparison import diagnose, find_changed_sections
 
 

@@ -17,8 +17,7 @@ Use instead
     Keep the field for one release, and mark it in a comment.
 """
 
-from ...model.workspace import Workspace
-from ..rule import Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .comparison import UNMATCHED, diagnose, find_changed_sections
 
 

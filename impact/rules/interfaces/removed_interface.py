@@ -16,9 +16,7 @@ Use instead
     Keep the definition for one release, and publish both.
 """
 
-from ...model.cmake.build import At
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Doubt, Text, rule
+from ..vocabulary import At, Diagnostic, Doubt, Text, Workspace, rule
 from .comparison import find_users
 
 _REMOVED = "`{subject}` was removed; used by {users:nothing in the workspace}"

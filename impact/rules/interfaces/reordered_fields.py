@@ -18,8 +18,7 @@ Use instead
     The old order.
 """
 
-from ...model.workspace import Workspace
-from ..rule import Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .comparison import UNMATCHED, diagnose, find_changed_sections
 
 

@@ -21,10 +21,7 @@ Not reported
     Statements whose trigger is not known; callbacks and timers that only have another name.
 """
 
-from collections.abc import Iterator
-
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .statements import READERS, find_changes
 
 
@@ -36,5 +33,5 @@ from .statements import READERS, find_changes
         help="check that the subscribers tolerate the new rate, trigger and quality of service",
     ),
 )
-def changed_trigger(workspace: Workspace, base: Workspace) -> Iterator[Diagnostic]:
-    yield from find_changes(workspace, base, lambda change: change.kind == "trigger changed")
+def changed_trigger(workspace: Workspace, base: Workspace):
+    return find_changes(workspace, base, lambda change: change.kind == "trigger changed")

@@ -4,13 +4,11 @@ from collections.abc import Callable, Iterator
 
 from ...logic.changes import LogicChange
 from ...logic.two_states import compare_publishing
-from ...model.cmake.build import At
 from ...model.flow.edges import get_label
 from ...model.flow.graph import Endpoint, Graph
 from ...model.flow.reach import EVERYWHERE
 from ...model.flow.workspace import get_flow
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Doubt
+from ..vocabulary import At, Diagnostic, Doubt, Workspace
 
 _LONGEST = 120
 # How the message of a changed condition goes on, and how every message of the family ends.

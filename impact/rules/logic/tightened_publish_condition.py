@@ -22,10 +22,7 @@ Not reported
     removed statements, and conditions of which neither implies the other (`rosimpact impact` lists them).
 """
 
-from collections.abc import Iterator
-
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .statements import CONDITIONS, READERS, find_changes
 
 
@@ -37,5 +34,5 @@ from .statements import CONDITIONS, READERS, find_changes
         help="check that the subscribers work without these messages",
     ),
 )
-def tightened_publish_condition(workspace: Workspace, base: Workspace) -> Iterator[Diagnostic]:
-    yield from find_changes(workspace, base, lambda change: change.kind == "tightened" and not change.unreachable)
+def tightened_publish_condition(workspace: Workspace, base: Workspace):
+    return find_changes(workspace, base, lambda change: change.kind == "tightened" and not change.unreachable)

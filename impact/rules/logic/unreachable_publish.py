@@ -21,10 +21,7 @@ Not reported
     Statements that could not run at the base either; conditions on values that may change between the two tests.
 """
 
-from collections.abc import Iterator
-
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .statements import READERS, find_changes
 
 
@@ -37,5 +34,5 @@ from .statements import READERS, find_changes
         help="remove the statement, or what keeps it from running",
     ),
 )
-def unreachable_publish(workspace: Workspace, base: Workspace) -> Iterator[Diagnostic]:
-    yield from find_changes(workspace, base, lambda change: change.unreachable)
+def unreachable_publish(workspace: Workspace, base: Workspace):
+    return find_changes(workspace, base, lambda change: change.unreachable)

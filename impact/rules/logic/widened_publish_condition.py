@@ -12,10 +12,7 @@ Not reported
     What tightened-publish-condition does not report.
 """
 
-from collections.abc import Iterator
-
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, rule
+from ..vocabulary import Text, Workspace, rule
 from .statements import CONDITIONS, READERS, find_changes
 
 
@@ -27,5 +24,5 @@ from .statements import CONDITIONS, READERS, find_changes
         help="check that the subscribers can handle the additional messages",
     ),
 )
-def widened_publish_condition(workspace: Workspace, base: Workspace) -> Iterator[Diagnostic]:
-    yield from find_changes(workspace, base, lambda change: change.kind == "widened")
+def widened_publish_condition(workspace: Workspace, base: Workspace):
+    return find_changes(workspace, base, lambda change: change.kind == "widened")

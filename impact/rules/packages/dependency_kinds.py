@@ -39,9 +39,7 @@ def list_wrong_kinds(view: TargetView, package: Package) -> Iterable[WrongKind]:
         if not lacking:
             continue
         if fitting not in brought:
-            brought[fitting] = view.list_transitive(
-                name for name, of_name in declared.items() if of_name & fitting
-            )
+            brought[fitting] = view.list_transitive(name for name, of_name in declared.items() if of_name & fitting)
         if not view.is_met(need.providers, brought[fitting]):
             # Of several that may bring it, the one that is named as it is (`gmock/gmock.h`: libgmock-dev, not gtest).
             head = need.subject.partition("/")[0]

@@ -82,9 +82,7 @@ def _list_handed_on(view: TargetView, package: Package, declared, bare, need, se
     if right is None or right in seen:
         return
     stems = {re.sub(r"(-all)?-dev\Z", "", debian) for debian in view.list_debs(right)}
-    name = next(
-        (n for n, installed in bare.items() if any(_is_same(d, s) for d in installed for s in stems)), None
-    )
+    name = next((n for n, installed in bare.items() if any(_is_same(d, s) for d in installed for s in stems)), None)
     if name is None or name.startswith("libboost") or not declared[name] & FOR_RUN:
         return
     seen.add(right)

@@ -69,11 +69,7 @@ def missing_find_package(view: TargetView, package: Package):
     reachable = view.list_transitive(found) | view.roles.list_found_with(found)
     tested = {f.name for f in package.build.found if is_for_tests(f.conditions) and f.name in found}
     outside = {f.name for f in package.build.found if not is_for_tests(f.conditions)}
-    built = (
-        view.list_transitive(n for n in found if n in outside or n not in tested)
-        if tested - outside
-        else reachable
-    )
+    built = view.list_transitive(n for n in found if n in outside or n not in tested) if tested - outside else reachable
     shipped = {t.name for t in package.build.targets if t.kind != "test" and not is_for_tests(t.conditions)}
     closure = view.build_environment(package)
     # ament_auto and ament_lint_auto find all that is declared for tests.

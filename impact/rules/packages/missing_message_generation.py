@@ -41,9 +41,7 @@ def missing_message_generation(view: TargetView, package: Package):
     generators = {*view.roles.list_exports("message_generation")} - {"genmsg"}
     if found & generators or generators & view.list_transitive(found & {"genmsg"}):
         return
-    through = next(
-        (f for f in sorted(found) if {"message_generation", "genmsg"} & view.list_transitive([f])), ""
-    )
+    through = next((f for f in sorted(found) if {"message_generation", "genmsg"} & view.list_transitive([f])), "")
     doubts = (
         (Doubt.INCOMPLETE,) if through or "genmsg" in found or view.unknown_contents.may_come_along(package) else ()
     )

@@ -80,7 +80,7 @@ def _list_absent(view: TargetView, package: Package, installs) -> Iterator[Diagn
                 continue
             if install.kind == "directory" and _may_be_empty(package, path):
                 continue
-            if install.kind == "files" and "." in path and _is_written(path):
+            if install.kind == "files" and "." in path and not path.endswith(_BY_HAND):
                 continue
             if is_absent(view, package, path):
                 # A folder of which only some files are installed may be missing.
@@ -122,22 +122,14 @@ def _stops_symlinks(package: Package, install, item: str) -> bool:
     return not (install.executable or install.only or any("~" in pattern for pattern in install.patterns))
 
 
-def _is_written(path: str) -> bool:
-    """True for files that the build itself writes: another command mentions their name."""
-    return not path.endswith((".launch", ".xml", ".yaml", ".py", ".h", ".hpp", ".md", ".rviz"))
-
-
+# Endings of files that people write; the build itself may write others.
+_BY_HAND = (".launch", ".xml", ".yaml", ".py", ".h", ".hpp", ".md", ".rviz")
 # What catkin itself sets that may name a place (catkin's all.cmake and catkin_package.cmake).
 _PLACES = frozenset({"CATKIN_DEVEL_PREFIX", "CATKIN_TEST_RESULTS_DIR", "CATKIN_ENV"})
 # What catkin_package() sets of them.
 _OF_CATKIN_PACKAGE = frozenset(
     f"CATKIN_PACKAGE_{name}_DESTINATION" for name in ("BIN", "ETC", "INCLUDE", "LIB", "PYTHON", "SHARE")
 )
-
-
-def _calls_unknown(package: Package) -> bool:
-    """Whether the package calls a command that nothing known defines, or finds a package that may bring one."""
-    return any(use.kind == "command" and not use.context for use in package.build.uses)
 
 
 def _may_be_set(view: TargetView, package: Package) -> bool:
@@ -160,7 +152,8 @@ def _list_unset(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             continue
         kind = "unset, build" if use.name == "CATKIN_BUILD_PREFIX" else "unset"
         if use.name in _OF_CATKIN_PACKAGE:
-            if package.build.catkin_package is None and (package.build.unresolved or _calls_unknown(package)):
+            unknown = any(one.kind == "command" and not one.context for one in package.build.uses)
+            if package.build.catkin_package is None and (package.build.unresolved or unknown):
                 continue  # a command that is not known may call it
             kind = "early" if package.build.catkin_package else "never"
         if kind == "unset" and _may_be_set(view, package):

@@ -64,9 +64,7 @@ _SHORTEST = 8
             "ask for CMake 3.0 or newer",
         ),
         "no target": Text("`{subject}` is no target, so CMake stops", "name a target that the package adds"),
-        "too early": Text(
-            "`{subject}` is used as a target before it is added, so CMake stops", "add the target first"
-        ),
+        "too early": Text("`{subject}` is used as a target before it is added, so CMake stops", "add the target first"),
         "mixed": Text(
             "`{subject}` is linked with PUBLIC or PRIVATE and without, so CMake stops",
             "write the keyword in all calls of target_link_libraries() and ament_target_dependencies(), or in none",

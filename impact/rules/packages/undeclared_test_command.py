@@ -45,9 +45,7 @@ def undeclared_test_command(view: TargetView, package: Package):
         if name in (None, package.name, *reported) or not view.applies(use.conditions) or not view.is_available(name):
             continue
         reported.add(name)
-        if name in view.build_environment(package) or name in view.list_transitive(
-            f.name for f in package.build.found
-        ):
+        if name in view.build_environment(package) or name in view.list_transitive(f.name for f in package.build.found):
             continue
         path = package.digest.manifest_path
         yield Diagnostic(

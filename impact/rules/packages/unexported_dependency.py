@@ -67,9 +67,7 @@ def _list_linked(view: TargetView, package: Package):
         if item is None:
             continue
         exported = (
-            exported
-            if exported is not None
-            else view.list_transitive(n for n, k in declared.items() if k & FOR_RUN)
+            exported if exported is not None else view.list_transitive(n for n, k in declared.items() if k & FOR_RUN)
         )
         if name in exported:
             continue

@@ -177,9 +177,7 @@ def _list_of_catkin(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             yield missed
 
 
-def _list_missed(
-    view: TargetView, package: Package, needs: list[Need], reach: frozenset[str]
-) -> Iterator[Diagnostic]:
+def _list_missed(view: TargetView, package: Package, needs: list[Need], reach: frozenset[str]) -> Iterator[Diagnostic]:
     """Includes of system libraries off the compiler's path that nothing which dependants find brings."""
     seen = set()
     for need in needs:

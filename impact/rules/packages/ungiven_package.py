@@ -66,9 +66,7 @@ def ungiven_package(view: TargetView, package: Package):
         owners = {p.name for p in providers}
         if not owners.isdisjoint(("", package.name)) or (
             (system := tuple(p for p in providers if p.kind != "ros"))
-            and (
-                view.unknown_contents.may_come_along(package) or view.is_met(system, view.build_environment(package))
-            )
+            and (view.unknown_contents.may_come_along(package) or view.is_met(system, view.build_environment(package)))
         ):
             continue  # the compiler finds it by itself
         names = owners & found  # of several possible owners, the one that CMake finds

@@ -76,11 +76,8 @@ def _collect_doubts(view: TargetView, package: Package, path: str) -> tuple[Doub
 
 def _include_of(view: TargetView, includes: tuple[IncludeUse, ...], to: str) -> IncludeUse | None:
     """The include that names another file of the package and stands under no condition."""
-    name = posixpath.basename(to)
-    for include in includes:
-        if posixpath.basename(include.path) == name and view.is_sure(include.conditions):
-            return include
-    return None
+    named = (include for include in includes if posixpath.basename(include.path) == posixpath.basename(to))
+    return next((include for include in named if view.is_sure(include.conditions)), None)
 
 
 def _is_answered(headers: dict[str, str], place: str, include: str) -> bool:

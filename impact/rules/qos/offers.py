@@ -6,11 +6,9 @@ https://docs.ros.org/en/rolling/Concepts/Intermediate/About-Quality-of-Service-S
 
 from collections.abc import Iterator
 
-from ...model.cmake.build import At
 from ...model.flow.edges import FlowPair, get_label, list_met_pairs
 from ...model.flow.graph import Qos
-from ...model.workspace import Workspace
-from ..rule import Diagnostic, Text, Value
+from ..vocabulary import At, Diagnostic, Text, Value, Workspace
 
 _ROS1 = frozenset(("roscpp", "rospy"))
 

@@ -20,8 +20,7 @@ Not reported
     partner.
 """
 
-from ...model.workspace import Workspace
-from ..rule import rule
+from ..vocabulary import Workspace, rule
 from .offers import build_qos_text, iterate_qos_pairs, make_diagnostic
 
 

@@ -18,8 +18,7 @@ Not reported
     Leases that are not known as numbers; nodes that no launch file starts together, if one of them has another partner.
 """
 
-from ...model.workspace import Workspace
-from ..rule import rule
+from ..vocabulary import Workspace, rule
 from .offers import build_qos_text, iterate_qos_pairs, make_diagnostic
 
 

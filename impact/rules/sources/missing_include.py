@@ -125,8 +125,10 @@ class _Places:
         path = need.at.path
         if not lost.now:
             return False
-        return path in self._compiled or path in self._offered or (
-            lost.sure and not lost.standard and path in self._public
+        return (
+            path in self._compiled
+            or path in self._offered
+            or (lost.sure and not lost.standard and path in self._public)
         )
 
 

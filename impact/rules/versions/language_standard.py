@@ -112,10 +112,7 @@ def _check_ros2(view: TargetView, package: Package, default: int | None):
         elif (
             newest is not None
             and (later := find_needed_standard(newest, include.path))
-            and (
-                get_year(later.standard) > have
-                and (find_default_standard(newest) or 0) >= get_year(later.standard)
-            )
+            and (get_year(later.standard) > have and (find_default_standard(newest) or 0) >= get_year(later.standard))
         ):
             need, doubts, horizon = later, (Doubt.UPCOMING,), view.horizon
         else:
