@@ -209,7 +209,7 @@ class Resolver:
         """Whether the file or a header of the package declares a name itself, outside of functions."""
         return any(file.mentions(word) and word in file.defines for file in self.files)
 
-    def adds(self, scope: str, word: str) -> bool:
+    def declares_in(self, scope: str, word: str) -> bool:
         """Whether the file or a header of the package declares a name in a namespace, which may be another package's:
         then it is not theirs that is used."""
         full = f"{scope}::{word}"

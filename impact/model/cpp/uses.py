@@ -166,7 +166,7 @@ class ApiUses:
         for full in self.resolver.list_meanings(scope, use.place):
             name = f"{full}::{use.word}"
             if name in self.vocabulary.names:
-                return None if self.resolver.adds(full, use.word) else self._make_use(name, use, True, ())
+                return None if self.resolver.declares_in(full, use.word) else self._make_use(name, use, True, ())
         type_ = self.resolver.resolve_name(scope, use.place)
         if type_ is None or type_.own or not type_.plain or not type_.name:
             return None
