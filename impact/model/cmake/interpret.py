@@ -12,7 +12,6 @@ from .interpreter import Interpreter
 _FAMILIES = (language, lists, paths, find, targets, install, catkin, catkin_simple, ament)
 
 
-
 def _list_no_extras(package: str) -> tuple[str, ...]:
     return ()
 

@@ -389,9 +389,9 @@ class Interpreter:
             return
         made = (*words[:1], *(to for before, to in itertools.pairwise(words) if before == "DESTINATION"))
         makes = tuple(str(item) for item in made if "$" not in item)
-        self.uses[
-            UnknownCommand("command", call.name, self.locate(call.at), module, self.conditions, makes=makes)
-        ] = None
+        self.uses[UnknownCommand("command", call.name, self.locate(call.at), module, self.conditions, makes=makes)] = (
+            None
+        )
 
     def run_block(self, block: Block) -> int:
         """Runs a block command."""
@@ -983,8 +983,10 @@ class Interpreter:
         if self.silent or name.startswith("CMAKE_"):
             return
         alike = "" if name.endswith(READ_SUFFIXES) else self.find_alike(name)
-        if not alike and not name.endswith(READ_SUFFIXES) and not (
-            name.startswith("CATKIN_") and self.command == "install"
+        if (
+            not alike
+            and not name.endswith(READ_SUFFIXES)
+            and not (name.startswith("CATKIN_") and self.command == "install")
         ):
             return
         self.uses[UnknownCommand("variable", name, self.locate(at), self.command, self.conditions, alike)] = None

@@ -346,7 +346,11 @@ def check(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
 
 
 @handles(
-    "get_property", "get_target_property", "get_directory_property", "get_source_file_property", "get_cmake_property",
+    "get_property",
+    "get_target_property",
+    "get_directory_property",
+    "get_source_file_property",
+    "get_cmake_property",
     least=2,
 )
 def get_property(run: Interpreter, call: CommandCall, args: list[Word]) -> None:

@@ -26,9 +26,7 @@ class ScriptSetup:
 
     def __init__(self, package: Package):
         self._package = package
-        self._files = {
-            path: file for path, file in package.digest.setup if posixpath.dirname(path) == package.path
-        }
+        self._files = {path: file for path, file in package.digest.setup if posixpath.dirname(path) == package.path}
         self.settings = posixpath.join(package.path, "setup.cfg")
         """The path of setup.cfg, which may be missing."""
 

@@ -434,5 +434,3 @@ def load_shipped() -> Surfaces:
         return Surfaces(DATA / "surfaces.sqlite")
     except StoredSurfacesError as error:
         raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
-
-
