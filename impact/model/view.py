@@ -11,6 +11,7 @@ from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
 from ...edges.reach import Reach, walk
 from ..conditions import Environment, evaluate_all
@@ -604,10 +605,8 @@ class TargetView:
     @cache_method
     def collect_declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
-        found: dict[str, set[str]] = {}
-        for dependency in self.list_dependencies(package):
-            found.setdefault(dependency.name, set()).add(dependency.kind)
-        return MappingProxyType(found)
+        found = group_pairs((dependency.name, dependency.kind) for dependency in self.list_dependencies(package))
+        return MappingProxyType({name: set(kinds) for name, kinds in found.items()})
 
     @cache_method
     def list_installed_with(self, name: str) -> tuple[str, ...]:

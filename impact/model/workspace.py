@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from ...edges import processes
+from ...edges.groups import group_pairs
 from ...edges.limits import format_limits
 from ...edges.memory import cache_method
 from ..facts.condition import Condition
@@ -74,11 +75,8 @@ class Package:
     @cached_property
     def declared(self) -> dict[str, set[str]]:
         """Dependency name to the kinds it is declared as, conditions ignored."""
-        found: dict[str, set[str]] = {}
-        for dependency in self.manifest.dependencies:
-            if dependency.kind not in ("conflict", "replace"):
-                found.setdefault(dependency.name, set()).add(dependency.kind)
-        return found
+        wanted = (each for each in self.manifest.dependencies if each.kind not in ("conflict", "replace"))
+        return {name: set(kinds) for name, kinds in group_pairs((each.name, each.kind) for each in wanted).items()}
 
     @cached_property
     def is_interface_package(self) -> bool:
@@ -421,10 +419,7 @@ def is_interface_header(rest: str, names: Iterable[str]) -> bool:
 
 def _group(named: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     """Names to those that have them, each once and in order. named: pairs of the two."""
-    found: dict[str, dict[str, None]] = {}
-    for name, owner in named:
-        found.setdefault(name, {})[owner] = None
-    return {name: list(owners) for name, owners in found.items()}
+    return {name: list(dict.fromkeys(owners)) for name, owners in group_pairs(named).items()}
 
 
 def link(
@@ -453,9 +448,7 @@ def link(
 
 def _list_conditional(manifest: Manifest) -> dict[str, Condition]:
     """The packages that a manifest declares under conditions alone, with the test that one of them holds."""
-    found: dict[str, list[str]] = {}
-    for dependency in manifest.dependencies:
-        found.setdefault(dependency.name, []).append(dependency.condition)
+    found = group_pairs((dependency.name, dependency.condition) for dependency in manifest.dependencies)
     return {
         name: Condition("manifest", " or ".join(f"({text})" for text in dict.fromkeys(texts)))
         for name, texts in found.items()
@@ -727,9 +720,7 @@ class _Linker:
     def make_glob(self, place, files: list[str]):
         import fnmatch
 
-        by_folder: dict[str, list[str]] = {}
-        for path in files:
-            by_folder.setdefault(path.rpartition("/")[0], []).append(path)
+        by_folder = group_pairs((path.rpartition("/")[0], path) for path in files)
         folders = sorted(by_folder)
         known: dict[tuple[str, bool], list[str]] = {}
 

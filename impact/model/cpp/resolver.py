@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple, TypeVar
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.cpp.code import CppCode
 from ...facts.cpp.names import find_closing_angle, split_at_commas, strip_templates
@@ -110,15 +111,13 @@ class KnownFile:
     @cached_property
     def classes(self) -> dict[str, list[CppClass]]:
         """Its classes."""
-        return _group_by_last(self.code.file.classes)
+        every = self.code.file.classes
+        return group_pairs((one.name.rpartition("::")[2], one) for one in every if not one.specialised)
 
     @cached_property
     def names(self) -> dict[str, list[Declaration]]:
         """What it declares outside of classes and functions."""
-        found: dict[str, list[Declaration]] = {}
-        for one in self.code.file.names:
-            found.setdefault(one.name, []).append(one)
-        return found
+        return group_pairs((one.name, one) for one in self.code.file.names)
 
     @cached_property
     def members(self) -> frozenset[str]:
@@ -140,14 +139,6 @@ class KnownFile:
         if self.mentions(last) and last in self.code.like_classes:
             return self.classes.get(last, [])
         return []
-
-
-def _group_by_last(classes: Iterable[CppClass]) -> dict[str, list[CppClass]]:
-    found: dict[str, list[CppClass]] = {}
-    for one in classes:
-        if not one.specialised:
-            found.setdefault(one.name.rpartition("::")[2], []).append(one)
-    return found
 
 
 class Resolver:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from msgspec import structs
 
+from ....edges.groups import group_pairs
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .code import FlowCode, Fn, Variable, get_outer, get_tail, split_name
@@ -45,9 +46,7 @@ class Calls:
     def uses(self) -> list[FrameworkCall]:
         """In the order of files and lines."""
         found: list[FrameworkCall] = []
-        described: dict[Fn, list[FlowCall]] = {}
-        for fn, call in self.code.list_calls_named(self.table.calls):
-            described.setdefault(fn, []).append(call)
+        described = group_pairs(self.code.list_calls_named(self.table.calls))
         for fn in self.code.functions:
             for call in described.get(fn, ()):
                 use = self.find_use(fn, call)
@@ -63,10 +62,7 @@ class Calls:
 
     @cached_property
     def _doing(self) -> dict[str, list[FrameworkCall]]:
-        found: dict[str, list[FrameworkCall]] = {}
-        for use in self.uses:
-            found.setdefault(use.row.does, []).append(use)
-        return found
+        return group_pairs((use.row.does, use) for use in self.uses)
 
     def find_kinds(self, kind: FlowType, fn: Fn) -> frozenset[str]:
         """Kinds of framework classes that a type belongs to, by itself or by its bases."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_in_derived
 from ..workspace import Workspace
 from .defined import list_released
@@ -133,9 +134,7 @@ class Flow:
         seen = set()
         in_all = _MOST_PAIRS_IN_ALL
         for giving, taking in _SIDES:
-            givers: dict[str, list[Sure]] = {}
-            for one in self.list_sure(giving):
-                givers.setdefault(one.endpoint.topic, []).append(one)
+            givers = group_pairs((one.endpoint.topic, one) for one in self.list_sure(giving))
             left = dict.fromkeys(givers, _MOST_PAIRS)
             for taker in self.list_sure(taking):
                 topic = taker.endpoint.topic
@@ -156,9 +155,7 @@ def list_uncompared(workspace: Workspace) -> Iterator[tuple[Endpoint, int]]:
         in_all = _MOST_PAIRS_IN_ALL
         for giving, taking in _SIDES:
             givers = Counter(one.endpoint.topic for one in flow.list_sure(giving))
-            takers: dict[str, list[Endpoint]] = {}
-            for one in flow.list_sure(taking):
-                takers.setdefault(one.endpoint.topic, []).append(one.endpoint)
+            takers = group_pairs((one.endpoint.topic, one.endpoint) for one in flow.list_sure(taking))
             for topic, listed in takers.items():
                 number = givers[topic] * len(listed)
                 compared = min(number, _MOST_PAIRS, in_all)

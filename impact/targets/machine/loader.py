@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO
 
 from ....edges.files import make_size_error, open_regular, read_start
+from ....edges.groups import group_pairs
 from ....edges.limits import get_limits
 from ....edges.memory import cache_method
 from ...facts import elf
@@ -63,12 +64,8 @@ class Loader:
     def _cached(self) -> dict[str, list[str]]:
         """soname to paths, as the loader's cache has them."""
         program = shutil.which("ldconfig") or "/sbin/ldconfig"
-        found: dict[str, list[str]] = {}
-        for line in self._run([program, "-p"]).splitlines():
-            match = _CACHED.match(line)
-            if match:
-                found.setdefault(match[1], []).append(match[2])
-        return found
+        matches = map(_CACHED.match, self._run([program, "-p"]).splitlines())
+        return group_pairs((match[1], match[2]) for match in matches if match)
 
     def find(self, soname: str, asker: Elf, folder: str = "") -> str:
         """The file that the loader takes for a library that a file asks for, empty when there is none.

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
+from ....edges.groups import group_pairs
 from ...facts.python.surface import LATE, Bound, PythonParameter, Taken, is_private
 from .surface import InstalledModule, PythonSurface
 
@@ -78,19 +79,15 @@ class SurfaceNames:
         """The names of a module in order of the source, those of classes dotted."""
         known = self._bound.get(module.name)
         if known is None:
-            known = self._bound[module.name] = {}
-            for bound in module.surface.names:
-                known.setdefault(bound.name, []).append(bound)
+            known = self._bound[module.name] = group_pairs((bound.name, bound) for bound in module.surface.names)
         return known
 
     def index_imports(self, module: InstalledModule) -> dict[str, list[Taken]]:
         """The imports of a module by the name they bind."""
         known = self._taken.get(module.name)
         if known is None:
-            known = self._taken[module.name] = {}
-            for taken in module.surface.imports:
-                if not taken.scope:
-                    known.setdefault(taken.name, []).append(taken)
+            outside = (taken for taken in module.surface.imports if not taken.scope)
+            known = self._taken[module.name] = group_pairs((taken.name, taken) for taken in outside)
         return known
 
     def _find_in_module(self, module: InstalledModule | None, where: str, name: str, depth: int) -> PythonName | None:
