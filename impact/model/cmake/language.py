@@ -342,7 +342,7 @@ def check(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     else:
         names = args[-1:]
     for name in names:
-        run.assign(run.scope, str(name), CMakeValue((wrap(f"${{{name}}}", call.at, (), False),), False))
+        run.set_unknown(str(name), call.at)
 
 
 @handles(

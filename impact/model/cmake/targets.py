@@ -117,10 +117,8 @@ def add_target_sources(run: Interpreter, call: CommandCall, args: list[Word]) ->
 def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
     """The target of this name; one that nothing makes is noted as unknown."""
     draft = run.targets.get(name)
-    while draft is not None and draft.kind == "alias" and run.targets.get(draft.alias_of) is not None:
-        followed = run.targets.get(draft.alias_of)
-        if followed is None or followed is draft or followed.kind == "alias":
-            break
+    followed = run.targets.get(draft.alias_of) if draft is not None and draft.kind == "alias" else None
+    if followed is not None and followed.kind != "alias":
         draft = followed
     if draft is not None:
         return draft
