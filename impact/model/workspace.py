@@ -30,7 +30,7 @@ from ..facts.kinds import make_overall_version
 from ..facts.manifest import Manifest
 from ..facts.store import Store
 from ..source_keys import compute_source_key
-from ..targets.surface.fields import make_snake_case
+from ..targets.surface.fields import ROS1_SUFFIXES, make_snake_case
 from ..tree.paths import Tree, is_vendored
 from .cmake.build import Build
 from .cmake.installed import HEADER_NAME
@@ -56,13 +56,6 @@ class Package:
     on the one that it is seen from. build_type: `catkin`, `ament_cmake`, `ament_python`, `cmake` ..., for the
     generation of the workspace.
     """
-
-    digest: LinkedPackage
-    name: str
-    path: str
-    manifest: Manifest
-    build: Build
-    build_type: str
 
     def __init__(self, digest: LinkedPackage, build: Build | None = None):
         self.digest = digest
@@ -389,9 +382,7 @@ def list_modules(package: Package) -> set[str]:
     return found
 
 
-_ROS1_SUFFIXES = (
-    "ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback", "Request", "Response", "",
-)  # fmt: skip
+_ROS1_SUFFIXES = frozenset().union(*ROS1_SUFFIXES.values())
 
 
 def _make_stems(names: Iterable[str]) -> tuple[frozenset[str], frozenset[str]]:
@@ -668,7 +659,7 @@ class _Linker:
                 place.path,
                 read_cmake,
                 self.all_paths.__contains__,
-                self.make_glob(place, files),
+                self.make_glob(files),
                 package=manifest.name,
                 dependencies=_list_named(manifest, "build", "buildtool"),
                 test_dependencies=_list_named(manifest, "test"),
@@ -680,7 +671,7 @@ class _Linker:
             and (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
             else Build()
         )
-        ignored = tuple(self.list_ignored(place, build, read))
+        ignored = tuple(self.list_ignored(build, read))
         build = msgspec.structs.replace(build, made=(*build.made, *ignored)) if ignored else build
         if before is not None and build == before.build:
             return before, read
@@ -699,7 +690,7 @@ class _Linker:
         surfaces = self.watched.surfaces
         return Changes(surfaces.find_lines, self.asked, surfaces.find_history) if surfaces is not None else None
 
-    def list_ignored(self, place, build: Build, read: dict[str, str]) -> Iterator[str]:
+    def list_ignored(self, build: Build, read: dict[str, str]) -> Iterator[str]:
         """What the package installs and git ignores, so that it is there once it was made. read: as join() returns it,
         completed by the files that tell."""
         for install in build.installs:
@@ -717,7 +708,7 @@ class _Linker:
                 if rules and (is_ignored(path, rules) or (install.kind == "directory" and holds_ignored(path, rules))):
                     yield path
 
-    def make_glob(self, place, files: list[str]):
+    def make_glob(self, files: list[str]):
         import fnmatch
 
         by_folder = group_pairs((path.rpartition("/")[0], path) for path in files)
@@ -755,6 +746,6 @@ class _Linker:
         if known is None:
             place = self.by_name.get(package)
             cmake = [path for path in self.paths_of[place.path] if ".cmake" in path] if place is not None else []
-            known = list_extras(place.path, self.make_glob(place, cmake)) if place is not None and cmake else ()
+            known = list_extras(place.path, self.make_glob(cmake)) if place is not None and cmake else ()
             self._extras[package] = known
         return known

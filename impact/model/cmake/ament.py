@@ -311,7 +311,7 @@ def add_auto_target(run: Interpreter, call: CommandCall, args: list[Word]) -> No
         for path in sorted(hits):
             if path.endswith(SOURCES):
                 draft.add_source(path, run.merge_with(directory))
-    if run.has_path(run.resolve("include"), True):
+    if run.has_path(run.resolve("include")):
         add_links(run, draft, [wrap("include", call.at)], "include", "PUBLIC")
     if kind in ("executable", "test") and "NO_TARGET_LINK_LIBRARIES" not in given:
         libraries = [made.name for made in run.automatic if made.kind == "library"]
@@ -345,7 +345,7 @@ def run_auto_package(run: Interpreter, call: CommandCall, args: list[Word]) -> N
         if draft.kind in ("library", "interface"):
             run.add_export(draft.name, "ament_export_libraries", call.at, run.conditions)
     include = run.resolve_tree_path("include/")
-    if run.has_path(run.resolve("include"), True):
+    if run.has_path(run.resolve("include")):
         headers = f"include/{package}" if "USE_SCOPED_HEADER_INSTALL_DIR" in given else "include"
         run.add_install("directory", (include,), headers, call)
         run.add_export(headers, "ament_export_include_directories", call.at, run.conditions)

@@ -86,10 +86,8 @@ class _InWorld(CMakeTest):
             return self.world.is_target(text)
         if kind == "COMMAND":
             return self.world.is_command(text)
-        if kind == "EXISTS":
-            return self.world.has_path(text, False)
-        if kind == "IS_DIRECTORY":
-            return self.world.has_path(text, True)
+        if kind in ("EXISTS", "IS_DIRECTORY"):
+            return self.world.has_path(text)
         if kind == "IS_ABSOLUTE":
             return text.startswith("/")
         return None

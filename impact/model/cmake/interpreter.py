@@ -595,7 +595,7 @@ class Interpreter:
         elif "IN" in args[1:] and ("LISTS" in rest or "ITEMS" in rest or "ZIP_LISTS" in rest):
             split = find_position(args, "IN")
             variables = args[:split]
-            rounds = self.list_foreach_items(args[split + 1 :], len(variables))
+            rounds = self.list_foreach_items(args[split + 1 :])
         else:
             rounds = [(item,) for item in rest]
         names = [str(name) for name in variables]
@@ -622,7 +622,7 @@ class Interpreter:
             self.assign(scope, name, value if value is not None else UNSET)
         return signal if signal >= RETURN else NORMAL
 
-    def list_foreach_items(self, args: list[Word], width: int) -> list[tuple[Word, ...]]:
+    def list_foreach_items(self, args: list[Word]) -> list[tuple[Word, ...]]:
         """Rounds of foreach(IN LISTS / ITEMS / ZIP_LISTS)."""
         items: list[Word] = []
         zipped: list[tuple[Word, ...]] = []
@@ -1025,7 +1025,7 @@ class Interpreter:
             return None
         return True if name in self.definitions or (name in COMMANDS and name not in MODULE_OF) else None
 
-    def has_path(self, path: str, directory: bool) -> bool | None:
+    def has_path(self, path: str) -> bool | None:
         """Whether a path of the package exists; None outside of it."""
         relative = self.make_relative(path) if path.startswith("/") else None
         if relative is None or not (self.is_in_package(relative) or relative == self.package_path):

@@ -241,7 +241,7 @@ def note_made(run: Interpreter, path: str, *, folder: bool = False) -> None:
 def note_written(run: Interpreter, item: Word) -> None:
     """Remembers an argument of a program that names a path of the tree which does not exist: the program makes it."""
     path = run.make_relative(item) if item.startswith("/") else None
-    if path and not run.has_path(item, False):
+    if path and not run.has_path(item):
         run.made[path] = run.made[f"{path}/"] = None
 
 

@@ -268,16 +268,15 @@ class Resolver:
             for one in self.list_own_lineage(place.owner):
                 for member in one.members.get(head, ()):
                     if member.kind == "alias":
-                        return self._find_nested(
-                            self.find_type(member.type, _make_class_place(one), depth + 1), rest, place, depth
-                        )
+                        inner = self.find_type(member.type, _make_class_place(one), depth + 1)
+                        return self._find_nested(inner, rest, depth)
                     if member.kind == "type":
                         name = f"{one.name}::{name}"
                         break
                 for base in one.bases:
                     outer = parse_type(base).outer.removeprefix("::")
                     if outer.rpartition("::")[2] == head and outer != name:
-                        return self._find_nested(self.find_type(base, locate_class(one), depth + 1), rest, place, depth)
+                        return self._find_nested(self.find_type(base, locate_class(one), depth + 1), rest, depth)
         own = self._find_own_class(name, place)
         if own is not None:
             return own
@@ -286,7 +285,7 @@ class Resolver:
             for alias in file.list_aliases(head):
                 inner = self.find_type(alias.type, CodePlace(alias.scope, "", False), depth + 1)
                 if inner is not None or not rest:
-                    return self._find_nested(inner, rest, place, depth)
+                    return self._find_nested(inner, rest, depth)
         if self.vocabulary is not None:
             for full in meanings:
                 if full in self.vocabulary.classes:
@@ -311,7 +310,7 @@ class Resolver:
             return inner._replace(pointer=True) if inner is not None and not inner.own else None
         # An alias of some class, where nothing else is so called.
         found = {
-            self._find_nested(self.find_type(member.type, _make_class_place(one), depth + 1), rest, place, depth)
+            self._find_nested(self.find_type(member.type, _make_class_place(one), depth + 1), rest, depth)
             for file in self.files
             if file.mentions(head) and head in file.code.like_aliases
             for one in file.code.file.classes
@@ -320,7 +319,7 @@ class Resolver:
         }
         return _select_only(found)
 
-    def _find_nested(self, type_: CppType | None, rest: str, place: CodePlace, depth: int) -> CppType | None:
+    def _find_nested(self, type_: CppType | None, rest: str, depth: int) -> CppType | None:
         """What `alias::rest` is."""
         if type_ is None or not rest:
             return type_
@@ -585,12 +584,9 @@ class Resolver:
         name = callee.text
         outer, _, last = name.rpartition("::")
         if callee.template:
-            if last in _MAKERS:
-                type_ = self.find_type(callee.template[0], place)
-                return type_._replace(pointer=True) if type_ is not None else None
             if name in _CASTS:
                 return self.find_type(callee.template[0], place)
-            if last in _POINTER_CASTS:
+            if last in _MAKERS or last in _POINTER_CASTS:
                 type_ = self.find_type(callee.template[0], place)
                 return type_._replace(pointer=True) if type_ is not None else None
         if last in _THROUGH and outer in ("std", "boost") and len(expr.parts) == 2:
