@@ -8,7 +8,7 @@ import re
 import shutil
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import IO
 
@@ -43,7 +43,7 @@ class Loader:
         self._root, self._run = root, run or run_command
         sourced = [folder for folder in environment.get("LD_LIBRARY_PATH", "").split(":") if folder]
         self._folders = [*sourced, *folders]
-        self._heads: dict[str, tuple[str, int] | None] = {}
+        self._read_head = cache(_read_head)
 
     @property
     def knows_prefixes(self) -> bool:
@@ -136,10 +136,7 @@ class Loader:
         return frozenset(found)
 
     def _fits(self, path: str, asker: Elf) -> bool:
-        if path not in self._heads:
-            self._heads[path] = _read_head(path)
-        head = self._heads[path]
-        return head is not None and head == (asker.machine, asker.bits)
+        return self._read_head(path) == (asker.machine, asker.bits)
 
 
 def open_library(path: str) -> IO[bytes]:
