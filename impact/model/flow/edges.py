@@ -13,6 +13,7 @@ from ..workspace import Workspace
 from .defined import list_released
 from .graph import Endpoint, Graph, Node
 from .launches import Launch
+from .select import get_kind
 from .workspace import get_flow
 
 # Of these the workspace says what runs; plugins and libraries get their names from whoever loads them, but for names
@@ -29,7 +30,6 @@ _OTHER_SIDE = {
 _MOST_PAIRS = 10_000
 _MOST_PAIRS_IN_ALL = 100_000
 _SIDES = (("publisher", "subscriber"), ("server", "client"), ("action server", "action client"))
-_WHAT = {"publisher": "topic", "subscriber": "topic", "server": "service", "client": "service"}
 
 
 class Sure(NamedTuple):
@@ -71,7 +71,7 @@ class Flow:
         self._of_node: dict[tuple[str, str, str], list[Endpoint]] = {}
         for one in graph.endpoints:
             if one.topic:
-                self.known.setdefault((_get_kind(one.role), one.topic), []).append(one)
+                self.known.setdefault((get_kind(one), one.topic), []).append(one)
                 self._of_role.setdefault((one.role, one.topic), []).append(one)
                 self._of_node.setdefault((one.node, one.role, one.topic), []).append(one)
 
@@ -245,10 +245,6 @@ def _lacks_other_partner(flow: Flow, pair: FlowPair) -> bool:
 
 def _fits_type(one: Endpoint, other: Endpoint) -> bool:
     return one.type == other.type or not one.type or not other.type or "*" in (one.type, other.type)
-
-
-def _get_kind(role: str) -> str:
-    return _WHAT.get(role, "action")
 
 
 def _get_place(endpoint: Endpoint) -> tuple[str, int]:
