@@ -192,14 +192,9 @@ class _Search:
                     real_paths.add(real)
         found = []
         for place in (*places.values(), *foreign.values()):
-            found.append(
-                msgspec.structs.replace(
-                    place,
-                    nested=tuple(nested.get(place.path, ())),
-                    repository=self._find_repository(place.path),
-                    ignored=self._explain_ignored(place.name),
-                )
-            )
+            inner, path, ignored = tuple(nested.get(place.path, ())), place.path, self._explain_ignored(place.name)
+            repository = path if path in self.repositories else self._find_above(path, self.repositories)
+            found.append(msgspec.structs.replace(place, nested=inner, repository=repository, ignored=ignored))
         return Discovered(found, self.problems, self.lists_repositories)
 
     def _find_above(self, folder: str, places: Iterable[str]) -> str | None:
@@ -220,23 +215,18 @@ class _Search:
             link = link.rpartition("/")[0]
         return aliases[link] + folder[len(link) :] if link else None
 
-    def _find_repository(self, folder: str) -> str | None:
-        if folder in self.repositories:
-            return folder
-        return self._find_above(folder, self.repositories)
-
     def _make_with_manifest(self, folder: str, names: set[str], hidden_by: str) -> PackagePlace | None:
         variants = sorted(
             (int(match[1] or match[2]), _join(folder, name)) for name in names if (match := _VARIANT.match(name))
         )
         usual = "package.xml" in names
         path = _join(folder, "package.xml") if usual else variants[-1][1] if variants else ""
-        manifest = self._find_manifest(path)
+        manifest = find_manifest(self.gathered, path)
         if manifest is None or not (usual or manifest.name):
             return None
         given = self._read_settings(folder, names)
         name = _convert_to_text(given.get("name")) or manifest.name or _get_folder_name(folder, self.tree)
-        given = {**self._get_settings_by_name(name), **given}
+        given = {**self.meta[0].get(name, {}), **given}
         return PackagePlace(
             path=folder,
             manifest_path=path,
@@ -263,7 +253,7 @@ class _Search:
             kind, name = "python", name or found
         if not (kind and name):
             return None
-        given = {**self._get_settings_by_name(name), **given}
+        given = {**self.meta[0].get(name, {}), **given}
         return PackagePlace(folder, "", name, kind, extra_dependencies=_list_extra_dependencies(given))
 
     def _read_project_name(self, folder: str) -> str | None:
@@ -328,16 +318,10 @@ class _Search:
                         into.setdefault(place, {}).update(values)
         return by_name, by_path
 
-    def _find_manifest(self, path: str) -> Manifest | None:
-        return self.gathered.get_facts(path).facts if path in self.gathered.kinds else None
-
     def _read_settings(self, folder: str, names: set[str]) -> dict[str, Any]:
         """What colcon.pkg and colcon.meta say of a folder; the latter weighs more."""
         given = self._read_yaml(_join(folder, "colcon.pkg")) if "colcon.pkg" in names else {}
         return {**given, **self.meta[1].get(folder, {})}
-
-    def _get_settings_by_name(self, name: str) -> dict[str, Any]:
-        return self.meta[0].get(name, {})
 
     def _list_bases(self) -> tuple[list[str], set[str]]:
         """(folders that are searched, folders that are only looked at themselves)."""

@@ -268,6 +268,3 @@ def _list_file_parameters(sources: InWorkspace, setting: SettingFile, full: str)
     for name, entry in select_file_values(setting, full).items():
         if for_all.get(name) != entry:
             yield GivenParameter(normalise(name), place, entry.line)
-
-
-__all__ = ["GivenParameter", "GivenRemapping", "Launch", "LaunchedNode", "is_launch", "list_launches"]
