@@ -708,11 +708,8 @@ class PackageJoin:
                 folders.extend(item.rstrip("/") for item in rule.items)
             elif rule.kind == "files":
                 single.update(rule.items)
-        found = []
-        for path in self.cpp:
-            if is_header(path) and (path in single or any(path.startswith(f + "/") if f else True for f in folders)):
-                found.append(path)
-        return found
+        headers = filter(is_header, self.cpp)
+        return [p for p in headers if p in single or any(not f or p.startswith(f"{f}/") for f in folders)]
 
     def collect_sources(self, roles):
         includes: list[IncludeUse] = []

@@ -619,7 +619,8 @@ class TargetView:
     @cache_method
     def build_environment(self, package: Package) -> frozenset[str]:
         """Everything on a machine that has just what the package declares, the package itself included."""
-        return self.list_transitive(self._list_built_with(package)).union(self.preinstalled, (package.name,))
+        declared = (name for name, kinds in self.collect_declared(package).items() if kinds & _BUILT_WITH)
+        return self.list_transitive(declared).union(self.preinstalled, (package.name,))
 
     @cached_property
     def brought_to_workspace(self) -> frozenset[str]:
@@ -665,9 +666,6 @@ class TargetView:
         if self.target.list_dependencies(name) is None:
             return self.target.list_possible(name)
         return self.target.list_later_dependencies(name).union(self.list_installed_with(name))
-
-    def _list_built_with(self, package: Package) -> list[str]:
-        return [name for name, kinds in self.collect_declared(package).items() if kinds & _BUILT_WITH]
 
     def list_transitive(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""

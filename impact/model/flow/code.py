@@ -179,7 +179,6 @@ class FlowCode:
             before = None
         self.functions: list[Fn] = []
         self.functions_in: dict[str, list[Fn]] = {}
-        self._first_in: dict[str, Fn] = {}
         self.by_tail: dict[str, list[Fn]] = {}
         self.by_name: dict[tuple[str, str], Fn] = {}
         # Objects that have an equal class each: what was found out about one holds for no other.
@@ -213,7 +212,6 @@ class FlowCode:
             self.functions_in[source.path] = functions
             for fn in functions:
                 self.functions.append(fn)
-                self._first_in.setdefault(source.path, fn)
                 self.by_tail.setdefault(get_tail(fn.name), []).append(fn)
                 self.by_name.setdefault((source.path, fn.name), fn)
         # By names alone; a later state of the code may take these over.
@@ -615,7 +613,7 @@ class FlowCode:
 
     def find_first(self, source: CodeFile, otherwise: Fn) -> Fn:
         """The first function of a file; `otherwise` for a file without functions."""
-        return self._first_in.get(source.path, otherwise)
+        return next(iter(self.functions_in.get(source.path, ())), otherwise)
 
     @cache_method
     def _find_member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:

@@ -62,18 +62,15 @@ class Flow:
     ):
         self.graph, self.interfaces, self.surely, self.around = graph, interfaces, surely, around
         self.nodes = {node.id: node for node in graph.nodes}
-        names: dict[tuple, set[str]] = {}
-        for one in graph.endpoints:
-            names.setdefault((one.node, one.role, one.path, one.line, one.written), set()).add(one.topic)
-        self._alone = {key for key, topics in names.items() if len(topics) == 1}
-        self.known: dict[tuple[str, str], list[Endpoint]] = {}
-        self._of_role: dict[tuple[str, str], list[Endpoint]] = {}
-        self._of_node: dict[tuple[str, str, str], list[Endpoint]] = {}
-        for one in graph.endpoints:
-            if one.topic:
-                self.known.setdefault((get_kind(one), one.topic), []).append(one)
-                self._of_role.setdefault((one.role, one.topic), []).append(one)
-                self._of_node.setdefault((one.node, one.role, one.topic), []).append(one)
+        places = ((one, (one.node, one.role, one.path, one.line, one.written)) for one in graph.endpoints)
+        names = group_pairs((place, one.topic) for one, place in places)
+        self._alone = {place for place, topics in names.items() if len(set(topics)) == 1}
+        named = [one for one in graph.endpoints if one.topic]
+        self.known = group_pairs(((get_kind(one), one.topic), one) for one in named)
+        self._of_role: dict[tuple[str, str], list[Endpoint]] = group_pairs(
+            ((one.role, one.topic), one) for one in named
+        )
+        self._of_node = group_pairs(((one.node, one.role, one.topic), one) for one in named)
 
     def list_sure(self, *roles: str) -> Iterator[Sure]:
         """Endpoints whose name is certain, of some roles or of all: in the order of the graph."""
