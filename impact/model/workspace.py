@@ -57,6 +57,13 @@ class Package:
     generation of the workspace.
     """
 
+    digest: LinkedPackage
+    name: str
+    path: str
+    manifest: Manifest
+    build: Build
+    build_type: str
+
     def __init__(self, digest: LinkedPackage, build: Build | None = None):
         self.digest = digest
         self.name, self.path = digest.name, digest.path
