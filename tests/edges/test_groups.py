@@ -1,5 +1,4 @@
 import pytest
-
 from rosimpact.edges.groups import group_pairs
 
 
