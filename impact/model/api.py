@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
+from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
 from ..targets.surface.offers import Standing, find_standing
 from ..targets.surface.offers_cpp import (
@@ -197,10 +198,7 @@ class PackageNames:
     @cached_property
     def by_last(self) -> dict[str, list[str]]:
         """The changing names by their last part, also those of which no use can matter."""
-        found: dict[str, list[str]] = {}
-        for full in self.names:
-            found.setdefault(full.rpartition("::")[2], []).append(full)
-        return found
+        return group_pairs((full.rpartition("::")[2], full) for full in self.names)
 
     @cached_property
     def derived(self) -> dict[str, dict[str, None]]:
@@ -220,11 +218,7 @@ class PackageNames:
     @cached_property
     def pure(self) -> dict[str, list[str]]:
         """Classes with their methods that only some versions make others implement."""
-        found: dict[str, list[str]] = {}
-        for full, name in self.names.items():
-            if name.pure:
-                found.setdefault(full.rpartition("::")[0], []).append(full)
-        return found
+        return group_pairs((full.rpartition("::")[0], full) for full, name in self.names.items() if name.pure)
 
     @cached_property
     def names_begin(self) -> frozenset[str]:
@@ -356,10 +350,7 @@ class _Union(Generic[T]):
     without scopes."""
 
     def __init__(self, parts: Iterable[tuple[frozenset[str], Mapping[str, T]]]):
-        self._parts: dict[str, list[Mapping[str, T]]] = {}
-        for begins, names in parts:
-            for head in begins:
-                self._parts.setdefault(head, []).append(names)
+        self._parts = group_pairs((head, names) for begins, names in parts for head in begins)
 
     def get(self, full: str) -> T | None:
         """What a name stands for; None for one that is not there."""

@@ -11,6 +11,7 @@ package that is reached on two ways is reported where it really lies.
 """
 
 import fnmatch
+import posixpath
 import re
 from collections.abc import Iterable
 from typing import Any
@@ -170,7 +171,7 @@ class _Search:
             above = self._find_above(folder, places)
             if above is not None:
                 if "package.xml" in names:
-                    nested.setdefault(above, []).append(_join(folder, "package.xml"))
+                    nested.setdefault(above, []).append(posixpath.join(folder, "package.xml"))
                 continue
             if not (_is_crawled(folder, bases) or folder in only):
                 continue
@@ -192,14 +193,9 @@ class _Search:
                     real_paths.add(real)
         found = []
         for place in (*places.values(), *foreign.values()):
-            found.append(
-                msgspec.structs.replace(
-                    place,
-                    nested=tuple(nested.get(place.path, ())),
-                    repository=self._find_repository(place.path),
-                    ignored=self._explain_ignored(place.name),
-                )
-            )
+            inner, path, ignored = tuple(nested.get(place.path, ())), place.path, self._explain_ignored(place.name)
+            repository = path if path in self.repositories else self._find_above(path, self.repositories)
+            found.append(msgspec.structs.replace(place, nested=inner, repository=repository, ignored=ignored))
         return Discovered(found, self.problems, self.lists_repositories)
 
     def _find_above(self, folder: str, places: Iterable[str]) -> str | None:
@@ -220,23 +216,17 @@ class _Search:
             link = link.rpartition("/")[0]
         return aliases[link] + folder[len(link) :] if link else None
 
-    def _find_repository(self, folder: str) -> str | None:
-        if folder in self.repositories:
-            return folder
-        return self._find_above(folder, self.repositories)
-
     def _make_with_manifest(self, folder: str, names: set[str], hidden_by: str) -> PackagePlace | None:
-        variants = sorted(
-            (int(match[1] or match[2]), _join(folder, name)) for name in names if (match := _VARIANT.match(name))
-        )
+        matches = ((name, _VARIANT.match(name)) for name in names)
+        variants = sorted((int(m[1] or m[2]), posixpath.join(folder, name)) for name, m in matches if m)
         usual = "package.xml" in names
-        path = _join(folder, "package.xml") if usual else variants[-1][1] if variants else ""
-        manifest = self._find_manifest(path)
+        path = posixpath.join(folder, "package.xml") if usual else variants[-1][1] if variants else ""
+        manifest = find_manifest(self.gathered, path)
         if manifest is None or not (usual or manifest.name):
             return None
         given = self._read_settings(folder, names)
         name = _convert_to_text(given.get("name")) or manifest.name or _get_folder_name(folder, self.tree)
-        given = {**self._get_settings_by_name(name), **given}
+        given = {**self.meta[0].get(name, {}), **given}
         return PackagePlace(
             path=folder,
             manifest_path=path,
@@ -263,17 +253,17 @@ class _Search:
             kind, name = "python", name or found
         if not (kind and name):
             return None
-        given = {**self._get_settings_by_name(name), **given}
+        given = {**self.meta[0].get(name, {}), **given}
         return PackagePlace(folder, "", name, kind, extra_dependencies=_list_extra_dependencies(given))
 
     def _read_project_name(self, folder: str) -> str | None:
         """The name in project(), else the folder's; None for the file that catkin puts above all packages."""
-        file = self._read(_join(folder, "CMakeLists.txt"), "colcon_cmake")
+        file = self._read(posixpath.join(folder, "CMakeLists.txt"), "colcon_cmake")
         return None if file.is_top else file.name or _get_folder_name(folder, self.tree)
 
     def _read_python_name(self, folder: str, names: set[str]) -> str:
         for name, kind in _PYTHON_NAMES.items():
-            if name in names and (found := self._read(_join(folder, name), kind).name):
+            if name in names and (found := self._read(posixpath.join(folder, name), kind).name):
                 return found
         return ""
 
@@ -316,7 +306,7 @@ class _Search:
             if path is None or not self.tree.exists(path):
                 continue
             if self.tree.is_dir(path):
-                path = _join(path, "colcon.meta")
+                path = posixpath.join(path, "colcon.meta")
                 if not self.tree.exists(path):
                     continue
             data = self._read_yaml(path)
@@ -328,16 +318,10 @@ class _Search:
                         into.setdefault(place, {}).update(values)
         return by_name, by_path
 
-    def _find_manifest(self, path: str) -> Manifest | None:
-        return self.gathered.get_facts(path).facts if path in self.gathered.kinds else None
-
     def _read_settings(self, folder: str, names: set[str]) -> dict[str, Any]:
         """What colcon.pkg and colcon.meta say of a folder; the latter weighs more."""
-        given = self._read_yaml(_join(folder, "colcon.pkg")) if "colcon.pkg" in names else {}
+        given = self._read_yaml(posixpath.join(folder, "colcon.pkg")) if "colcon.pkg" in names else {}
         return {**given, **self.meta[1].get(folder, {})}
-
-    def _get_settings_by_name(self, name: str) -> dict[str, Any]:
-        return self.meta[0].get(name, {})
 
     def _list_bases(self) -> tuple[list[str], set[str]]:
         """(folders that are searched, folders that are only looked at themselves)."""
@@ -402,10 +386,6 @@ def _is_crawled(folder: str, bases: frozenset[str]) -> bool:
             return False
         folder = above
     return True
-
-
-def _join(folder: str, name: str) -> str:
-    return f"{folder}/{name}" if folder else name
 
 
 def _get_folder_name(folder: str, tree: Tree) -> str:

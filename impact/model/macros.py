@@ -9,6 +9,7 @@ from collections.abc import Collection, Container, Iterable, Mapping
 from functools import lru_cache
 from types import MappingProxyType
 
+from ...edges.memory import cache_method
 from ...edges.reach import walk
 from ..facts.condition import Condition
 from .cmake.build import DefinedMacro
@@ -27,12 +28,10 @@ class Macros:
         links: Mapping[str, Collection[str]] = MappingProxyType({}),
     ):
         self._links = links
-        self._linked: dict[str, frozenset[str]] = {}
         self._tests: dict[str, tuple[DefinedMacro, ...]] = {}
         for macro in defined:
             if macro.name not in elsewhere:
                 self._tests[macro.name] = (*self._tests.get(macro.name, ()), macro)
-        self._known: dict[tuple[Condition, frozenset[str] | None], Condition] = {}
 
     def resolve_conditions(self, conditions: tuple[Condition, ...], targets: Iterable[str]) -> tuple[Condition, ...]:
         """Conditions in a file that these targets compile, with those on such macros as CMake asks them."""
@@ -62,11 +61,10 @@ class Macros:
             told = tuple(m for m in macros if any(m.target in linked for linked in with_it))
         return Condition("macro", _join_alternatives(tuple(m.conditions for m in told)), condition.negated)
 
+    @cache_method
     def _follow(self, target: str) -> frozenset[str]:
         """A target and what it links, by links of links."""
-        if target not in self._linked:
-            self._linked[target] = frozenset(walk([target], lambda one: self._links.get(one, ())))
-        return self._linked[target]
+        return frozenset(walk([target], lambda one: self._links.get(one, ())))
 
 
 @lru_cache(1024)

@@ -2,6 +2,9 @@
 
 import re
 from collections.abc import Iterable
+from functools import cached_property
+
+from ...edges.groups import group_pairs
 
 
 def fold_name(name: str) -> str:
@@ -36,20 +39,18 @@ class SpellingIndex:
 
     def __init__(self, names: Iterable[str]):
         self.names = frozenset(names)
-        self._folded: dict[str, list[str]] | None = None
-        self._by_length: dict[tuple[int, str], list[str]] = {}
 
-    def _index(self) -> dict[str, list[str]]:
-        if self._folded is None:
-            self._folded = {}
-            for name in sorted(self.names):
-                self._folded.setdefault(fold_name(name), []).append(name)
-                self._by_length.setdefault((len(name), name[:1].lower()), []).append(name)
-        return self._folded
+    @cached_property
+    def _folded(self) -> dict[str, list[str]]:
+        return group_pairs((fold_name(name), name) for name in sorted(self.names))
+
+    @cached_property
+    def _by_length(self) -> dict[tuple[int, str], list[str]]:
+        return group_pairs(((len(name), name[:1].lower()), name) for name in sorted(self.names))
 
     def find_nearest(self, name: str) -> str | None:
         """The known name that differs only in case, separators or prefix, else the only one a single edit away."""
-        same = self._index().get(fold_name(name), [])
+        same = self._folded.get(fold_name(name), [])
         if same:
             return min(same, key=lambda n: (abs(len(n) - len(name)), n))
         if len(name) < 5:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
 from ...edges.reach import walk
 from ..conditions import Environment, holds
@@ -639,15 +640,12 @@ class PackageJoin:
 
     def compute_roles(self) -> dict[str, tuple[str, bool, tuple[str, ...], tuple[Condition, ...]]]:
         """For every C++ file that something reaches: role, public, the targets that compile it, their conditions."""
-        for path in self.cpp:
-            self.by_name.setdefault(path.rsplit("/", 1)[-1].removesuffix(".in"), []).append(path)
+        self.by_name = group_pairs((path.rsplit("/", 1)[-1].removesuffix(".in"), path) for path in self.cpp)
         for path, facts in self.cpp.items():
             self.resolved[path] = [(self.find_included_file(i.path, path), i) for i in facts.includes]
-        roots: dict[str, list] = {}
-        for target in self.build.targets:
-            for source in target.sources:
-                if source in self.cpp:
-                    roots.setdefault(source, []).append(target)
+        roots = group_pairs(
+            (source, target) for target in self.build.targets for source in target.sources if source in self.cpp
+        )
         reached: dict[str, tuple[str, bool, set[str], list]] = {}
 
         def walk(path: str, role: str, public: bool, names: tuple[str, ...], conditions) -> None:
@@ -710,11 +708,8 @@ class PackageJoin:
                 folders.extend(item.rstrip("/") for item in rule.items)
             elif rule.kind == "files":
                 single.update(rule.items)
-        found = []
-        for path in self.cpp:
-            if is_header(path) and (path in single or any(path.startswith(f + "/") if f else True for f in folders)):
-                found.append(path)
-        return found
+        headers = filter(is_header, self.cpp)
+        return [p for p in headers if p in single or any(not f or p.startswith(f"{f}/") for f in folders)]
 
     def collect_sources(self, roles):
         includes: list[IncludeUse] = []

@@ -34,8 +34,10 @@ def find_standards(view: TargetView, package: Package) -> dict[str, int]:
             others.update(f.name for f in package.build.found if f.how == "catkin")
         for name in view.roles.list_found_with(others - targets.keys()) if others else ():
             other = view.workspace.packages.get(name)
-            asked = max((t.public_standard for t in other.build.targets), default=0) if other is not None else (
-                view.offers.find_standard(name)
+            asked = (
+                max((t.public_standard for t in other.build.targets), default=0)
+                if other is not None
+                else (view.offers.find_standard(name))
             )
             year = max(year, get_year(asked) if asked else 0)
         if year:

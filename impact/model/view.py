@@ -11,6 +11,7 @@ from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
 from ...edges.reach import Reach, walk
 from ..conditions import Environment, evaluate_all
@@ -604,10 +605,8 @@ class TargetView:
     @cache_method
     def collect_declared(self, package: Package) -> Mapping[str, set[str]]:
         """Names the package declares on this target, with the kinds they are declared as."""
-        found: dict[str, set[str]] = {}
-        for dependency in self.list_dependencies(package):
-            found.setdefault(dependency.name, set()).add(dependency.kind)
-        return MappingProxyType(found)
+        found = group_pairs((dependency.name, dependency.kind) for dependency in self.list_dependencies(package))
+        return MappingProxyType({name: set(kinds) for name, kinds in found.items()})
 
     @cache_method
     def list_installed_with(self, name: str) -> tuple[str, ...]:
@@ -620,7 +619,8 @@ class TargetView:
     @cache_method
     def build_environment(self, package: Package) -> frozenset[str]:
         """Everything on a machine that has just what the package declares, the package itself included."""
-        return self.list_transitive(self._list_built_with(package)).union(self.preinstalled, (package.name,))
+        declared = (name for name, kinds in self.collect_declared(package).items() if kinds & _BUILT_WITH)
+        return self.list_transitive(declared).union(self.preinstalled, (package.name,))
 
     @cache_method
     def build_known_environment(self, package: Package) -> frozenset[str]:
@@ -678,9 +678,6 @@ class TargetView:
         if self.target.list_dependencies(name) is None:
             return self.target.list_possible(name)
         return self.target.list_later_dependencies(name).union(self.list_installed_with(name))
-
-    def _list_built_with(self, package: Package) -> list[str]:
-        return [name for name, kinds in self.collect_declared(package).items() if kinds & _BUILT_WITH]
 
     def list_transitive(self, names: Iterable[str]) -> frozenset[str]:
         """These names and everything that is installed along with them."""

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from ...edges import processes
+from ...edges.groups import group_pairs
 from ...edges.limits import format_limits
 from ...edges.memory import cache_method
 from ..facts.condition import Condition
@@ -29,7 +30,7 @@ from ..facts.kinds import make_overall_version
 from ..facts.manifest import Manifest
 from ..facts.store import Store
 from ..source_keys import compute_source_key
-from ..targets.surface.fields import make_snake_case
+from ..targets.surface.fields import ROS1_SUFFIXES, make_snake_case
 from ..tree.paths import Tree, is_vendored
 from .cmake.build import Build
 from .cmake.installed import HEADER_NAME
@@ -74,11 +75,8 @@ class Package:
     @cached_property
     def declared(self) -> dict[str, set[str]]:
         """Dependency name to the kinds it is declared as, conditions ignored."""
-        found: dict[str, set[str]] = {}
-        for dependency in self.manifest.dependencies:
-            if dependency.kind not in ("conflict", "replace"):
-                found.setdefault(dependency.name, set()).add(dependency.kind)
-        return found
+        wanted = (each for each in self.manifest.dependencies if each.kind not in ("conflict", "replace"))
+        return {name: set(kinds) for name, kinds in group_pairs((each.name, each.kind) for each in wanted).items()}
 
     @cached_property
     def is_interface_package(self) -> bool:
@@ -389,9 +387,7 @@ def list_modules(package: Package) -> set[str]:
     return found
 
 
-_ROS1_SUFFIXES = (
-    "ActionGoal", "ActionResult", "ActionFeedback", "Action", "Goal", "Result", "Feedback", "Request", "Response", "",
-)  # fmt: skip
+_ROS1_SUFFIXES = frozenset().union(*ROS1_SUFFIXES.values())
 
 
 def _make_stems(names: Iterable[str]) -> tuple[frozenset[str], frozenset[str]]:
@@ -419,10 +415,7 @@ def is_interface_header(rest: str, names: Iterable[str]) -> bool:
 
 def _group(named: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     """Names to those that have them, each once and in order. named: pairs of the two."""
-    found: dict[str, dict[str, None]] = {}
-    for name, owner in named:
-        found.setdefault(name, {})[owner] = None
-    return {name: list(owners) for name, owners in found.items()}
+    return {name: list(dict.fromkeys(owners)) for name, owners in group_pairs(named).items()}
 
 
 def link(
@@ -451,9 +444,7 @@ def link(
 
 def _list_conditional(manifest: Manifest) -> dict[str, Condition]:
     """The packages that a manifest declares under conditions alone, with the test that one of them holds."""
-    found: dict[str, list[str]] = {}
-    for dependency in manifest.dependencies:
-        found.setdefault(dependency.name, []).append(dependency.condition)
+    found = group_pairs((dependency.name, dependency.condition) for dependency in manifest.dependencies)
     return {
         name: Condition("manifest", " or ".join(f"({text})" for text in dict.fromkeys(texts)))
         for name, texts in found.items()
@@ -673,7 +664,7 @@ class _Linker:
                 place.path,
                 read_cmake,
                 self.all_paths.__contains__,
-                self.make_glob(place, files),
+                self.make_glob(files),
                 package=manifest.name,
                 dependencies=_list_named(manifest, "build", "buildtool"),
                 test_dependencies=_list_named(manifest, "test"),
@@ -685,7 +676,7 @@ class _Linker:
             and (f"{place.path}/CMakeLists.txt" if place.path else "CMakeLists.txt") in self.all_paths
             else Build()
         )
-        ignored = tuple(self.list_ignored(place, build, read))
+        ignored = tuple(self.list_ignored(build, read))
         build = msgspec.structs.replace(build, made=(*build.made, *ignored)) if ignored else build
         if before is not None and build == before.build:
             return before, read
@@ -704,7 +695,7 @@ class _Linker:
         surfaces = self.watched.surfaces
         return Changes(surfaces.find_lines, self.asked, surfaces.find_history) if surfaces is not None else None
 
-    def list_ignored(self, place, build: Build, read: dict[str, str]) -> Iterator[str]:
+    def list_ignored(self, build: Build, read: dict[str, str]) -> Iterator[str]:
         """What the package installs and git ignores, so that it is there once it was made. read: as join() returns it,
         completed by the files that tell."""
         for install in build.installs:
@@ -722,12 +713,10 @@ class _Linker:
                 if rules and (is_ignored(path, rules) or (install.kind == "directory" and holds_ignored(path, rules))):
                     yield path
 
-    def make_glob(self, place, files: list[str]):
+    def make_glob(self, files: list[str]):
         import fnmatch
 
-        by_folder: dict[str, list[str]] = {}
-        for path in files:
-            by_folder.setdefault(path.rpartition("/")[0], []).append(path)
+        by_folder = group_pairs((path.rpartition("/")[0], path) for path in files)
         folders = sorted(by_folder)
         known: dict[tuple[str, bool], list[str]] = {}
 
@@ -762,6 +751,6 @@ class _Linker:
         if known is None:
             place = self.by_name.get(package)
             cmake = [path for path in self.paths_of[place.path] if ".cmake" in path] if place is not None else []
-            known = list_extras(place.path, self.make_glob(place, cmake)) if place is not None and cmake else ()
+            known = list_extras(place.path, self.make_glob(cmake)) if place is not None and cmake else ()
             self._extras[package] = known
         return known

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
+from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
 from .changes import DISTROS, ChangeRow, find_removal_version, find_version, has_reached, load_rows
 from .distro.known import list_known_distros, release_day
@@ -344,11 +345,9 @@ class Availabilities:
 @cache
 def _load_removals() -> dict[str, list[ChangeRow]]:
     """Reviewed rows by the name that they say is removed."""
-    found: dict[str, list[ChangeRow]] = {}
-    for row in load_rows():
-        if row.removed_in and not row.new_since and not row.back_in:
-            found.setdefault(row.old, []).append(row)
-    return found
+    return group_pairs(
+        (row.old, row) for row in load_rows() if row.removed_in and not row.new_since and not row.back_in
+    )
 
 
 def convert_row(symbol: Symbol, change: ChangeInForce) -> Availability:

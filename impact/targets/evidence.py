@@ -7,7 +7,7 @@ the change is in force there and on which day its distro got it, told by the shi
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import cache
+from functools import cache, cmp_to_key
 from typing import TYPE_CHECKING
 
 from .changes import DISTROS, ChangeRow, find_version, has_reached, load_rows, load_uses
@@ -17,7 +17,7 @@ from .providers.providers import Providers
 from .surface.offers import classify_event, is_there_at, list_declared
 from .surface.store import load_shipped
 from .target import ChangeInForce
-from .version import is_at_least, parse
+from .version import compare, is_at_least, parse
 
 if TYPE_CHECKING:
     from .distro.distro import DistroTarget
@@ -80,11 +80,8 @@ def find_release_before(package: str, version: str) -> str:
     none had one, or none this version, so that the generation is not known."""
     released = list_releases(package)
     generations = {ros for ros, other in released if other == version}
-    best = ""
-    for ros, other in released if len(generations) == 1 else ():
-        if ros in generations and not is_at_least(other, version) and (not best or is_at_least(other, best)):
-            best = other
-    return best
+    older = (other for ros, other in released if generations == {ros} and not is_at_least(other, version))
+    return max(older, key=cmp_to_key(compare), default="")
 
 
 @cache

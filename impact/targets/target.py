@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import NamedTuple
 
+from ...edges.groups import group_pairs
+
 
 class Provider(NamedTuple):
     """Who offers a header, CMake package, Python module or executable.
@@ -63,10 +65,7 @@ class ChangeTable(tuple[ChangeInForce, ...]):
     @cached_property
     def by_kind(self) -> dict[str, list[ChangeInForce]]:
         """The changes of each kind."""
-        found: dict[str, list[ChangeInForce]] = {}
-        for change in self:
-            found.setdefault(change.kind, []).append(change)
-        return found
+        return group_pairs((change.kind, change) for change in self)
 
     @cached_property
     def by_name(self) -> dict[tuple[str, str], list[ChangeInForce]]:
@@ -81,8 +80,6 @@ class ChangeTable(tuple[ChangeInForce, ...]):
     @cached_property
     def removed(self) -> dict[tuple[str, str, str], list[ChangeInForce]]:
         """What is removed, by kind, package and old name."""
-        found: dict[tuple[str, str, str], list[ChangeInForce]] = {}
-        for change in self:
-            if change.state == "removed":
-                found.setdefault((change.kind, change.package, change.old), []).append(change)
-        return found
+        return group_pairs(
+            ((change.kind, change.package, change.old), change) for change in self if change.state == "removed"
+        )

@@ -1162,7 +1162,7 @@ FILES = ["a/CMakeLists.txt", "a/src/x.cpp", "a/src/y.hpp", "a/src/deep/z.cpp", "
     ],
 )
 def test_files_that_match_a_pattern(pattern, recurse, expected):
-    find = _Linker.make_glob(None, None, FILES)  # type: ignore[arg-type]
+    find = _Linker.make_glob(None, FILES)  # type: ignore[arg-type]
     assert find(pattern, recurse) == expected
     assert find(pattern, recurse) == expected
 

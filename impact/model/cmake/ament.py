@@ -8,12 +8,10 @@ import posixpath
 from .blocks import CommandCall
 from .build import FoundPackage, GeneratedInterfaces
 from .find import set_catkin_destinations
-from .interpreter import Interpreter, handles, stands_in_for
+from .interpreter import SOURCES, Interpreter, handles, stands_in_for
 from .names import make_name_set
 from .targets import add_links, add_sources, makes_archives, note_signature, resolve_target
 from .values import CMakeValue, Word, group_by_keyword, split_words, wrap
-
-_CPP_SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
 
 
 @handles("ament_target_dependencies", least=1)
@@ -311,9 +309,9 @@ def add_auto_target(run: Interpreter, call: CommandCall, args: list[Word]) -> No
         relative = run.make_relative(run.resolve(directory))
         hits = run.glob(posixpath.join(relative, "*"), True) if relative is not None else []
         for path in sorted(hits):
-            if path.endswith(_CPP_SOURCES):
+            if path.endswith(SOURCES):
                 draft.add_source(path, run.merge_with(directory))
-    if run.has_path(run.resolve("include"), True):
+    if run.has_path(run.resolve("include")):
         add_links(run, draft, [wrap("include", call.at)], "include", "PUBLIC")
     if kind in ("executable", "test") and "NO_TARGET_LINK_LIBRARIES" not in given:
         libraries = [made.name for made in run.automatic if made.kind == "library"]
@@ -347,7 +345,7 @@ def run_auto_package(run: Interpreter, call: CommandCall, args: list[Word]) -> N
         if draft.kind in ("library", "interface"):
             run.add_export(draft.name, "ament_export_libraries", call.at, run.conditions)
     include = run.resolve_tree_path("include/")
-    if run.has_path(run.resolve("include"), True):
+    if run.has_path(run.resolve("include")):
         headers = f"include/{package}" if "USE_SCOPED_HEADER_INSTALL_DIR" in given else "include"
         run.add_install("directory", (include,), headers, call)
         run.add_export(headers, "ament_export_include_directories", call.at, run.conditions)
@@ -358,9 +356,8 @@ def run_auto_package(run: Interpreter, call: CommandCall, args: list[Word]) -> N
         if dependency in run.declared.exported:
             conditions = run.declared.add_condition(dependency, run.conditions)
             run.add_export(dependency, "ament_export_dependencies", call.at, conditions)
-    run_ament_package(
-        run, call, [item for item in args if item in ("CONFIG_EXTRAS",) or item in given.get("CONFIG_EXTRAS", [])]
-    )
+    extras = ("CONFIG_EXTRAS", *given.get("CONFIG_EXTRAS", []))
+    run_ament_package(run, call, [item for item in args if item in extras])
 
 
 @stands_in_for("autoware_package")

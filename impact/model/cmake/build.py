@@ -295,5 +295,3 @@ class DeclaredPackages(msgspec.Struct, frozen=True, gc=False):
         """The conditions, and that of a declared package."""
         own = self.conditions.get(name)
         return conditions if own is None else (*conditions, own)
-
-

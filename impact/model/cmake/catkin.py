@@ -186,7 +186,11 @@ def add_catkin_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> N
 
 
 @handles(
-    "add_rostest", "catkin_add_nosetests", "rosbuild_add_rostest", "rosbuild_add_pyunit", "roslaunch_add_file_check",
+    "add_rostest",
+    "catkin_add_nosetests",
+    "rosbuild_add_rostest",
+    "rosbuild_add_pyunit",
+    "roslaunch_add_file_check",
     least=1,
 )
 def add_catkin_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:

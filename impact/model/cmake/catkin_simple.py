@@ -20,7 +20,7 @@ _GENERATED = {"action": "add_action_files", "msg": "add_message_files", "srv": "
 
 
 def _has_folder(run: Interpreter, name: str) -> bool:
-    return bool(run.has_path(run.resolve(name), True))
+    return bool(run.has_path(run.resolve(name)))
 
 
 def _get_list(run: Interpreter, name: str) -> list[Word]:

@@ -57,7 +57,7 @@ class _InWorld(CMakeTest):
             return value
         if token.quoted and self.world.protects_quoted():
             return False
-        held = self.world.variable(token.text)
+        held = self.world.get(token.text)
         if held is None:
             if "${" in token.text or "$ENV{" in token.text:
                 return None
@@ -73,7 +73,7 @@ class _InWorld(CMakeTest):
         if kind == "DEFINED":
             if not operand.sure or operand.text.startswith(("ENV{", "CACHE{")):
                 return None
-            held = self.world.variable(operand.text)
+            held = self.world.get(operand.text)
             if held is None:
                 return None
             return held.defined if held.sure else None
@@ -86,10 +86,8 @@ class _InWorld(CMakeTest):
             return self.world.is_target(text)
         if kind == "COMMAND":
             return self.world.is_command(text)
-        if kind == "EXISTS":
-            return self.world.has_path(text, False)
-        if kind == "IS_DIRECTORY":
-            return self.world.has_path(text, True)
+        if kind in ("EXISTS", "IS_DIRECTORY"):
+            return self.world.has_path(text)
         if kind == "IS_ABSOLUTE":
             return text.startswith("/")
         return None
@@ -100,7 +98,7 @@ class _InWorld(CMakeTest):
             return token.text, False
         if token.quoted and self.world.protects_quoted():
             return token.text, True
-        held = self.world.variable(token.text)
+        held = self.world.get(token.text)
         if held is not None and (held.defined or not token.quoted):
             return (held.text, held.sure) if held.defined else (token.text, True)
         # A name on the left that nothing sets is a variable of somebody else's (CMAKE_BUILD_TYPE), not a text.
@@ -111,7 +109,7 @@ class _InWorld(CMakeTest):
     def evaluate_comparison(self, left: Token, kind: str, right: Token) -> bool | None:
         one, one_known = self.resolve_operand(left, True)
         if kind == "IN_LIST":
-            held = self.world.variable(right.text)
+            held = self.world.get(right.text)
             if held is None or not one_known:
                 return None
             if one in held.words and held.sure:

@@ -3,7 +3,7 @@
 import re
 
 from .blocks import CommandCall
-from .build import At, FoundPackage
+from .build import FoundPackage
 from .interpreter import Interpreter, handles
 from .language import add_module
 from .names import make_name_set, split_names
@@ -52,7 +52,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
     sought: list[Word] = []  # instead of the name
     version = ""
     section = ""
-    for index, item in enumerate(rest):
+    for item in rest:
         if item in _FLAGS:
             flags.add(item)
             section = (
@@ -66,9 +66,7 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
             components.append(item)
         elif section == "NAMES":
             sought.append(item)
-        elif (not section and index == 0 and _VERSION.match(item)) or (
-            not section and not version and _VERSION.match(item)
-        ):
+        elif not section and not version and _VERSION.match(item):
             version = str(item)
         elif not section and is_unknown(item):
             continue
@@ -87,14 +85,8 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
                             quiet=quiet,
                             version=version, conditions=conditions))  # fmt: skip
         for component in split_words(components):
-            add(
-                run,
-                component,
-                "catkin",
-                required=required,
-                quiet=quiet,
-                conditions=merge(conditions, component.conditions),
-            )
+            held, place = merge(conditions, component.conditions), run.locate(component.at)
+            run.add_found(FoundPackage(str(component), "catkin", place, required, quiet, conditions=held))
             run.extend(component, component.at)
     if sought:
         run.renamed.add(str(name))
@@ -127,9 +119,8 @@ def _find(run: Interpreter, call: CommandCall, name: Word, rest: list[Word]) -> 
         if name.upper() != name:
             run.assign(run.scope, f"{name.upper()}_FOUND", found)
     run.extend(str(name), name.at)
-    effect = _FINDING.get(name)
-    if effect is not None:
-        effect(run, call)
+    if name == "catkin":
+        _set_catkin_variables(run, call)
 
 
 def _run_module(run: Interpreter, call: CommandCall, name: str) -> None:
@@ -173,21 +164,6 @@ _GZ = make_name_set(
 )
 
 
-def add(
-    run: Interpreter,
-    name: Word,
-    how: str,
-    *,
-    required: bool = True,
-    quiet: bool = False,
-    at: At | None = None,
-    conditions: tuple = (),
-) -> None:
-    """Collects one package by name."""
-    place = run.locate(at if at is not None else name.at)
-    run.add_found(FoundPackage(str(name), how, place, required, quiet, conditions=conditions or run.merge_with(name)))
-
-
 def _set_catkin_variables(run: Interpreter, call: CommandCall) -> None:
     """What find_package(catkin) sets; destinations as documented for catkin_package()."""
     package = run.installed_name
@@ -208,9 +184,6 @@ def _set_catkin_variables(run: Interpreter, call: CommandCall) -> None:
     }
     for name, text in values.items():
         run.assign(run.scope, name, CMakeValue((wrap(text, call.at),)))
-
-
-_FINDING = {"catkin": _set_catkin_variables}
 
 
 @handles("catkin_destinations")

@@ -2,6 +2,7 @@
 
 import re
 
+from ....edges.groups import group_pairs
 from ...facts.condition import Condition
 from .blocks import CommandCall
 from .interpreter import Interpreter, handles
@@ -133,11 +134,7 @@ def _install_files(run: Interpreter, call: CommandCall, kind: str, args: list[Wo
     if kind == "files" and "PERMISSIONS" in args and any(item.endswith("_EXECUTE") for item in args):
         kind = "programs"
     destination = _resolve_destination(run, call, args)
-    items = split_words(items)
-    by_conditions: dict[tuple[Condition, ...], list[Word]] = {}
-    for item in items:
-        by_conditions.setdefault(item.conditions, []).append(item)
-    for conditions, members in by_conditions.items():
+    for conditions, members in group_pairs((item.conditions, item) for item in split_words(items)).items():
         more = {"conditions": merge(run.conditions, conditions), "rename": run.clean(find_next(args, "RENAME") or "")}
         paths = tuple(map(run.resolve_tree_path, members))
         for path in paths:

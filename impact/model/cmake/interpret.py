@@ -12,11 +12,6 @@ from .interpreter import Interpreter
 _FAMILIES = (language, lists, paths, find, targets, install, catkin, catkin_simple, ament)
 
 
-
-def _list_no_extras(package: str) -> tuple[str, ...]:
-    return ()
-
-
 def interpret(
     package_path: str,
     read: Callable[[str], CMakeFile | None],
@@ -28,7 +23,7 @@ def interpret(
     test_dependencies: tuple[str, ...] = (),
     exported_dependencies: tuple[str, ...] | None = None,
     conditional_dependencies: Mapping[str, Condition] | None = None,
-    extras: Callable[[str], tuple[str, ...]] = _list_no_extras,
+    extras: Callable[[str], tuple[str, ...]] = lambda _: (),
 ) -> Build:
     """Interprets the CMakeLists.txt of a package, and all that it includes, without building.
 

@@ -389,9 +389,8 @@ class Interpreter:
             return
         made = (*words[:1], *(to for before, to in itertools.pairwise(words) if before == "DESTINATION"))
         makes = tuple(str(item) for item in made if "$" not in item)
-        self.uses[
-            CMakeUse("command", call.name, self.locate(call.at), module, self.conditions, makes=makes)
-        ] = None
+        use = CMakeUse("command", call.name, self.locate(call.at), module, self.conditions, makes=makes)
+        self.uses[use] = None
 
     def run_block(self, block: Block) -> int:
         """Runs a block command."""
@@ -563,13 +562,13 @@ class Interpreter:
                 tokens.extend(self.make_literal_token(item, template.quoted) for item in template.words)
                 continue
             if template.kind == REFERENCE:
-                value = self.resolve_reference(template, head)
+                value = self.resolve_reference(template)
                 if not value.sure and value.defined:  # differing branches: one token, which nobody relies upon
                     tokens.append(tests.Token(value.text or f"${{{template.name}}}", False, False, False))
                 else:
                     tokens.extend(tests.Token(item, False, item.sure, False) for item in value.words if item)
                 continue
-            for item in self.expand_one(template, head):
+            for item in self.expand_one(template):
                 tokens.append(tests.Token(item, template.quoted, item.sure, False))
         return tokens
 
@@ -596,7 +595,7 @@ class Interpreter:
         elif "IN" in args[1:] and ("LISTS" in rest or "ITEMS" in rest or "ZIP_LISTS" in rest):
             split = find_position(args, "IN")
             variables = args[:split]
-            rounds = self.list_foreach_items(args[split + 1 :], len(variables))
+            rounds = self.list_foreach_items(args[split + 1 :])
         else:
             rounds = [(item,) for item in rest]
         names = [str(name) for name in variables]
@@ -623,7 +622,7 @@ class Interpreter:
             self.assign(scope, name, value if value is not None else UNSET)
         return signal if signal >= RETURN else NORMAL
 
-    def list_foreach_items(self, args: list[Word], width: int) -> list[tuple[Word, ...]]:
+    def list_foreach_items(self, args: list[Word]) -> list[tuple[Word, ...]]:
         """Rounds of foreach(IN LISTS / ITEMS / ZIP_LISTS)."""
         items: list[Word] = []
         zipped: list[tuple[Word, ...]] = []
@@ -873,8 +872,6 @@ class Interpreter:
         value = self.scope.get(name)
         return value if value is not None else self.cache.get(name)
 
-    variable = get
-
     def assign(self, where: dict[str, CMakeValue], name: str, value: CMakeValue) -> None:
         """Writes into a scope, so that a branch on trial can take it back."""
         if len(value.text) > 4096:
@@ -923,11 +920,11 @@ class Interpreter:
             if kind == LITERAL:
                 words.extend(template.words)
             elif kind == REFERENCE:
-                value = self.resolve_reference(template, None)
+                value = self.resolve_reference(template)
                 alone = not value.sure and not words and len(value.chosen) == 1
                 words.extend([item for item in (value.chosen if alone else value.words) if item])
             else:
-                words.extend(self.expand_one(template, None))
+                words.extend(self.expand_one(template))
             if len(words) > MAX_WORDS:
                 self.give_up(template.at, f"more than {MAX_WORDS} arguments")
                 words = words[:MAX_WORDS]
@@ -935,7 +932,7 @@ class Interpreter:
         self.spend(len(words) >> 5)
         return words
 
-    def resolve_reference(self, template: Template, head: CommandCall | None) -> CMakeValue:
+    def resolve_reference(self, template: Template) -> CMakeValue:
         """The value behind a plain `${name}`."""
         name = template.name
         value = self.lookup("", name)
@@ -946,7 +943,7 @@ class Interpreter:
             value = _place_unknown(value, f"${{{name}}}", template.at)
         return _flatten(value)
 
-    def expand_one(self, template: Template, head: CommandCall | None) -> tuple[Word, ...]:
+    def expand_one(self, template: Template) -> tuple[Word, ...]:
         """Words of a quoted reference or a mixed argument."""
         at = template.at
         if template.kind == QUOTED_REFERENCE:
@@ -958,8 +955,6 @@ class Interpreter:
             single = wrap(value.text, at, (), value.sure)
             single.parts = value.words if value.sure else value.chosen
             return (single,)
-        if template.kind == REFERENCE:
-            return tuple(item for item in self.resolve_reference(template, head).words if item)
         text, sure, conditions = read_references(template.parts, self._lookup_used(at))
         self.spend(len(text) >> 10)
         if len(text) > MAX_TEXT:
@@ -986,8 +981,10 @@ class Interpreter:
         if self.command == "install" and not name.startswith("CATKIN_") and not self._may_be_set(name):
             self.uses[CMakeUse("unset", name, place, self.command, self.conditions)] = None
         alike = "" if name.endswith(READ_SUFFIXES) else self.find_alike(name)
-        if not alike and not name.endswith(READ_SUFFIXES) and not (
-            name.startswith("CATKIN_") and self.command == "install"
+        if (
+            not alike
+            and not name.endswith(READ_SUFFIXES)
+            and not (name.startswith("CATKIN_") and self.command == "install")
         ):
             return
         self.uses[CMakeUse("variable", name, place, self.command, self.conditions, alike)] = None
@@ -1034,7 +1031,7 @@ class Interpreter:
             return None
         return True if name in self.definitions or (name in COMMANDS and name not in MODULE_OF) else None
 
-    def has_path(self, path: str, directory: bool) -> bool | None:
+    def has_path(self, path: str) -> bool | None:
         """Whether a path of the package exists; None outside of it."""
         relative = self.make_relative(path) if path.startswith("/") else None
         if relative is None or not (self.is_in_package(relative) or relative == self.package_path):

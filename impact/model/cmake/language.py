@@ -342,11 +342,15 @@ def check(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     else:
         names = args[-1:]
     for name in names:
-        run.assign(run.scope, str(name), CMakeValue((wrap(f"${{{name}}}", call.at, (), False),), False))
+        run.set_unknown(str(name), call.at)
 
 
 @handles(
-    "get_property", "get_target_property", "get_directory_property", "get_source_file_property", "get_cmake_property",
+    "get_property",
+    "get_target_property",
+    "get_directory_property",
+    "get_source_file_property",
+    "get_cmake_property",
     least=2,
 )
 def get_property(run: Interpreter, call: CommandCall, args: list[Word]) -> None:

@@ -57,15 +57,14 @@ def run_cmake_path(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
         rest = rest[:index] + rest[index + 2 :]
     text = held.text if held is not None else ""
     base = posixpath.basename(text)
+    dot = base.rfind(".") if "LAST_ONLY" in rest else base.find(".", 1)
+    stem = base[:dot] if dot > 0 else base
     if action == "GET" and len(rest) >= 2:
-        last = "LAST_ONLY" in rest
-        stem_end = base.rfind(".") if last else base.find(".", 1)
-        stem_end = stem_end if stem_end > 0 else len(base)
         result = {
             "FILENAME": base,
             "PARENT_PATH": posixpath.dirname(text),
-            "EXTENSION": base[stem_end:],
-            "STEM": base[:stem_end],
+            "EXTENSION": base[len(stem) :],
+            "STEM": stem,
             "RELATIVE_PART": text.lstrip("/"),
             "ROOT_PATH": "/" if text.startswith("/") else "",
             "ROOT_NAME": "",
@@ -84,8 +83,6 @@ def run_cmake_path(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
     elif action == "REPLACE_FILENAME" and rest:
         result = text[: len(text) - len(base)] + rest[0]
     elif action in ("REMOVE_EXTENSION", "REPLACE_EXTENSION"):
-        stem_end = base.rfind(".") if "LAST_ONLY" in rest else base.find(".", 1)
-        stem = base[:stem_end] if stem_end > 0 else base
         suffix = rest[-1] if action == "REPLACE_EXTENSION" and rest else ""
         suffix = f".{suffix}" if suffix and not suffix.startswith(".") else suffix
         result = text[: len(text) - len(base)] + stem + suffix

@@ -117,10 +117,8 @@ def add_target_sources(run: Interpreter, call: CommandCall, args: list[Word]) ->
 def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
     """The target of this name; one that nothing makes is noted as unknown."""
     draft = run.targets.get(name)
-    while draft is not None and draft.kind == "alias" and run.targets.get(draft.alias_of) is not None:
-        followed = run.targets.get(draft.alias_of)
-        if followed is None or followed is draft or followed.kind == "alias":
-            break
+    followed = run.targets.get(draft.alias_of) if draft is not None and draft.kind == "alias" else None
+    if followed is not None and followed.kind != "alias":
         draft = followed
     if draft is not None:
         return draft
@@ -243,7 +241,7 @@ def note_made(run: Interpreter, path: str, *, folder: bool = False) -> None:
 def note_written(run: Interpreter, item: Word) -> None:
     """Remembers an argument of a program that names a path of the tree which does not exist: the program makes it."""
     path = run.make_relative(item) if item.startswith("/") else None
-    if path and not run.has_path(item, False):
+    if path and not run.has_path(item):
         run.made[path] = run.made[f"{path}/"] = None
 
 

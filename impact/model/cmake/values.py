@@ -128,19 +128,9 @@ def split_list(text: str) -> list[str]:
     return [part for part in parts if part]
 
 
-def split_word(item: Word) -> tuple[Word, ...]:
-    """The list items inside one word that holds several, each with its own place where that is known."""
-    if item.parts:
-        return item.parts
-    return tuple(wrap(part, item.at, item.conditions, item.sure) for part in split_list(item))
-
-
 def find_position(items: Sequence[Word], keyword: str) -> int:
     """Where a keyword stands among arguments, -1 when it does not."""
-    for index, item in enumerate(items):
-        if item == keyword:
-            return index
-    return -1
+    return next((index for index, item in enumerate(items) if item == keyword), -1)
 
 
 def find_next(items: Sequence[Word], keyword: str) -> Word | None:
@@ -150,11 +140,11 @@ def find_next(items: Sequence[Word], keyword: str) -> Word | None:
 
 
 def split_words(items: Iterable[Word]) -> list[Word]:
-    """All list items inside the words."""
+    """All list items inside the words, each with its own place where that is known."""
     found: list[Word] = []
     for item in items:
         if ";" in item:
-            found.extend(split_word(item))
+            found.extend(item.parts or [wrap(part, item.at, item.conditions, item.sure) for part in split_list(item)])
         elif item:
             found.append(item)
     return found
@@ -188,31 +178,17 @@ class Template:
         self.kind = LITERAL
         self.name = ""
         self.parts: tuple = ()
-        self.words: tuple[Word, ...]
-        if argument.quoting == "[":
-            self.words = (wrap(raw, at),)
-            return
-        if "$" not in raw and "\\" not in raw:
-            if self.quoted:
-                self.words = (wrap(raw, at),)
-            elif ";" in raw:
-                self.words = tuple(wrap(part, at) for part in split_list(raw))
-            else:
-                self.words = (wrap(raw, at),) if raw else ()
-            return
-        simple = _SIMPLE.fullmatch(raw)
-        self.words = ()
-        if simple:
+        self.words: tuple[Word, ...] = ()
+        plain = argument.quoting == "[" or ("$" not in raw and "\\" not in raw)
+        simple = None if plain else _SIMPLE.fullmatch(raw)
+        if simple is not None:
             self.kind = QUOTED_REFERENCE if self.quoted else REFERENCE
             self.name = simple.group(1)
             return
-        parts = _parse(raw, self.quoted)
+        parts = [raw] if plain else _parse(raw)
         if all(isinstance(part, str) for part in parts):
             text = "".join(parts)
-            if self.quoted:
-                self.words = (wrap(text, at),)
-            else:
-                self.words = tuple(wrap(part, at) for part in split_list(text))
+            self.words = tuple(wrap(part, at) for part in ([text] if self.quoted else split_list(text)))
             return
         self.kind = MIXED
         self.parts = tuple(parts)
@@ -223,7 +199,7 @@ _PIECE = re.compile(r"[^\\$}]+|\\(?:.|\n)|\$(ENV|CACHE)?\{|\}|\$|\\", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "0": ""}
 
 
-def _parse(raw: str, quoted: bool) -> list:
+def _parse(raw: str) -> list:
     """Texts and references of an argument. A reference is (scope, parts): scope is empty, ENV or CACHE."""
     stack: list[tuple[str, list]] = [("", [])]
     for piece in _PIECE.finditer(raw):
@@ -248,14 +224,11 @@ def _parse(raw: str, quoted: bool) -> list:
     while len(stack) > 1:  # a reference that is never closed stays as it is written
         scope, parts = stack.pop()
         stack[-1][1].extend([f"${scope}{{", *parts])
-    parts = stack[0][1]
-    if quoted:
-        return parts
-    return parts
+    return stack[0][1]
 
 
 def read_references(
-    parts: tuple, lookup: Callable[[str, str], CMakeValue | None], depth: int = 0
+    parts: tuple, lookup: Callable[[str, str], CMakeValue | None]
 ) -> tuple[str, bool, tuple[Condition, ...]]:
     """Text of a MIXED template, whether it is sure, and the conditions of what went into it. A variable that is not set
     stays as it is written."""
@@ -270,7 +243,7 @@ def read_references(
         if len(inner) == 1 and isinstance(inner[0], str):
             name = inner[0]
         else:
-            name, name_sure, _ = read_references(inner, lookup, depth + 1)
+            name, name_sure, _ = read_references(inner, lookup)
             sure = sure and name_sure
         value = lookup(scope, name)
         if value is None:

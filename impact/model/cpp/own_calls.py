@@ -6,6 +6,7 @@ from __future__ import annotations
 import posixpath
 from collections.abc import Callable, Collection, Iterator, Mapping
 
+from ....edges.groups import group_pairs
 from ....edges.reach import Reach
 from ...facts.searches import CalledCpp
 
@@ -21,10 +22,7 @@ def list_own_calls(
     sources: the targets of each source; none where nothing compiles it. included: the files of the package that a file
     includes itself. spoken: all words of a file. declared: what each of some sources defines and calls."""
     own_header = {path: next((h for h in included(path) if _get_stem(h) == _get_stem(path)), "") for path in sources}
-    beside: dict[str, list[str]] = {}
-    for path, header in own_header.items():
-        if header:
-            beside.setdefault(header, []).append(path)
+    beside = group_pairs((header, path) for path, header in own_header.items() if header)
     reach = Reach(lambda path: (included(path), ()))
     with_source, stems = reach.combine_bits(beside), {header: _normalise(_get_stem(header)) for header in beside}
     pairs = []

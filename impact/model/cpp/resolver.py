@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import NamedTuple, TypeVar
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.cpp.code import CppCode
 from ...facts.cpp.names import find_closing_angle, split_at_commas, strip_templates
@@ -110,15 +111,13 @@ class KnownFile:
     @cached_property
     def classes(self) -> dict[str, list[CppClass]]:
         """Its classes."""
-        return _group_by_last(self.code.file.classes)
+        every = self.code.file.classes
+        return group_pairs((one.name.rpartition("::")[2], one) for one in every if not one.specialised)
 
     @cached_property
     def names(self) -> dict[str, list[Declaration]]:
         """What it declares outside of classes and functions."""
-        found: dict[str, list[Declaration]] = {}
-        for one in self.code.file.names:
-            found.setdefault(one.name, []).append(one)
-        return found
+        return group_pairs((one.name, one) for one in self.code.file.names)
 
     @cached_property
     def members(self) -> frozenset[str]:
@@ -140,14 +139,6 @@ class KnownFile:
         if self.mentions(last) and last in self.code.like_classes:
             return self.classes.get(last, [])
         return []
-
-
-def _group_by_last(classes: Iterable[CppClass]) -> dict[str, list[CppClass]]:
-    found: dict[str, list[CppClass]] = {}
-    for one in classes:
-        if not one.specialised:
-            found.setdefault(one.name.rpartition("::")[2], []).append(one)
-    return found
 
 
 class Resolver:
@@ -288,16 +279,15 @@ class Resolver:
             for one in self.list_own_lineage(place.owner):
                 for member in one.members.get(head, ()):
                     if member.kind == "alias":
-                        return self._find_nested(
-                            self.find_type(member.type, _make_class_place(one), depth + 1), rest, place, depth
-                        )
+                        inner = self.find_type(member.type, _make_class_place(one), depth + 1)
+                        return self._find_nested(inner, rest, depth)
                     if member.kind == "type":
                         name = f"{one.name}::{name}"
                         break
                 for base in one.bases:
                     outer = parse_type(base).outer.removeprefix("::")
                     if outer.rpartition("::")[2] == head and outer != name:
-                        return self._find_nested(self.find_type(base, locate_class(one), depth + 1), rest, place, depth)
+                        return self._find_nested(self.find_type(base, locate_class(one), depth + 1), rest, depth)
         own = self._find_own_class(name, place)
         if own is not None:
             return own
@@ -306,7 +296,7 @@ class Resolver:
             for alias in file.list_aliases(head):
                 inner = self.find_type(alias.type, CodePlace(alias.scope, "", False), depth + 1)
                 if inner is not None or not rest:
-                    return self._find_nested(inner, rest, place, depth)
+                    return self._find_nested(inner, rest, depth)
         if self.vocabulary is not None:
             for full in meanings:
                 if full in self.vocabulary.classes:
@@ -331,7 +321,7 @@ class Resolver:
             return inner._replace(pointer=True) if inner is not None and not inner.own else None
         # An alias of some class, where nothing else is so called.
         found = {
-            self._find_nested(self.find_type(member.type, _make_class_place(one), depth + 1), rest, place, depth)
+            self._find_nested(self.find_type(member.type, _make_class_place(one), depth + 1), rest, depth)
             for file in self.files
             if file.mentions(head) and head in file.code.like_aliases
             for one in file.code.file.classes
@@ -340,7 +330,7 @@ class Resolver:
         }
         return _select_only(found)
 
-    def _find_nested(self, type_: CppType | None, rest: str, place: CodePlace, depth: int) -> CppType | None:
+    def _find_nested(self, type_: CppType | None, rest: str, depth: int) -> CppType | None:
         """What `alias::rest` is."""
         if type_ is None or not rest:
             return type_
@@ -605,12 +595,9 @@ class Resolver:
         name = callee.text
         outer, _, last = name.rpartition("::")
         if callee.template:
-            if last in _MAKERS:
-                type_ = self.find_type(callee.template[0], place)
-                return type_._replace(pointer=True) if type_ is not None else None
             if name in _CASTS:
                 return self.find_type(callee.template[0], place)
-            if last in _POINTER_CASTS:
+            if last in _MAKERS or last in _POINTER_CASTS:
                 type_ = self.find_type(callee.template[0], place)
                 return type_._replace(pointer=True) if type_ is not None else None
         if last in _THROUGH and outer in ("std", "boost") and len(expr.parts) == 2:

@@ -168,10 +168,7 @@ class ApiUses:
             if name in self.vocabulary.names:
                 return None if self.resolver.declares_in(full, use.word) else self._make_use(name, use, True, ())
         type_ = self.resolver.resolve_name(scope, use.place)
-        if type_ is None or type_.own or not type_.plain or not type_.name:
-            return None
-        member = self.vocabulary.find_member(type_.name, use.word)
-        return None if member is None else self._make_use(member[0], use, True, member[1])
+        return self._find_member(type_, use) if type_ is not None and not type_.own and type_.plain else None
 
     def _find_bare(self, use: Written) -> FoundName | None:
         names, word = self.vocabulary.names, use.word

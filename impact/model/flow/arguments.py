@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 
+from ....edges.groups import group_pairs
 from ...facts.flow import FlowCall, FlowExpr
 from .code import FlowCode, Fn, get_outer, get_tail, is_number
 
@@ -61,11 +62,7 @@ class CommandLine:
     @cached_property
     def _copies(self) -> dict[Fn, list[FlowCall]]:
         """Calls that put a copy of argv into their third argument, by the function they stand in."""
-        found: dict[Fn, list[FlowCall]] = {}
-        for fn, call in self.code.list_calls_named(_COPIES):
-            if len(call.arguments) == 3:
-                found.setdefault(fn, []).append(call)
-        return found
+        return group_pairs((fn, call) for fn, call in self.code.list_calls_named(_COPIES) if len(call.arguments) == 3)
 
     def find_places(self, container: FlowExpr, index: FlowExpr, fn: Fn) -> range | None:
         """The places of argv that an element may be of, None for what is no element of it; open ended where the index

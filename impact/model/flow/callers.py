@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
+from ....edges.groups import group_pairs
 from .graph import Trigger
 
 if TYPE_CHECKING:
@@ -47,11 +48,7 @@ class Callers(msgspec.Struct, frozen=True, array_like=True, dict=True):
 
     @cached_property
     def _callees(self) -> dict[int, list[int]]:
-        found: dict[int, list[int]] = {}
-        for place, one in enumerate(self.functions):
-            for caller in one.callers:
-                found.setdefault(caller, []).append(place)
-        return found
+        return group_pairs((caller, place) for place, one in enumerate(self.functions) for caller in one.callers)
 
     def list_triggers(self, path: str, name: str, line: int) -> list[Led]:
         """What triggers a function, itself or through its callers, nearest first."""

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 from msgspec import structs
 
+from ....edges.groups import group_pairs
+from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import Assignment, FlowCall, FlowExpr
 from .code import FlowCode, Fn, Variable, get_outer, get_tail, split_name
@@ -38,16 +40,13 @@ class Calls:
         self.code, self.table = code, table
         self._kinds: dict[FlowType, frozenset[str]] = {}
         self._uses: dict[int, FrameworkCall | None] = {}
-        self._objects_of: dict[tuple[str, str], list[FrameworkRow]] = {}
         self._makers: dict[int, tuple[Fn | None, list[Fn]]] = {}
 
     @cached_property
     def uses(self) -> list[FrameworkCall]:
         """In the order of files and lines."""
         found: list[FrameworkCall] = []
-        described: dict[Fn, list[FlowCall]] = {}
-        for fn, call in self.code.list_calls_named(self.table.calls):
-            described.setdefault(fn, []).append(call)
+        described = group_pairs(self.code.list_calls_named(self.table.calls))
         for fn in self.code.functions:
             for call in described.get(fn, ()):
                 use = self.find_use(fn, call)
@@ -63,10 +62,7 @@ class Calls:
 
     @cached_property
     def _doing(self) -> dict[str, list[FrameworkCall]]:
-        found: dict[str, list[FrameworkCall]] = {}
-        for use in self.uses:
-            found.setdefault(use.row.does, []).append(use)
-        return found
+        return group_pairs((use.row.does, use) for use in self.uses)
 
     def find_kinds(self, kind: FlowType, fn: Fn) -> frozenset[str]:
         """Kinds of framework classes that a type belongs to, by itself or by its bases."""
@@ -171,17 +167,10 @@ class Calls:
         if value.kind == "name":
             if value.text == "this" or value.text in ("self", "*this"):
                 return True
-            if self.find_kinds(self.code.resolve_type(value, fn), fn) & {
-                "node",
-                "handle",
-                "image_transport",
-                "cloud_transport",
-            }:
+            kind = self.code.resolve_type(value, fn)
+            if self.find_kinds(kind, fn) & _STAND_FOR_NODES or get_tail(kind.name) in ("NodeT", "NodeType", "Node"):
                 return True
-            kind = self.code.resolve_type(value, fn).name
-            return get_tail(kind) in ("NodeT", "NodeType", "Node") or (
-                not kind and get_tail(value.text).strip("_") in _NODES
-            )
+            return not kind.name and get_tail(value.text).strip("_") in _NODES
         if value.kind == "call":
             name = get_tail(value.text)
             if self.find_kinds(self.code.resolve_type(value, fn), fn) & {"node", "handle"}:
@@ -194,7 +183,7 @@ class Calls:
     def _list_objects(self, fn: Fn) -> Iterator[FrameworkCall]:
         seen = set()
         for name, call in self._list_made(fn):
-            for row in self._list_rows(name, fn):
+            for row in self._list_rows(name, fn.source.facts.language):
                 if row.does == "node" and not call.arguments:
                     continue
                 if row.first and not self._fits_first(row.first, fn, call):
@@ -204,13 +193,10 @@ class Calls:
                     seen.add(key)
                     yield FrameworkCall(fn, row, call)
 
-    def _list_rows(self, name: str, fn: Fn) -> list[FrameworkRow]:
+    @cache_method
+    def _list_rows(self, name: str, language: str) -> list[FrameworkRow]:
         """The rows about objects of a class that a function makes; none for most classes."""
-        key = (name, fn.source.facts.language)
-        known = self._objects_of.get(key)
-        if known is None:
-            known = self._objects_of[key] = self.table.list_objects(name, key[1] == "python") if name else []
-        return known
+        return self.table.list_objects(name, language == "python") if name else []
 
     def _list_made(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
         """Objects of named classes, with the call that makes them: declared, initialised as members or bases, or made
@@ -353,6 +339,7 @@ class Calls:
         return self.code.identify(use.call.target, use.fn) if use.call.target else None
 
 
+_STAND_FOR_NODES = frozenset(("node", "handle", "image_transport", "cloud_transport"))
 _NODES = frozenset(("node", "nh", "n", "pnh", "private_nh", "node_handle", "nodehandle", "parent", "node_ptr"))
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from operator import itemgetter
 from typing import Generic, NamedTuple, TypeVar
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.flow import (
     Alias,
@@ -178,7 +179,6 @@ class FlowCode:
             before = None
         self.functions: list[Fn] = []
         self.functions_in: dict[str, list[Fn]] = {}
-        self._first_in: dict[str, Fn] = {}
         self.by_tail: dict[str, list[Fn]] = {}
         self.by_name: dict[tuple[str, str], Fn] = {}
         # Objects that have an equal class each: what was found out about one holds for no other.
@@ -212,7 +212,6 @@ class FlowCode:
             self.functions_in[source.path] = functions
             for fn in functions:
                 self.functions.append(fn)
-                self._first_in.setdefault(source.path, fn)
                 self.by_tail.setdefault(get_tail(fn.name), []).append(fn)
                 self.by_name.setdefault((source.path, fn.name), fn)
         # By names alone; a later state of the code may take these over.
@@ -328,7 +327,8 @@ class FlowCode:
                 if _may_be_module(cls.source.path, path[:-1]) and cls.name == path[-1]
             ]
         if len(found) > 1:
-            found = max(_group_by_nearness(found, source, scope).items(), default=(0, found))[1]
+            groups = group_pairs((_rate_nearness(cls, source, scope), cls) for cls in found)
+            found = groups[max(groups)]
         names = {(cls.name, cls.source.package) for cls in found}
         # Of several bodies under one name (behind `#if`, say) the largest.
         return max(found, key=lambda cls: cls.facts.end - cls.facts.line) if len(names) == 1 else None
@@ -354,12 +354,9 @@ class FlowCode:
     @cached_property
     def derived(self) -> dict[str, list[Cls]]:
         """Name of a class to the classes of the code that derive from it, at any distance."""
-        found: dict[str, list[Cls]] = {}
-        for group in self.classes.values():
-            for cls in group:
-                for base in self.list_bases(cls)[1:]:
-                    found.setdefault(base.name, []).append(cls)
-        return found
+        return group_pairs(
+            (base.name, cls) for group in self.classes.values() for cls in group for base in self.list_bases(cls)[1:]
+        )
 
     def find_base_made(self, fn: Fn, each: Assignment) -> tuple[str, tuple[FlowExpr, ...]] | None:
         """The base class, as meant, and the arguments that a constructor's initialiser gives it; None for others."""
@@ -407,11 +404,9 @@ class FlowCode:
     @cached_property
     def _methods(self) -> dict[tuple[str, str], list[Fn]]:
         """Methods by the last parts of the names of their class and of themselves."""
-        found: dict[tuple[str, str], list[Fn]] = {}
-        for fn in self.functions:
-            if fn.owner and not fn.is_lambda:
-                found.setdefault((fn.owner[-1], get_tail(fn.name)), []).append(fn)
-        return found
+        return group_pairs(
+            ((fn.owner[-1], get_tail(fn.name)), fn) for fn in self.functions if fn.owner and not fn.is_lambda
+        )
 
     @cache_method
     def list_overrides(self, cls: Cls, name: str) -> list[Fn]:
@@ -524,11 +519,7 @@ class FlowCode:
 
     @cached_property
     def _by_owner(self) -> dict[str, list[Fn]]:
-        found: dict[str, list[Fn]] = {}
-        for fn in self.functions:
-            if fn.facts.owner:
-                found.setdefault(get_tail(fn.facts.owner), []).append(fn)
-        return found
+        return group_pairs((get_tail(fn.facts.owner), fn) for fn in self.functions if fn.facts.owner)
 
     def list_writes(self, variable: Variable) -> Sequence[tuple[Fn, Assignment]]:
         """All assignments that change a variable."""
@@ -622,7 +613,7 @@ class FlowCode:
 
     def find_first(self, source: CodeFile, otherwise: Fn) -> Fn:
         """The first function of a file; `otherwise` for a file without functions."""
-        return self._first_in.get(source.path, otherwise)
+        return next(iter(self.functions_in.get(source.path, ())), otherwise)
 
     @cache_method
     def _find_member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:
@@ -703,11 +694,8 @@ class FlowCode:
     @cached_property
     def _calls(self) -> dict[str, list[tuple[int, Fn, FlowCall]]]:
         """All calls by the last part of the callee, with their place among all."""
-        found: dict[str, list[tuple[int, Fn, FlowCall]]] = defaultdict(list)
         every = ((fn, call) for fn in self.functions for call in fn.facts.calls)
-        for place, (fn, call) in enumerate(every):
-            found[get_tail(call.callee)].append((place, fn, call))
-        return found
+        return group_pairs((get_tail(call.callee), (place, fn, call)) for place, (fn, call) in enumerate(every))
 
     def list_targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
         """The functions of the code that a call may reach; none when it leaves the code or cannot be told."""
@@ -819,12 +807,9 @@ class FlowCode:
     @cached_property
     def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:
         """Calls that reach a function of the code, by the function."""
-        found: dict[Fn, list[tuple[Fn, FlowCall]]] = {}
-        for fn, call in self.list_calls_named(self.by_tail.keys() | self.classes.keys()):
-            for target in self.list_targets(call.callee, fn):
-                if target is not fn:
-                    found.setdefault(target, []).append((fn, call))
-        return found
+        calls = self.list_calls_named(self.by_tail.keys() | self.classes.keys())
+        reached = ((target, (fn, call)) for fn, call in calls for target in self.list_targets(call.callee, fn))
+        return group_pairs((target, caller) for target, caller in reached if caller[0] is not target)
 
     @cached_property
     def bound(self) -> dict[Fn, list[tuple[Fn, tuple[FlowExpr, ...]]]]:
@@ -935,11 +920,7 @@ def _resolve_module(target: str, path: str) -> tuple[str, ...]:
     return (*path.split("/")[:-up], *split_name(target)) if up else split_name(target)
 
 
-def _group_by_nearness(found: list[Cls], source: CodeFile, scope: str) -> Mapping[int, list[Cls]]:
-    """Classes by how near they are to whoever names them."""
-    groups: dict[int, list[Cls]] = {}
-    for cls in found:
-        near = 4 * (cls.source.path == source.path) + 2 * (cls.source.package == source.package)
-        near += _is_within(scope, get_outer(cls.name)) if get_outer(cls.name) else 0
-        groups.setdefault(near, []).append(cls)
-    return groups
+def _rate_nearness(cls: Cls, source: CodeFile, scope: str) -> int:
+    """How near a class is to whoever names it."""
+    near = 4 * (cls.source.path == source.path) + 2 * (cls.source.package == source.package)
+    return near + (_is_within(scope, get_outer(cls.name)) if get_outer(cls.name) else 0)

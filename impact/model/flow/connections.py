@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 from msgspec import structs
 
+from ....edges.groups import group_pairs
 from .graph import Endpoint, Graph, GuardAt, Node, Publish, Qos
 from .select import get_kind
 
@@ -58,14 +59,8 @@ def list_edges(graph: Graph, base: Graph | None = None) -> list[Edge]:
 
 
 def _make_edges(graph: Graph) -> Iterator[Edge]:
-    found: dict[tuple[str, str, str], list[Endpoint]] = {}
-    for endpoint in graph.endpoints:
-        if endpoint.topic:
-            found.setdefault((endpoint.node, endpoint.topic, endpoint.role), []).append(endpoint)
-    said: dict[tuple[str, str], list[Publish]] = {}
-    for publish in graph.publishes:
-        if publish.topic and not publish.through:
-            said.setdefault((publish.node, publish.topic), []).append(publish)
+    found = group_pairs(((one.node, one.topic, one.role), one) for one in graph.endpoints if one.topic)
+    said = group_pairs(((one.node, one.topic), one) for one in graph.publishes if one.topic and not one.through)
     for (node, name, role), endpoints in found.items():
         types = tuple(sorted({endpoint.type for endpoint in endpoints if endpoint.type}))
         publishes = tuple(said.get((node, name), ())) if role == "publisher" else ()

@@ -7,11 +7,13 @@ from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_in_derived
 from ..workspace import Workspace
 from .defined import list_released
 from .graph import Endpoint, Graph, Node
 from .launches import Launch
+from .select import get_kind
 from .workspace import get_flow
 
 # Of these the workspace says what runs; plugins and libraries get their names from whoever loads them, but for names
@@ -28,7 +30,6 @@ _OTHER_SIDE = {
 _MOST_PAIRS = 10_000
 _MOST_PAIRS_IN_ALL = 100_000
 _SIDES = (("publisher", "subscriber"), ("server", "client"), ("action server", "action client"))
-_WHAT = {"publisher": "topic", "subscriber": "topic", "server": "service", "client": "service"}
 
 
 class Sure(NamedTuple):
@@ -61,18 +62,15 @@ class Flow:
     ):
         self.graph, self.interfaces, self.surely, self.around = graph, interfaces, surely, around
         self.nodes = {node.id: node for node in graph.nodes}
-        names: dict[tuple, set[str]] = {}
-        for one in graph.endpoints:
-            names.setdefault((one.node, one.role, one.path, one.line, one.written), set()).add(one.topic)
-        self._alone = {key for key, topics in names.items() if len(topics) == 1}
-        self.known: dict[tuple[str, str], list[Endpoint]] = {}
-        self._of_role: dict[tuple[str, str], list[Endpoint]] = {}
-        self._of_node: dict[tuple[str, str, str], list[Endpoint]] = {}
-        for one in graph.endpoints:
-            if one.topic:
-                self.known.setdefault((_get_kind(one.role), one.topic), []).append(one)
-                self._of_role.setdefault((one.role, one.topic), []).append(one)
-                self._of_node.setdefault((one.node, one.role, one.topic), []).append(one)
+        places = ((one, (one.node, one.role, one.path, one.line, one.written)) for one in graph.endpoints)
+        names = group_pairs((place, one.topic) for one, place in places)
+        self._alone = {place for place, topics in names.items() if len(set(topics)) == 1}
+        named = [one for one in graph.endpoints if one.topic]
+        self.known = group_pairs(((get_kind(one), one.topic), one) for one in named)
+        self._of_role: dict[tuple[str, str], list[Endpoint]] = group_pairs(
+            ((one.role, one.topic), one) for one in named
+        )
+        self._of_node = group_pairs(((one.node, one.role, one.topic), one) for one in named)
 
     def list_sure(self, *roles: str) -> Iterator[Sure]:
         """Endpoints whose name is certain, of some roles or of all: in the order of the graph."""
@@ -133,9 +131,7 @@ class Flow:
         seen = set()
         in_all = _MOST_PAIRS_IN_ALL
         for giving, taking in _SIDES:
-            givers: dict[str, list[Sure]] = {}
-            for one in self.list_sure(giving):
-                givers.setdefault(one.endpoint.topic, []).append(one)
+            givers = group_pairs((one.endpoint.topic, one) for one in self.list_sure(giving))
             left = dict.fromkeys(givers, _MOST_PAIRS)
             for taker in self.list_sure(taking):
                 topic = taker.endpoint.topic
@@ -156,9 +152,7 @@ def list_uncompared(workspace: Workspace) -> Iterator[tuple[Endpoint, int]]:
         in_all = _MOST_PAIRS_IN_ALL
         for giving, taking in _SIDES:
             givers = Counter(one.endpoint.topic for one in flow.list_sure(giving))
-            takers: dict[str, list[Endpoint]] = {}
-            for one in flow.list_sure(taking):
-                takers.setdefault(one.endpoint.topic, []).append(one.endpoint)
+            takers = group_pairs((one.endpoint.topic, one.endpoint) for one in flow.list_sure(taking))
             for topic, listed in takers.items():
                 number = givers[topic] * len(listed)
                 compared = min(number, _MOST_PAIRS, in_all)
@@ -248,10 +242,6 @@ def _lacks_other_partner(flow: Flow, pair: FlowPair) -> bool:
 
 def _fits_type(one: Endpoint, other: Endpoint) -> bool:
     return one.type == other.type or not one.type or not other.type or "*" in (one.type, other.type)
-
-
-def _get_kind(role: str) -> str:
-    return _WHAT.get(role, "action")
 
 
 def _get_place(endpoint: Endpoint) -> tuple[str, int]:

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, get_args
 
 from msgspec import structs
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import FlowCall, FlowExpr
@@ -772,20 +773,14 @@ class Sites:
     @cached_property
     def kept(self) -> dict[Variable, list[Site]]:
         """Publishers by the variable that keeps them."""
-        found: dict[Variable, list[Site]] = {}
-        for site in self.endpoints:
-            if site.variable is not None and site.role == "publisher":
-                found.setdefault(site.variable, []).append(site)
-        return found
+        return group_pairs(
+            (site.variable, site) for site in self.endpoints if site.variable is not None and site.role == "publisher"
+        )
 
     @cached_property
     def made_in(self) -> dict[Fn, list[Site]]:
         """Sites by the function that makes and returns them."""
-        found: dict[Fn, list[Site]] = {}
-        for site in self.endpoints:
-            if site.use.call.returned:
-                found.setdefault(site.use.fn, []).append(site)
-        return found
+        return group_pairs((site.use.fn, site) for site in self.endpoints if site.use.call.returned)
 
     @cached_property
     def statements(self) -> list[Statement]:
@@ -807,9 +802,7 @@ class Sites:
 
     def _find_wrapper_calls(self, direct: list[Statement]) -> Iterator[Statement]:
         """Calls of the code's own methods that are called as the framework's, and publish."""
-        inside: dict[Fn, list[Statement]] = {}
-        for statement in direct:
-            inside.setdefault(statement.use.fn, []).append(statement)
+        inside = group_pairs((statement.use.fn, statement) for statement in direct)
         names = {name for name, rows in self.calls.table.calls.items() if any(row.does == "publish" for row in rows)}
         for fn, call in self.code.list_calls_named(names):
             for target in self.code.list_targets(call.callee, fn):

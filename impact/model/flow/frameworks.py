@@ -12,6 +12,8 @@ from typing import Any
 
 import msgspec
 
+from ....edges.groups import group_pairs
+
 if sys.version_info >= (3, 11):
     import tomllib
 else:
@@ -64,20 +66,13 @@ class Frameworks:
 
     def __init__(self, table: dict[str, Any]):
         """table: as frameworks.toml has it. Raises msgspec.ValidationError that names what is wrong."""
-        self.calls: dict[str, list[FrameworkRow]] = {}
-        self.objects: dict[str, list[FrameworkRow]] = {}
-        self.kinds: dict[str, list[tuple[str, str]]] = {}
         self.types: dict[str, str] = dict(table.get("types", {}))
         self.generations: dict[str, int] = dict(table.get("generations", {}))
-        for row in map(_make_row, table.get("call", ())):
-            for name in row.names:
-                self.calls.setdefault(name, []).append(row)
-        for row in map(_make_row, table.get("object", ())):
-            for name in row.types:
-                self.objects.setdefault(get_last_part(name), []).append(row)
-        for kind, names in table.get("kinds", {}).items():
-            for name in names:
-                self.kinds.setdefault(get_last_part(name), []).append((name, kind))
+        self.calls = group_pairs((name, row) for row in map(_make_row, table.get("call", ())) for name in row.names)
+        objects = map(_make_row, table.get("object", ()))
+        self.objects = group_pairs((get_last_part(name), row) for row in objects for name in row.types)
+        kinds = ((name, kind) for kind, names in table.get("kinds", {}).items() for name in names)
+        self.kinds = group_pairs((get_last_part(name), (name, kind)) for name, kind in kinds)
 
     def find_kind(self, name: str) -> str:
         """The kind of a class by its name, as qualified as it is known; empty for none."""

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from msgspec import structs
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowFile, Guard
@@ -90,7 +91,7 @@ class Join:
         self.values = FlowValues(self.calls)
         self.sites = Sites(self.code, self.calls, self.values, defined or DefinedInterfaces())
         self.reach = CodeReach(self.sites)
-        self.triggers = self._collect_triggers()
+        self.triggers = group_pairs(self._list_triggers())
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
         self._asked: dict[int, list[FlowValue]] = {}
@@ -182,10 +183,7 @@ class Join:
 
     @cached_property
     def _by_package(self) -> dict[str | None, list[Running]]:
-        found: dict[str | None, list[Running]] = {}
-        for one in self._running:
-            found.setdefault(one.program.package, []).append(one)
-        return found
+        return group_pairs((one.program.package, one) for one in self._running)
 
     def _select_fitting(self, start: Started) -> list[Running]:
         """The programs that a launch may mean."""
@@ -241,18 +239,17 @@ class Join:
             index = rows[index].outer
         return tuple(GuardAt(g.kind, g.text, fn.source.path, g.line, fn.name) for g in reversed(found))
 
-    def _collect_triggers(self) -> dict[Fn, list[Trigger]]:
-        found: dict[Fn, list[Trigger]] = {}
+    def _list_triggers(self) -> Iterator[tuple[Fn, Trigger]]:
+        """The functions that are triggered, with what does it."""
         for site in self.sites.endpoints:
             names = sorted({value.text for value in site.names if value.text}) or [site.written]
             for fn in site.callbacks:
                 trigger = Trigger(_TRIGGERS[site.role], " or ".join(names), site.use.fn.source.path, site.use.call.line)
-                found.setdefault(fn, []).append(trigger)
+                yield fn, trigger
         for timer in self.sites.timers:
             for fn in timer.callbacks:
                 use = timer.use
-                found.setdefault(fn, []).append(Trigger("timer", timer.period, use.fn.source.path, use.call.line))
-        return found
+                yield fn, Trigger("timer", timer.period, use.fn.source.path, use.call.line)
 
     def list_ways(self, fn: Fn, functions: set[Fn] | None = None) -> list[Way]:
         """The ways that lead to a function from whatever triggers it. functions: those that run, all when None."""
@@ -511,10 +508,9 @@ class _Owners:
         self.join, self.running, self.launched = join, running, launched
         self._libraries: dict[str, Node] = {}
         self._used: set[str] = set()
-        self._by_function: dict[Fn, list[Owner]] = {}
-        for one in running:
-            for number in one.functions:
-                self._by_function.setdefault(number, []).append(one)
+        self._by_function: dict[Fn, list[Owner]] = group_pairs(
+            (number, one) for one in running for number in one.functions
+        )
 
     def list_owners(self, use: FrameworkCall) -> list[Owner]:
         """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none."""

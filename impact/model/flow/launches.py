@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import islice
 from typing import Any, TypeVar
 
 import msgspec
@@ -92,7 +93,7 @@ def list_launches(workspace: Workspace, code: Callable[[], Join], jobs: int = 1)
 
 
 def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) -> Iterator[Launch]:
-    files = list(_list_files(workspace))
+    files = list(islice(_list_files(workspace), _MOST))
     if jobs < 2 or len(files) < _ALONE or not processes.may_fork():
         followed = _follow(workspace, files)
         yield from _start(workspace, code(), followed) if followed else ()
@@ -161,15 +162,11 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
 
 def _list_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
     """(package, path, path within the package) of launch files; those of tests are left out."""
-    number = 0
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in sorted(package.digest.files):
             inner = path[start:]
             if is_launch(inner) and find_folder_role(inner) != "test":
-                number += 1
-                if number > _MOST:
-                    return
                 yield package.name, path, inner
 
 
@@ -268,6 +265,3 @@ def _list_file_parameters(sources: InWorkspace, setting: SettingFile, full: str)
     for name, entry in select_file_values(setting, full).items():
         if for_all.get(name) != entry:
             yield GivenParameter(normalise(name), place, entry.line)
-
-
-__all__ = ["GivenParameter", "GivenRemapping", "Launch", "LaunchedNode", "is_launch", "list_launches"]

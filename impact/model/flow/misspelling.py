@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Generic, TypeVar
 
+from ....edges.groups import group_pairs
 from ..misspelling import is_slip
 
 T = TypeVar("T")
@@ -67,18 +68,11 @@ class NearNames(Generic[T]):
     def __init__(self, things: Iterable[tuple[str, T]], *, namespaces: bool = False):
         self._named = list(things)
         self._namespaces = namespaces
-        self._traces: dict[str, list[int]] = {}
-        self._whole: dict[str, list[int]] = {}
-        self._ends: dict[str, list[int]] = {}
-        for number, (name, _) in enumerate(self._named):
-            if len(name) > _LONGEST:
-                continue
-            for trace in _compute_traces(name):
-                self._traces.setdefault(trace, []).append(number)
-            if namespaces:
-                self._whole.setdefault(name, []).append(number)
-                for end in _list_ends(name):
-                    self._ends.setdefault(end, []).append(number)
+        names = [(number, name) for number, (name, _) in enumerate(self._named) if len(name) <= _LONGEST]
+        self._traces = group_pairs((trace, number) for number, name in names for trace in _compute_traces(name))
+        inside = names if namespaces else []
+        self._whole = group_pairs((name, number) for number, name in inside)
+        self._ends = group_pairs((end, number) for number, name in inside for end in _list_ends(name))
 
     def find_near(self, name: str) -> Iterator[T]:
         """The things of nearly this name, in their order; at most a thousand are looked at."""

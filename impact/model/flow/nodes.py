@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowExpr
@@ -59,10 +60,7 @@ class CodeReach:
                 cls = self.code.find_class(name.removeprefix("::"), source)
                 if cls is not None:
                     self._loaded.update((fn.facts.owner, cls.name) for fn in self.code.list_functions(cls))
-        self._lambdas: dict[tuple[str, str], list[Fn]] = {}
-        for fn in self.code.functions:
-            if fn.is_lambda:
-                self._lambdas.setdefault((fn.source.path, fn.scope), []).append(fn)
+        self._lambdas = group_pairs(((fn.source.path, fn.scope), fn) for fn in self.code.functions if fn.is_lambda)
 
     def find_reached(self, roots: Iterable[Fn], classes: Iterable[Cls] = ()) -> tuple[set[Fn], set[str]]:
         """Functions and classes (by name) reached from some functions, and from objects of some classes."""
@@ -140,14 +138,9 @@ def _points(type_: str) -> bool:
 
 def list_programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> Iterator[StartableProgram]:
     """Everything that can be started. kinds_of: a class's kinds by the table of frameworks."""
-    by_path: dict[str, list[Fn]] = {}
-    for fn in code.functions:
-        by_path.setdefault(fn.source.path, []).append(fn)
-    exported: dict[str, list[tuple[str, str]]] = {}
+    by_path = group_pairs((fn.source.path, fn) for fn in code.functions)
     by_source = {source.path: source for source in code.sources}
-    for source in code.sources:
-        for name in source.facts.exports:
-            exported.setdefault(source.package, []).append((name, source.path))
+    exported = group_pairs((one.package, (name, one.path)) for one in code.sources for name in one.facts.exports)
     for package in built:
         for name, sources in package.executables.items():
             mains = [fn for path in sources for fn in by_path.get(path, ()) if fn.name == "main"]

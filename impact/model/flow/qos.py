@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from msgspec import structs
+
 from ...facts.flow import FlowExpr
 from .calls import Calls, FrameworkCall
 from .code import Fn, get_tail, is_number
@@ -70,11 +72,7 @@ def find_qos(calls: Calls, values: FlowValues, use: FrameworkCall) -> Qos | None
     if value is None:
         return None
     found = _evaluate(value, use.fn, calls, values, 0)
-    return Qos(**{**_get_fields(found), "written": unparse(value)})
-
-
-def _get_fields(qos: Qos) -> dict:
-    return {name: getattr(qos, name) for name in qos.__struct_fields__}
+    return structs.replace(found, written=unparse(value))
 
 
 def _evaluate_number(value: FlowExpr | None, fn: Fn, values: FlowValues) -> int:
@@ -117,10 +115,10 @@ def _evaluate(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, depth: 
 
 def _merge_common(found: list[Qos]) -> Qos:
     """What several qualities agree on: code may choose any of them."""
-    first = _get_fields(found[0])
-    nothing = _get_fields(Qos())
+    first = structs.asdict(found[0])
+    nothing = structs.asdict(Qos())
     for other in found[1:]:
-        fields = _get_fields(other)
+        fields = structs.asdict(other)
         first = {name: value if fields[name] == value else nothing[name] for name, value in first.items()}
     return Qos(**first)
 
@@ -130,7 +128,7 @@ def _evaluate_built(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, d
     links = _split_chain(value, fn)
     names = [name for name, _ in links]
     base = next((_PROFILES[name] for name in names if name in _PROFILES), None)
-    fields = _get_fields(base) if base is not None else _get_fields(Qos())
+    fields = structs.asdict(base) if base is not None else structs.asdict(Qos())
     if names[-1] == "from_rmw" and value.parts:
         return _evaluate(value.parts[0], fn, calls, values, depth + 1)
     if base is None and value.kind == "call":
@@ -146,7 +144,7 @@ def _evaluate_built(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, d
                 for each in target.facts.assignments
                 if each.operator == "return"
             ]
-        fields = _get_fields(_merge_common(found)) if found else fields
+        fields = structs.asdict(_merge_common(found)) if found else fields
     positional = [part for part in links[0][1] or () if part.kind != "keyword"]
     if positional and names[0] in ("QoS", "KeepLast", "keep_last", "QoSProfile", "SensorDataQoS"):
         _apply_constructor(positional[0], fields, fn, calls, values, depth)
@@ -176,9 +174,9 @@ def _apply_constructor(first: FlowExpr, fields: dict, fn: Fn, calls: Calls, valu
         return
     other = _evaluate(first, fn, calls, values, depth + 1) if first.kind != "number" else Qos()
     if other != Qos():
-        fields.update(_get_fields(other))
+        fields.update(structs.asdict(other))
     elif first.kind in ("call", "make"):
-        fields.update(_get_fields(Qos()))  # of what is not known
+        fields.update(structs.asdict(Qos()))  # of what is not known
     else:
         fields["depth"] = _evaluate_number(first, fn, values)
 
@@ -233,8 +231,8 @@ def parse_seconds(value: FlowExpr, fn: Fn, values: FlowValues) -> float | None:
 def _set_later(found: Qos, name: str, fn: Fn, values: FlowValues) -> Qos:
     """Settings that follow the making: `qos.best_effort();`, `qos.reliability = ...`. What is set under a condition
     only is not told."""
-    fields = _get_fields(found)
-    nothing = _get_fields(Qos())
+    fields = structs.asdict(found)
+    nothing = structs.asdict(Qos())
     for call in fn.facts.calls:
         if not call.callee.startswith(name + "."):
             continue

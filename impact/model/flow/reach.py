@@ -6,7 +6,8 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from .graph import Endpoint, Graph, Publish
+from ....edges.groups import group_pairs
+from .graph import Graph, Publish
 
 # Topics through which everything would reach everything.
 EVERYWHERE = frozenset(("/rosout", "/parameter_events", "/diagnostics", "/clock"))
@@ -36,17 +37,11 @@ class DownstreamSearch:
 
     def __init__(self, graph: Graph):
         self.graph = graph
-        self._receivers: dict[tuple[str, str], list[Endpoint]] = {}
-        for endpoint in graph.endpoints:
-            if endpoint.topic and endpoint.node:
-                self._receivers.setdefault((endpoint.role, endpoint.topic), []).append(endpoint)
-        self._publishes: dict[str, list[Publish]] = {}
-        for publish in graph.publishes:
-            self._publishes.setdefault(publish.node, []).append(publish)
-        self._calls: dict[str, list[Endpoint]] = {}
-        for endpoint in graph.endpoints:
-            if endpoint.role in ("client", "action client"):
-                self._calls.setdefault(endpoint.node, []).append(endpoint)
+        named = (one for one in graph.endpoints if one.topic and one.node)
+        self._receivers = group_pairs(((one.role, one.topic), one) for one in named)
+        self._publishes = group_pairs((publish.node, publish) for publish in graph.publishes)
+        clients = (one for one in graph.endpoints if one.role in ("client", "action client"))
+        self._calls = group_pairs((one.node, one) for one in clients)
 
     def find_downstream(self, sent: Iterable[tuple[str, str]], node: str = "") -> list[ReachedNode]:
         """Nodes downstream of some topics, services and actions (name, role of who sends), nearest first. node: who

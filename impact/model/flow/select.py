@@ -9,6 +9,7 @@ from typing import NamedTuple
 from msgspec import structs
 
 from ....edges.console import UserError
+from ....edges.groups import group_pairs
 from .graph import Endpoint, Graph, Node
 
 HIDDEN = (
@@ -144,10 +145,7 @@ def _explain(what: str, asked: Sequence[str], known: Collection[str]) -> str:
 
 def group_endpoints(graph: Graph) -> dict[tuple[str, str], list[Endpoint]]:
     """Endpoints by kind (`topic`, `service`, `action`) and name, sorted; those without a name are left out."""
-    found: dict[tuple[str, str], list[Endpoint]] = {}
-    for endpoint in graph.endpoints:
-        if endpoint.topic:
-            found.setdefault((get_kind(endpoint), endpoint.topic), []).append(endpoint)
+    found = group_pairs(((get_kind(one), one.topic), one) for one in graph.endpoints if one.topic)
     return dict(sorted(found.items()))
 
 

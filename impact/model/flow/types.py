@@ -94,13 +94,12 @@ _SUFFIXES = re.compile(r"(?:_<.*>|<.*>)\Z")
 _KINDS = {"msg": "", "srv": "", "action": ""}
 
 
-def find_interface(name: str, packages=None) -> str:
+def find_interface(name: str) -> str:
     """`package/Name` of a message, service or action type, by its qualified name in C++ or Python; empty when the name
     does not tell a package.
 
     `std_msgs::msg::String`, `std_msgs::String_<A>`, `std_msgs.msg.String` all give `std_msgs/String`; pointers,
-    `::Request`, `::Goal` and `sensor_msgs::ImageConstPtr` are taken off. packages: whether something is a package; all
-    that looks like one when left out.
+    `::Request`, `::Goal` and `sensor_msgs::ImageConstPtr` are taken off.
     """
     kind = parse_flow_type(name)
     parts = [part for part in _SUFFIXES.sub("", kind.name).replace("::", ".").split(".") if part]
@@ -109,7 +108,7 @@ def find_interface(name: str, packages=None) -> str:
         if parts[-1] == "GoalStatusMessage":
             return "action_msgs/GoalStatusArray"
         if parts[-1] == "FeedbackMessage":
-            action = find_interface("::".join(parts[:-2]), packages)
+            action = find_interface("::".join(parts[:-2]))
             return action and f"{action}_FeedbackMessage"
     if parts and parts[-1] in ("Request", "Response", "Goal", "Result", "Feedback", "Impl", *_INNER) and len(parts) > 2:
         parts = parts[:-1]
@@ -120,11 +119,6 @@ def find_interface(name: str, packages=None) -> str:
                 break
     if len(parts) >= 3 and parts[-2] in _KINDS:
         return f"{parts[-3]}/{parts[-1]}"
-    if (
-        len(parts) == 2
-        and parts[1][:1].isupper()
-        and parts[0][:1].islower()
-        and (packages is None or packages(parts[0]))
-    ):
+    if len(parts) == 2 and parts[1][:1].isupper() and parts[0][:1].islower():
         return f"{parts[0]}/{parts[1]}"
     return ""

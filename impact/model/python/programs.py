@@ -26,9 +26,7 @@ class ScriptSetup:
 
     def __init__(self, package: Package):
         self._package = package
-        self._files = {
-            path: file for path, file in package.digest.setup if posixpath.dirname(path) == package.path
-        }
+        self._files = {path: file for path, file in package.digest.setup if posixpath.dirname(path) == package.path}
         self.settings = posixpath.join(package.path, "setup.cfg")
         """The path of setup.cfg, which may be missing."""
 
@@ -104,12 +102,8 @@ def list_programs(package: Package) -> dict[str, set[str]] | None:
     folder stands for one that nothing tells, or for a target that no rule installs. None where not all is known."""
     if package.build_type == "ament_python":
         setup = ScriptSetup(package)
-        programs = setup.list_all() if setup.is_known else None
-    elif package.build_type.startswith("ament_cmake"):
-        programs = _list_of_cmake(package)
-    else:
-        programs = None
-    return programs
+        return setup.list_all() if setup.is_known else None
+    return _list_of_cmake(package) if package.build_type.startswith("ament_cmake") else None
 
 
 # Targets that tell what they make, and names that only CMake itself would tell.
@@ -156,7 +150,7 @@ def _list_of_cmake(package: Package) -> dict[str, set[str]] | None:
         if target.name not in placed:
             found.setdefault(outputs[target.name], set()).add("")
     for export in build.exports:
-        if export.how == "component" and getattr(export, "executable", ""):
+        if export.how == "component" and export.executable:
             found.setdefault(export.executable, set()).add("")
     return found
 

@@ -11,6 +11,7 @@ from functools import cached_property
 
 import msgspec
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.python.reader import Import
@@ -177,11 +178,10 @@ class _Modules:
     def __init__(self, files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str]):
         self._files, self._others, self._paths = files, others, paths
         self._folders = {posixpath.dirname(path) for path in files}
-        self._by_name: dict[str, list[str]] = {}
+        self._by_name = group_pairs((posixpath.basename(_strip_ending(path)), path) for path in files)
         # Folders with an __init__.py that lie in none such, or in `src`, by their names.
         self._roots: dict[str, list[str]] = {}
         for path in files:
-            self._by_name.setdefault(posixpath.basename(_strip_ending(path)), []).append(path)
             root = _strip_ending(path)
             around = posixpath.dirname(root)
             outermost = f"{around}/__init__.py" not in files or posixpath.basename(around) == "src"
@@ -227,12 +227,8 @@ class _Modules:
     @cached_property
     def _imports_of(self) -> dict[str, list[Import]]:
         """The absolute imports of modules in packages, by the package."""
-        found: dict[str, list[Import]] = {}
-        for item in (item for facts in self._files.values() for item in facts.imports if not item.level):
-            head, dot, _ = item.module.partition(".")
-            if dot:
-                found.setdefault(head, []).append(item)
-        return found
+        absolute = (item for facts in self._files.values() for item in facts.imports if not item.level)
+        return group_pairs((item.module.partition(".")[0], item) for item in absolute if "." in item.module)
 
     def _is_of_another(self, item: Import, root: str) -> bool:
         """Whether what an import asks of another package is not at the same place below a root."""

@@ -255,10 +255,7 @@ class DistroTarget:
 
     def _is_package(self, name: str) -> bool:
         """Whether an override means a ROS package: one released ever, or a name of no platform library."""
-        return self.was_ever_released(name) or normalize_library_name(name) not in self._list_all_libraries()
-
-    def _list_all_libraries(self) -> frozenset[str]:
-        return self._data.list_values("library")
+        return self.was_ever_released(name) or normalize_library_name(name) not in self._data.list_values("library")
 
     def was_ever_released(self, package: str) -> bool:
         """True when any distro at any date has released a package of this name."""
@@ -287,7 +284,11 @@ class DistroTarget:
     def _list_steps(self, package: str) -> list[tuple[int, str | None]]:
         """(moment, version) of every release of a package in this distro."""
         events = []
-        for repository in self._list_repositories(package):
+        homes = self._data.fetch(
+            "SELECT h.repository FROM home h JOIN package p ON p.id = h.package WHERE p.name = ? AND h.distro = ?",
+            (package, self._id),
+        )
+        for (repository,) in homes:
             held = False
             for ts, version, names in self._data.fetch(
                 "SELECT r.ts, r.version, p.names FROM release r LEFT JOIN packages p ON p.id = r.packages"
@@ -309,15 +310,6 @@ class DistroTarget:
                 steps.append((ts, version))
             last = (ts, version)
         return steps
-
-    def _list_repositories(self, package: str) -> list[int]:
-        return [
-            repository
-            for (repository,) in self._data.fetch(
-                "SELECT h.repository FROM home h JOIN package p ON p.id = h.package WHERE p.name = ? AND h.distro = ?",
-                (package, self._id),
-            )
-        ]
 
     def find_first_day(self, package: str) -> str:
         """ISO day of the package's first release in this distro, empty when it never was; the commit's day."""
@@ -626,7 +618,7 @@ class DistroTarget:
 
     def list_library_names(self) -> frozenset[str]:
         """Platform libraries whose version is known here."""
-        own = {name for name, value in self._own_libraries.items() if value and name in self._list_all_libraries()}
+        own = {name for name, value in self._own_libraries.items() if value} & self._data.list_values("library")
         return frozenset(self._load_libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
 
     def has_changes(self) -> bool:

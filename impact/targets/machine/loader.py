@@ -8,11 +8,12 @@ import re
 import shutil
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import IO
 
 from ....edges.files import make_size_error, open_regular, read_start
+from ....edges.groups import group_pairs
 from ....edges.limits import get_limits
 from ....edges.memory import cache_method
 from ...facts import elf
@@ -42,7 +43,7 @@ class Loader:
         self._root, self._run = root, run or run_command
         sourced = [folder for folder in environment.get("LD_LIBRARY_PATH", "").split(":") if folder]
         self._folders = [*sourced, *folders]
-        self._heads: dict[str, tuple[str, int] | None] = {}
+        self._read_head = cache(_read_head)
 
     @property
     def knows_prefixes(self) -> bool:
@@ -63,12 +64,8 @@ class Loader:
     def _cached(self) -> dict[str, list[str]]:
         """soname to paths, as the loader's cache has them."""
         program = shutil.which("ldconfig") or "/sbin/ldconfig"
-        found: dict[str, list[str]] = {}
-        for line in self._run([program, "-p"]).splitlines():
-            match = _CACHED.match(line)
-            if match:
-                found.setdefault(match[1], []).append(match[2])
-        return found
+        matches = map(_CACHED.match, self._run([program, "-p"]).splitlines())
+        return group_pairs((match[1], match[2]) for match in matches if match)
 
     def find(self, soname: str, asker: Elf, folder: str = "") -> str:
         """The file that the loader takes for a library that a file asks for, empty when there is none.
@@ -139,10 +136,7 @@ class Loader:
         return frozenset(found)
 
     def _fits(self, path: str, asker: Elf) -> bool:
-        if path not in self._heads:
-            self._heads[path] = _read_head(path)
-        head = self._heads[path]
-        return head is not None and head == (asker.machine, asker.bits)
+        return self._read_head(path) == (asker.machine, asker.bits)
 
 
 def open_library(path: str) -> IO[bytes]:

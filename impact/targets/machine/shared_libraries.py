@@ -6,7 +6,7 @@ Both answer alike: yes, no, or not known. A no is said where it is sure.
 import os
 import re
 from collections.abc import Container, Mapping
-from functools import cached_property
+from functools import cached_property, cmp_to_key
 from typing import NamedTuple
 
 from ...facts import elf
@@ -220,9 +220,6 @@ def _format_first(names: list[str]) -> str:
 def _find_max(offers: frozenset[str], version: str) -> str:
     """The highest version that is offered of the same kind: of `GLIBC_2.38` in an older libc, `GLIBC_2.36`."""
     kind = version.rpartition("_")[0]
-    same = [offer for offer in offers if offer.rpartition("_")[0] == kind and re.search(r"_[\d.]+$", offer)]
-    highest = ""
-    for offer in same:
-        if not highest or compare(offer.rpartition("_")[2], highest.rpartition("_")[2]) > 0:
-            highest = offer
-    return highest
+    parted = (offer.rpartition("_") for offer in offers)
+    same = [number for head, _, number in parted if head == kind and re.fullmatch(r"[\d.]+", number)]
+    return f"{kind}_{max(same, key=cmp_to_key(compare))}" if same else ""

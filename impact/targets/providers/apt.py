@@ -6,6 +6,7 @@ from pathlib import Path
 
 import msgspec
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ..platform import find_neighbours
@@ -63,12 +64,9 @@ class Apt:
     def _brought_with(self) -> dict[int, list[int]]:
         """Packages to those that bring them along."""
         mask = self._mask | (INFERRED if self._inferred else 0)
-        found: dict[int, list[int]] = {}
-        for place, others in self._graph.brings.items():
-            for other, bits in others:
-                if bits & mask:
-                    found.setdefault(other, []).append(place)
-        return found
+        return group_pairs(
+            (other, place) for place, others in self._graph.brings.items() for other, bits in others if bits & mask
+        )
 
     def _iterate_brought_by(self, package: str) -> Iterator[str]:
         yield package

@@ -162,11 +162,8 @@ def check_version(target: DistroTarget, package: str, request: str, exact: bool)
     holds = is_at_least(version, low)
     if holds and high:
         bound = high.lstrip("<")
-        holds = (
-            not is_at_least(version, bound)
-            if high.startswith("<")
-            else not is_at_least(version, bound) or parse(version)[: len(parse(bound))] == parse(bound)
-        )
+        included = not high.startswith("<") and parse(version)[: len(parse(bound))] == parse(bound)
+        holds = included or not is_at_least(version, bound)
     elif holds and known.same_major:
         holds = parse(version)[:1] == parse(low)[:1]
     return VersionAnswer(holds, version)

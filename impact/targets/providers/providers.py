@@ -93,7 +93,7 @@ class Providers(ShippedDatabase):
             # Some packages carry a copy of a library; the library itself is meant, but where the package is named so.
             head = path.partition("/")[0]
             own = [provider for provider in released if head in provider.name]
-            found += [*own, system[0], *self._find_vendors(system[0].name), *system[1:], *released]
+            found += [*own, system[0], *self._find_facts("vendor", system[0].name), *system[1:], *released]
         else:
             found += released or self._find_by_prefix(path)
         return tuple(_deduplicate(found))
@@ -238,9 +238,6 @@ class Providers(ShippedDatabase):
     def _list_headers(self, package: str) -> dict[str, int]:
         """The headers that a ROS package ever had, with their patterns."""
         return dict(self._query("SELECT path, pattern FROM ros_header WHERE package = ?", package))
-
-    def _find_vendors(self, key: str) -> list[Provider]:
-        return self._find_facts("vendor", key)
 
     def _find_by_prefix(self, path: str) -> list[Provider]:
         """Reviewed owners of whole folders (`gz/math`), longest first; not seen in a file list, so sure is False."""

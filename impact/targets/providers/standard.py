@@ -12,6 +12,7 @@ from functools import cache
 
 import msgspec
 
+from ....edges.groups import group_pairs
 from ..snapshot import DATA, read_table
 
 
@@ -64,10 +65,8 @@ a later one."""
 @cache
 def _load_c_headers() -> dict[str, frozenset[str]]:
     """What headers of C and POSIX bring, by header."""
-    found: dict[str, set[str]] = {}
-    for brought, headers in _KNOWN.brought_by_c.items():
-        for header in headers.split():
-            found.setdefault(header, set()).add(brought)
+    known = ((brought, headers.split()) for brought, headers in _KNOWN.brought_by_c.items())
+    found = group_pairs((header, brought) for brought, headers in known for header in headers)
     return {header: frozenset(brought) for header, brought in found.items()}
 
 

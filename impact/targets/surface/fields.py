@@ -19,6 +19,7 @@ from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ..snapshot import DATA, read_table
 from ..version import is_at_least, parse
@@ -80,9 +81,9 @@ class FieldsHistory:
                 continue
             name, _, spans = line.partition("@")
             sections = []
-            self._lines[name] = _parse_spans(spans, len(self.starts)), sections
-        self._definitions: dict[str, Definition] = {}
+            self._lines[name] = _parse_spans(spans), sections
 
+    @cache_method
     def find_state(self, version: str) -> int | None:
         """The state that holds for a version; None before the first that was read."""
         at = None
@@ -113,28 +114,21 @@ class FieldsHistory:
         known = self._lines.get(interface)
         return known and known[0]
 
+    @cache_method
     def find_definition(self, interface: str) -> Definition | None:
-        known = self._definitions.get(interface)
-        if known is None and interface in self._lines:
-            spans, lines = self._lines[interface]
-            sections: dict[str, dict[str, list[FieldMember]]] = {}
-            for line in lines:
-                section, *members = line[1:].split(" ")
-                rows = sections.setdefault(section, {})
-                for text in members:
-                    match = _MEMBER.fullmatch(text)
-                    if match:
-                        name, constant, nested, array, there, successor = match.groups()
-                        rows.setdefault(name, []).append(
-                            FieldMember(name, nested or "", bool(array), bool(constant),
-                                   _parse_spans(there, len(self.starts)) if there else spans, successor or "")
-                        )  # fmt: skip
-            for section, members in [*sections.items()]:
-                for name, rows in members.items():
-                    if len({row.nested for row in rows}) > 1 and (inner := self._list_members(rows)):
-                        sections[f"{section}.{name}"] = inner
-            known = self._definitions[interface] = Definition(spans, sections)
-        return known
+        if interface not in self._lines:
+            return None
+        spans, lines = self._lines[interface]
+        sections: dict[str, dict[str, list[FieldMember]]] = {}
+        for line in lines:
+            section, *members = line[1:].split(" ")
+            matches = (match for text in members if (match := _MEMBER.fullmatch(text)))
+            sections[section] = group_pairs((match[1], _make_member(match, spans)) for match in matches)
+        for section, members in [*sections.items()]:
+            for name, rows in members.items():
+                if len({row.nested for row in rows}) > 1 and (inner := self._list_members(rows)):
+                    sections[f"{section}.{name}"] = inner
+        return Definition(spans, sections)
 
     def _list_members(self, rows: Iterable[FieldMember]) -> dict[str, list[FieldMember]]:
         """The members of what a field is made of in some states each; none where one of these is no known interface."""
@@ -153,7 +147,7 @@ class FieldsHistory:
     def list_lacking(self, interface: str, versions: tuple[str, ...]) -> frozenset[str]:
         """The members of an interface that one of these versions lacks in some section while it has the interface."""
         definition = self.find_definition(interface)
-        states = {state for version in versions if (state := self._find_state(version)) is not None}
+        states = {state for version in versions if (state := self.find_state(version)) is not None}
         return frozenset(
             name
             for state in states
@@ -162,10 +156,6 @@ class FieldsHistory:
             for name, rows in members.items()
             if not any(covers(row.spans, state) for row in rows)
         )
-
-    @cache_method
-    def _find_state(self, version: str) -> int | None:
-        return self.find_state(version)
 
     @cached_property
     def by_header(self) -> dict[str, str]:
@@ -196,7 +186,14 @@ def make_snake_case(name: str) -> str:
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", name).lower()
 
 
-def _parse_spans(text: str, states: int) -> tuple[tuple[int, int], ...]:
+def _make_member(found: re.Match[str], spans: tuple[tuple[int, int], ...]) -> FieldMember:
+    """What a text of _MEMBER says of a member. spans: of its interface, which hold where it tells none."""
+    name, constant, nested, array, there, successor = found.groups()
+    own = _parse_spans(there) if there else spans
+    return FieldMember(name, nested or "", bool(array), bool(constant), own, successor or "")
+
+
+def _parse_spans(text: str) -> tuple[tuple[int, int], ...]:
     if not text:
         return ((0, -1),)
     found = []

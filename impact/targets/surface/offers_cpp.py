@@ -177,20 +177,17 @@ def _check_call(offers: Offers, offered: Offered, arguments: int, given: tuple[s
         return None
     if offered.what == "constructor" and arguments < 2:
         return None  # what the compiler makes by itself is not told
-    if not any(one.accepts(arguments) for one in here):
+    fitting = [one for one in here if one.accepts(arguments)]
+    if not fitting or (any(given) and not any(_takes(one, given) for one in fitting)):
         for event, form, earlier in iterate_other_forms(offers, offered):
-            if any(one.accepts(arguments) for one in list_callable_forms(form)):
-                return _answer("changed", make_offered(offers, offered, event, earlier), "arguments", earlier)
+            others = (one for one in list_callable_forms(form) if one.accepts(arguments))
+            if any(not fitting or _takes(one, given) for one in others):
+                why = "types" if fitting else "arguments"
+                return _answer("changed", make_offered(offers, offered, event, earlier), why, earlier)
         return None
-    if any(given) and not any(_takes(one, given) for one in here if one.accepts(arguments)):
-        for event, form, earlier in iterate_other_forms(offers, offered):
-            if any(one.accepts(arguments) and _takes(one, given) for one in list_callable_forms(form)):
-                return _answer("changed", make_offered(offers, offered, event, earlier), "types", earlier)
-        return None
-    if offered.first and all(told.kind == "default" for told in offered.told):
-        relying = [one for one in here if one.accepts(arguments) and (one.most < 0 or arguments < one.most)]
-        if len(relying) == len([one for one in here if one.accepts(arguments)]):
-            return _answer("changed", offered, "default")
+    relying = all(one.most < 0 or arguments < one.most for one in fitting)
+    if relying and offered.first and all(told.kind == "default" for told in offered.told):
+        return _answer("changed", offered, "default")
     return None
 
 

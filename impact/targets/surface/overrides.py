@@ -194,9 +194,7 @@ def _differs(one: str, other: str) -> bool:
     smart pointer against another."""
     if one.endswith("&") != other.endswith("&"):
         return True
-    sorts = [
-        [(match.group(2) or match.group(3)).lower() for match in _SHAPE.finditer(text)] for text in (one, other)
-    ]
+    sorts = [[(match.group(2) or match.group(3)).lower() for match in _SHAPE.finditer(text)] for text in (one, other)]
     return bool(sorts[0]) and bool(sorts[1]) and sorts[0] != sorts[1]
 
 

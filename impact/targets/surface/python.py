@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
+from ....edges.groups import group_pairs
 from ...facts.python.surface import LATE, Bound, PythonParameter, Taken, is_private
 from .surface import InstalledModule, PythonSurface
 
@@ -78,19 +79,15 @@ class SurfaceNames:
         """The names of a module in order of the source, those of classes dotted."""
         known = self._bound.get(module.name)
         if known is None:
-            known = self._bound[module.name] = {}
-            for bound in module.surface.names:
-                known.setdefault(bound.name, []).append(bound)
+            known = self._bound[module.name] = group_pairs((bound.name, bound) for bound in module.surface.names)
         return known
 
     def index_imports(self, module: InstalledModule) -> dict[str, list[Taken]]:
         """The imports of a module by the name they bind."""
         known = self._taken.get(module.name)
         if known is None:
-            known = self._taken[module.name] = {}
-            for taken in module.surface.imports:
-                if not taken.scope:
-                    known.setdefault(taken.name, []).append(taken)
+            outside = (taken for taken in module.surface.imports if not taken.scope)
+            known = self._taken[module.name] = group_pairs((taken.name, taken) for taken in outside)
         return known
 
     def _find_in_module(self, module: InstalledModule | None, where: str, name: str, depth: int) -> PythonName | None:
@@ -184,7 +181,7 @@ class SurfaceNames:
             return PythonName(f"object.{name}", "external") if name in _OBJECT else None
         if not re.fullmatch(r"[\w.]+", base):
             return UNKNOWN
-        found = self.resolve_base(module, inside, base)
+        found = self.resolve_base(module, base)
         if (known := _ENUMS.get(base if base in _ENUMS else found.where if found is not None else "")) is not None:
             return PythonName(f"{base}.{name}", "external") if hasattr(known, name) or name[0] == "_" else None
         if found is not None and found.kind == "class":
@@ -194,7 +191,7 @@ class SurfaceNames:
             return PythonName(f"{base}.{name}", "external") if hasattr(known, name) else None
         return UNKNOWN
 
-    def resolve_base(self, module: InstalledModule, inside: str, base: str) -> PythonName | None:
+    def resolve_base(self, module: InstalledModule, base: str) -> PythonName | None:
         """What the name of a base class stands for in its module."""
         head, *rest = base.split(".")
         return self.follow_names(self._find_in_module(module, module.name, head, 0), rest)
@@ -280,7 +277,7 @@ class SurfaceNames:
             return None
         found: dict[str, PythonParameter] = {}
         for base in reversed(entry.bound.bases):
-            of = self.resolve_base(module, inside, base.partition("[")[0])
+            of = self.resolve_base(module, base.partition("[")[0])
             more = self.list_dataclass_fields(of, depth + 1) if of is not None and of.kind == "class" else None
             if more is None and base not in _NO_ATTRIBUTES:
                 return None

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import msgspec
 
 from ....edges.console import UserError
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.interface import Interface
 from ...facts.python.surface import Bound, ModuleSurface, Taken
@@ -72,9 +73,7 @@ class SurfaceHistory:
         self.versions: tuple[str, ...] = tuple(versions)
         self.approximate = frozenset(approximate)
         # Values are read where they are asked for.
-        self._rows: dict[str, list[tuple[str, msgspec.Raw, list[int]]]] = {}
-        for kind, scope, value, spans in rows:
-            self._rows.setdefault(kind, []).append((scope, value, spans))
+        self._rows = group_pairs((kind, (scope, value, spans)) for kind, scope, value, spans in rows)
 
     def load_surface(self, version: str) -> Surface | None:
         """What a version offers; None for one that is not stored."""
@@ -107,9 +106,7 @@ class SurfaceHistory:
             return None
         from .surface import BuildSurface
 
-        build: dict[str, list[Any]] = {}
-        for scope, value in self._iterate("build", version, of=of):
-            build.setdefault(scope, []).append(value)
+        build = group_pairs(self._iterate("build", version, of=of))
         known = _list_build_fields()
         given = {
             name: msgspec.convert(values, known[name]) if name in known else values[-1]
@@ -147,8 +144,9 @@ class SurfaceHistory:
             return None
         from .surface import InstalledModule, PythonSurface
 
-        bound, taken = self._group_by_scope("bound", version, Bound), self._group_by_scope("taken", version, Taken)
-        told = self._group_by_scope("python", version, str)
+        bound = group_pairs(self._iterate("bound", version, Bound))
+        taken = group_pairs(self._iterate("taken", version, Taken))
+        told = group_pairs(self._iterate("python", version, str))
         modules = (
             InstalledModule(
                 name,
@@ -209,7 +207,7 @@ class SurfaceHistory:
         return tuple(dict.fromkeys(spaces))
 
     def _iterate_headers(self, version: str) -> Iterator[tuple[str, HeaderSurface]]:
-        entities = self._group_by_scope("entity", version, Entity)
+        entities = group_pairs(self._iterate("entity", version, Entity))
         for path, (inline, deprecated, instead, lost) in self._iterate("header", version):
             yield (
                 path,
@@ -223,13 +221,6 @@ class SurfaceHistory:
                     announced=self.included.list_announced_types(path, version),
                 ),
             )
-
-    def _group_by_scope(self, kind: str, version: str, type_: Any) -> dict[str, list[Any]]:
-        """The values of a kind by their scope."""
-        found: dict[str, list[Any]] = {}
-        for scope, value in self._iterate(kind, version, type_):
-            found.setdefault(scope, []).append(value)
-        return found
 
     def _iterate(
         self, kind: str, version: str, type_: Any = Any, of: tuple[str, ...] = ()
@@ -434,5 +425,3 @@ def load_shipped() -> Surfaces:
         return Surfaces(DATA / "surfaces.sqlite")
     except StoredSurfacesError as error:
         raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
-
-
