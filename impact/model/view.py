@@ -619,8 +619,7 @@ class TargetView:
     @cache_method
     def build_environment(self, package: Package) -> frozenset[str]:
         """Everything on a machine that has just what the package declares, the package itself included."""
-        declared = (name for name, kinds in self.collect_declared(package).items() if kinds & _BUILT_WITH)
-        return self.list_transitive(declared).union(self.preinstalled, (package.name,))
+        return self.list_transitive(self._list_built_with(package)).union(self.preinstalled, (package.name,))
 
     @cache_method
     def build_known_environment(self, package: Package) -> frozenset[str]:
@@ -631,8 +630,11 @@ class TargetView:
             known = name in self.workspace.packages or self.target.list_dependencies(name) is not None
             return self.list_installed_with(name) if known else ()
 
-        found = frozenset(walk(self._list_built_with(package), list_known))
-        return found.union(self.preinstalled, (package.name,))
+        found = walk(self._list_built_with(package), list_known)
+        return self.preinstalled.union(found, (package.name,))
+
+    def _list_built_with(self, package: Package) -> list[str]:
+        return [name for name, kinds in self.collect_declared(package).items() if kinds & _BUILT_WITH]
 
     @cached_property
     def brought_to_workspace(self) -> frozenset[str]:
