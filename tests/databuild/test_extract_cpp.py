@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosimpact.databuild.extract.cpp import extract
+from rosimpact.impact.facts.cpp.lexical import find_words
 from rosimpact.impact.facts.kinds import FileFacts, decode, encode
 from rosimpact.impact.facts.kinds import extract as facts_of
 from rosimpact.impact.facts.surface import Entity, drop_inline, format_declaration
@@ -286,3 +287,8 @@ def test_any_bytes_give_a_surface(data):
 def test_declarations_do_not_touch_each_other(texts):
     together = [shown(one) for one in offered("\n".join(texts))]
     assert together == [shown(one) for text in texts for one in offered(text)]
+
+
+def test_a_name_that_ends_with_colons_is_nowhere():
+    assert [*find_words("", "void f();")] == []
+    extract(b"namespace a { int b:: ; void A:: (int) ; }")

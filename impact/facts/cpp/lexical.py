@@ -445,8 +445,8 @@ def find_at_line_starts(pattern: re.Pattern[str], text: str) -> Iterator[re.Matc
 
 
 def find_words(name: str, text: str, begin: int = 0, stop: int = sys.maxsize) -> Iterator[int]:
-    """Where a name stands as a whole word, between two places."""
-    at = text.find(name, begin, stop)
+    """Where a name stands as a whole word, between two places; nowhere where it is empty."""
+    at = text.find(name, begin, stop) if name else -1
     while at >= 0:
         end = at + len(name)
         after, before = text[end : end + 1], text[at - 1] if at else ""

@@ -1,6 +1,5 @@
 """Uses in one C++ file of other packages' names that are not the same in all versions: C++ names, overrides, fields."""
 
-import itertools
 import re
 from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
@@ -385,7 +384,8 @@ def _is_declared(text: str, before: int, at: int) -> bool:
 
 def _is_split(text: str, at: int) -> bool:
     """Whether a directive stands in the declaration at an offset, so that which parameters it has depends on it."""
-    return any(_DIRECTIVE.search(text, at, end.start()) for end in itertools.islice(_DECLARED_END.finditer(text, at), 1))
+    end = next(_DECLARED_END.finditer(text, at)).start()
+    return _DIRECTIVE.search(text, at, end) is not None
 
 
 def _may_differ(known: ChangingName, text: str, at: int) -> bool:
