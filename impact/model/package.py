@@ -530,6 +530,8 @@ class PackageJoin:
         includes, names, needed = self.collect_sources(roles)
         imports, python_names, syntax, modules = self.collect_python(python)
         by_commands = (path for use in self.build.uses for path in use.makes)
+        # A library to be loaded, called like the folder of modules that it lies in, is one of them.
+        extensions = [f"{t.output_name or t.name}.so" for t in self.build.targets if t.kind == "module"]
         made = modules.union(part for path in by_commands for part in path.split("/"))
         run_setup = {
             path: file.python
@@ -592,7 +594,7 @@ class PackageJoin:
             undefined=tuple(
                 self.make_import_use(p, i)
                 for p, i in (
-                    *list_undefined(python, made, self.files),
+                    *list_undefined(python, made, (*self.files, *extensions)),
                     *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
                     *list_siblings(python, setup),

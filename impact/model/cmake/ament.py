@@ -121,7 +121,8 @@ def generate_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -
         )
     )
     run.add_target(target, "generated")
-    run.refuse_project()
+    if "SKIP_INSTALL" not in given:  # else nothing is done under the name of the package
+        run.refuse_project()
     run.set_text("rosidl_generate_interfaces_TARGET", str(target), call.at)
     for language in ("rosidl_typesupport_cpp", "rosidl_typesupport_c", "rosidl_generator_c", "rosidl_generator_cpp",
                      "rosidl_generator_py", "cpp", "py"):  # fmt: skip

@@ -156,7 +156,8 @@ class Interpreter:
         self.made: dict[str, None] = {}
         self.handed_on: dict[FoundPackage, None] = {}
         self.handing_on = False
-        self.passed: dict[str, tuple[At, dict[str, None]]] = {}  # sources given to commands that nothing defines
+        # Sources given to commands that nothing defines, with the conditions that they are given under.
+        self.passed: dict[str, tuple[At, list[tuple[str, tuple[Condition, ...]]]]] = {}
         self.automatic: list[TargetDraft] = []  # made by ament_auto_add_*()
 
         self.project = ""
@@ -353,17 +354,16 @@ class Interpreter:
             if item.endswith(SOURCES) and "$" not in item:
                 path = self.make_relative(self.resolve(item))
                 if path is not None and self.exists(path):
-                    self.passed.setdefault(call.name, (self.locate(call.at), {}))[1][path] = None
+                    given = self.passed.setdefault(call.name, (self.locate(call.at), []))[1]
+                    given.append((path, self.merge_with(item)))
 
     def compile_passed(self) -> None:
         """Gives these sources, where no target compiles them, to a target of which nothing else is known."""
         compiled = {path for target in self.targets.finish() for path in target.sources}
-        for name, (at, paths) in self.passed.items():
-            left = [path for path in paths if path not in compiled]
-            if left:
-                draft = self.targets.make(f"{name}()", "unknown", at, ())
-                for path in left:
-                    draft.add_source(path, ())
+        for name, (at, given) in self.passed.items():
+            for path, conditions in given:
+                if path not in compiled:
+                    self.targets.make(f"{name}()", "unknown", at, ()).add_source(path, conditions)
 
     def spend(self, steps: int) -> None:
         """Counts work in units of one short command; the run ends when it is more than any real package asks for."""

@@ -14,6 +14,12 @@ if TYPE_CHECKING:
 
 _FLAG = re.compile(r"(?:^|[\s;:,\"])--?std=(?:c|gnu)\+\+([0-9][0-9a-z])\b")
 _FEATURE = re.compile(r"cxx_std_(\d\d)\b")
+# By the documentation of CMAKE_CXX_KNOWN_FEATURES; what is not of C++98 or C++14 is of C++11.
+_FEATURES_OF_14 = frozenset((
+    "cxx_aggregate_default_initializers", "cxx_attribute_deprecated", "cxx_binary_literals",
+    "cxx_contextual_conversions", "cxx_decltype_auto", "cxx_digit_separators", "cxx_generic_lambdas",
+    "cxx_lambda_init_captures", "cxx_relaxed_constexpr", "cxx_return_type_deduction", "cxx_variable_templates",
+))  # fmt: skip
 _NAMES = {"0x": 11, "1y": 14, "1z": 17, "2a": 20, "2b": 23, "2c": 26, "03": 98}
 
 
@@ -29,9 +35,12 @@ def parse_flag_standard(text: str) -> int:
 
 
 def parse_feature_standard(text: str) -> int:
-    """The standard of a `cxx_std_17` compile feature, 0 for any other feature."""
+    """The standard that a compile feature needs (`cxx_std_17`, `cxx_auto_type`), 0 for none."""
     found = _FEATURE.search(text)
-    return int(found.group(1)) if found else 0
+    if found:
+        return int(found.group(1))
+    named = text.startswith("cxx_") and text != "cxx_template_template_parameters"
+    return 14 if text in _FEATURES_OF_14 else 11 if named else 0
 
 
 def is_default(run: Interpreter) -> bool:

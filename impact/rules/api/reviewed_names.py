@@ -19,6 +19,7 @@ class ReviewedNames:
     """The reviewed rows on names that the target lacks, by name, and what the workspace calls so itself."""
 
     def __init__(self, view: TargetView):
+        self._machine = view.machine
         self._by_name = view.target.changes().by_name
         self._packages = view.workspace.packages
         # A method that a header of the workspace has may be meant wherever its name stands.
@@ -36,7 +37,14 @@ class ReviewedNames:
         found = self._list(kinds, use.text, "removed")
         if not found and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
             found = self._list(kinds, use.text.rsplit("::", 1)[-1], "removed")
+        if any(row.library for row in found) and self._is_copy(use.at.path):
+            return [row for row in found if not row.library]  # its own version has the names that it uses
         return found
+
+    def _is_copy(self, path: str) -> bool:
+        """Whether a file is a library's own header, in a copy that the workspace carries."""
+        parts = path.split("/")
+        return any(self._machine.is_from_library("/".join(parts[at:])) for at in range(1, len(parts) - 2))
 
     def find_early(self, name: str) -> list[ChangeInForce]:
         """The rows on a name that is not there yet."""

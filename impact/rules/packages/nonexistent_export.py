@@ -134,6 +134,7 @@ def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagno
 def _list_of_catkin(view: TargetView, package: Package):
     targets = {name: t for t in package.build.targets for name in (t.output_name, t.name)}
     found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
+    installed = {posixpath.basename(item) for install in package.build.installs for item in install.items}
     for export in package.build.exports:
         if not view.applies(export.conditions) or "$" in export.item:
             continue
@@ -147,6 +148,7 @@ def _list_of_catkin(view: TargetView, package: Package):
                 or export.item.startswith("-")
                 or export.item.endswith((".so", ".a"))
                 or (view.find_cmake(export.item) and export.item != package.name)
+                or not installed.isdisjoint((f"lib{export.item}.so", f"lib{export.item}.a"))  # built elsewhere
             ):
                 continue
             # Some export their own name by habit, and nobody asks for it.
