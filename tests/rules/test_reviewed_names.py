@@ -23,6 +23,7 @@ ROWS = ChangeTable((
     row("api-removed", "dock", "moor", "", "removed"),
     row("api-removed", "opencv", "CV_OLD", "", "removed"),
     row("python-removed", "arm", "arm.lift", "", "removed"),
+    row("api-removed", "eigen3", "EIGEN_OLD", "", "removed")._replace(library=True),
 ))  # fmt: skip
 
 
@@ -35,8 +36,12 @@ class Workspace(SimpleNamespace):
         return iter(())
 
 
+MACHINE = SimpleNamespace(is_from_library=lambda header: header == "Eigen/src/Core/Dot.h")
 NAMES = ReviewedNames(
-    cast(TargetView, SimpleNamespace(target=SimpleNamespace(changes=lambda: ROWS), workspace=Workspace()))
+    cast(
+        TargetView,
+        SimpleNamespace(target=SimpleNamespace(changes=lambda: ROWS), workspace=Workspace(), machine=MACHINE),
+    )
 )
 
 
@@ -66,3 +71,11 @@ def test_rows_on_names_that_are_gone(name, language, found):
 @pytest.mark.parametrize(("name", "found"), [("turn", ["arm"]), ("spin", []), ("lift", []), ("put", [])])
 def test_rows_on_names_that_are_not_there_yet(name, found):
     assert [one.package for one in NAMES.find_early(name)] == found
+
+
+@pytest.mark.parametrize(
+    ("path", "rows"), [("extern/eigen/Eigen/src/Core/Dot.h", 0), ("src/Core/Dot.h", 1), ("src/arm.cpp", 1)]
+)
+def test_a_librarys_copy_has_its_own_version(path, rows):
+    use = NameUse("EIGEN_OLD", At(path, 1, 1), "build", True, "cpp", (), ())
+    assert len(NAMES.find(use)) == rows

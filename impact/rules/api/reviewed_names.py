@@ -19,7 +19,7 @@ class ReviewedNames:
     """The reviewed rows on names that the target lacks, by name, and what the workspace calls so itself."""
 
     def __init__(self, view: TargetView):
-        self._machine = view.machine
+        self._view = view
         self._by_name = view.target.changes().by_name
         self._packages = view.workspace.packages
         # A method that a header of the workspace has may be meant wherever its name stands.
@@ -44,7 +44,7 @@ class ReviewedNames:
     def _is_copy(self, path: str) -> bool:
         """Whether a file is a library's own header, in a copy that the workspace carries."""
         parts = path.split("/")
-        return any(self._machine.is_from_library("/".join(parts[at:])) for at in range(1, len(parts) - 2))
+        return any(self._view.machine.is_from_library("/".join(parts[at:])) for at in range(1, len(parts) - 2))
 
     def find_early(self, name: str) -> list[ChangeInForce]:
         """The rows on a name that is not there yet."""
