@@ -22,7 +22,7 @@ def read_installs(view: TargetView, package: Package) -> list[Install] | None:
 def is_installed(package: Package, installs: list[Install], path: str) -> bool:
     """Whether an install rule takes a file, or may take it: a path with a variable may be any that ends like it."""
     for install in installs:
-        for item in install.items:
+        for item in install.items if install.kind != "targets" else ():  # these are built
             name = posixpath.basename(item)
             if "$" in item and ("$" in name or install.kind not in ("files", "programs")):
                 return True
