@@ -177,6 +177,7 @@ class _Modules:
 
     def __init__(self, files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str]):
         self._files, self._others, self._paths = files, others, paths
+        there = frozenset(paths)
         self._folders = {posixpath.dirname(path) for path in files}
         self._by_name = group_pairs((posixpath.basename(_strip_ending(path)), path) for path in files)
         # Folders with an __init__.py that lie in none such, or in `src`, by their names.
@@ -185,7 +186,8 @@ class _Modules:
             root = _strip_ending(path)
             around = posixpath.dirname(root)
             outermost = f"{around}/__init__.py" not in files or posixpath.basename(around) == "src"
-            if path.endswith("/__init__.py") and outermost:
+            # Where modules are installed from, a file that makes the folder itself one is of no consequence.
+            if path.endswith("/__init__.py") and (outermost or f"{around}/setup.py" in there):
                 self._roots.setdefault(posixpath.basename(root), []).append(root)
 
     @cached_property
