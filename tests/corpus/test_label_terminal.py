@@ -109,7 +109,9 @@ class Terminal:
         os.close(self.theirs)
 
     def _read(self, end: float) -> bool:
-        ready, _, _ = select.select([self.ours], [], [], max(0.0, min(0.2, end - time.monotonic())))
+        waiting = select.poll()  # select() takes no descriptor above 1023, and a session of tests has many open
+        waiting.register(self.ours, select.POLLIN)
+        ready = waiting.poll(1000 * max(0.0, min(0.2, end - time.monotonic())))
         if ready:
             self.raw += os.read(self.ours, 65536)
             return True
