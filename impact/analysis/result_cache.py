@@ -83,7 +83,7 @@ def make_results_key(view: TargetView, rules: Iterable[str]) -> bytes:
 
 def load_results(store: Store, view: TargetView, rules: Sequence[str]) -> list[Yielded] | None:
     """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
-    found = load_judgement(store, make_results_key(view, rules))
+    found = load_yielded(store, make_results_key(view, rules))
     if found is None:
         return None
     hits, unresolved = found
@@ -95,7 +95,7 @@ def load_results(store: Store, view: TargetView, rules: Sequence[str]) -> list[Y
 def store_results(store: Store, view: TargetView, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
     """Keeps what the rules yielded for later runs."""
     unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
-    store_judgement(store, make_results_key(view, rules), diagnostics, unresolved)
+    store_yielded(store, make_results_key(view, rules), diagnostics, unresolved)
 
 
 def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
@@ -104,7 +104,7 @@ def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterabl
     return hashlib.sha1(repr((stamps, compute_data_stamp(), sorted(rules))).encode()).digest()
 
 
-def store_judgement(
+def store_yielded(
     store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
 ) -> None:
     """Keeps what rules yielded, and names that were not resolved by their kind, for later runs."""
@@ -112,8 +112,8 @@ def store_judgement(
     store.remember("judgement", encode_rows([(key, _Judgement(stored, unresolved))]))
 
 
-def load_judgement(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[str, ...]]] | None:
-    """What store_judgement() kept; None when there is none."""
+def load_yielded(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[str, ...]]] | None:
+    """What store_yielded() kept; None when there is none."""
     data = store.find_memo("judgement", key)
     if data is None:
         return None

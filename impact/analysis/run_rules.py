@@ -106,7 +106,7 @@ def _run_remembered(
     key, on_flow = b"", None if flow_rules else []
     if flow_rules:
         key = result_cache.make_flow_key(opened.workspace, before, [rule.name for rule in flow_rules])
-        known = result_cache.load_judgement(opened.store, key)
+        known = result_cache.load_yielded(opened.store, key)
         on_flow = known[0] if known is not None else None
     asked = flow_rules if on_flow is None else ()
     failed: Crashes = {}
@@ -114,7 +114,7 @@ def _run_remembered(
         if place == _FLOW:
             on_flow = yielded
             if not failed:
-                result_cache.store_judgement(opened.store, key, yielded, {})
+                result_cache.store_yielded(opened.store, key, yielded, {})
             continue
         view = opened.views[place]
         found[view.target.name] = yielded = lower_repeats(yielded, {rule.name: rule for rule in rules})

@@ -775,11 +775,11 @@ class PackageJoin:
         """Macros and types that the package defines and that somebody asks about: names of a table, and those in a
         namespace that is called like another package, one whose versions are stored or a declared one."""
         asked, surfaces = self.watched.in_tables, self.watched.surfaces
-        others = {dependency.name for dependency in self.manifest.dependencies}
-        others.update(surfaces.packages if surfaces is not None else ())
+        stored = surfaces.packages if surfaces is not None else frozenset()
+        declared = {dependency.name for dependency in self.manifest.dependencies}
         for name in {name for facts in self.cpp.values() for name in (*facts.defined, *facts.types)}:
             head = name.partition("::")[0]
-            if name in asked or (head in others and head != self.name):
+            if name in asked or (head != self.name and (head in stored or head in declared)):
                 yield name
 
     def list_uses(self, roles) -> Iterator[NameUse]:

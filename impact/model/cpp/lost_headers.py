@@ -205,9 +205,10 @@ def _list_outside(view: TargetView, name: str, reach: frozenset[str], machine: H
     Any that the file itself includes may bring a name of the standard library; one whose package depends on the name's
     may bring another.
     """
+    unknown = machine.list_unknown_headers(reach)
     outside = {
         path
-        for path in machine.list_unknown_headers(reach)
+        for path in unknown
         if not view.is_standard(path)
         and not _OF_PROCESSOR.search(path)
         and not _OF_LINKER.search(path)
@@ -221,9 +222,7 @@ def _list_outside(view: TargetView, name: str, reach: frozenset[str], machine: H
         owners = {owner[0] for header in load_offered()[name] if (owner := machine.find_owner(header)) is not None}
     # A header that its package makes from a template is in none of its versions' trees.
     folders = {path.partition("/")[0] for path in reach if (machine.find_owner(path) or ("",))[0] in owners}
-    if any(
-        path.partition("/")[0] in folders and not view.find_header(path) for path in machine.list_unknown_headers(reach)
-    ):
+    if any(path.partition("/")[0] in folders and not view.find_header(path) for path in unknown):
         return None
     for path in outside:
         around = view.list_around(path)

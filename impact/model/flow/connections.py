@@ -99,7 +99,7 @@ def _collect_triggers(publishes: Sequence[Publish]) -> frozenset:
 
 
 def name_nodes(nodes: Sequence[Node]) -> dict[str, str]:
-    """How people are told of each node, by its id: the name in the system where it is a name of one node alone."""
+    """What each node is called for people, by its id: its name in the system, where no other node has it."""
     count = Counter(node.name for node in nodes)
     return {node.id: node.name if node.name and count[node.name] == 1 else node.id for node in nodes}
 

@@ -3,7 +3,7 @@
 What it does
     Reports what undeclared-package looks for, where something that the manifest declares brings it by chance: installed
     for another role (a test tool brings what a node imports), by a package that does not hand it on (by its CMake
-    exports or `build_export_depend`), or by what the target does not have, as far as versions for other distros tell.
+    exports or `build_export_depend`), or by what the target lacks, of which only versions for other distros are known.
 
 Why it breaks
     It is there until the other package drops it. The build farm, which installs no dependencies to run, lacks it today.
@@ -25,7 +25,7 @@ Not reported
 
 from ..vocabulary import Diagnostic, Package, TargetView, Text, Together, make_sort_key, rule
 from .clean_machine import collect_chance_doubts, is_chance
-from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
+from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared, list_sources
 
 
 @rule(
@@ -33,17 +33,15 @@ from .undeclared_needs import DECLARE, declare_need, describe_need, find_undecla
     texts=Text("{use}, but `{subject}` is not declared and comes only through {sources}", DECLARE),
 )
 def dependency_by_chance(view: TargetView, package: Package):
-    declared = view.collect_declared(package)
     for name, needs in find_undeclared(view, package).borrowed.items():
         strong = (need for need in needs if need.certain and (need.required or need.how == "program"))
         first = next((need for need in sorted(strong, key=make_sort_key) if is_chance(view, package, need, name)), None)
         if first is not None:
-            sources = tuple(d for d in declared if view.is_met(first.providers, view.list_transitive([d])))
             yield Diagnostic(
                 first.at,
                 name,
                 package.name,
-                {**describe_need(package, first), "sources": sources},
+                {**describe_need(package, first), "sources": list_sources(view, package, first)},
                 doubts=collect_chance_doubts(view, package, first),
                 fix=declare_need(view, package, first, name),
                 together=(Together("by chance"),),

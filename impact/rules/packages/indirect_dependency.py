@@ -20,7 +20,7 @@ Not reported
 
 from ..vocabulary import Diagnostic, Need, Package, TargetView, Text, make_sort_key, rule
 from .clean_machine import is_chance, is_circular, is_generated
-from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
+from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared, list_sources
 
 _USED = frozenset(("include", "import", "find_package", "component"))
 _TOOLS = frozenset(("catkin", "ament_cmake", "ament_cmake_auto", "cmake_modules"))
@@ -36,10 +36,9 @@ def indirect_dependency(view: TargetView, package: Package):
             if (found := _find_first(view, package, name, needs)) is not None}  # fmt: skip
     if not used:
         return
-    declared = view.collect_declared(package)
     name, first = min(used.items(), key=lambda item: make_sort_key(item[1]))
-    sources = tuple(d for d in declared if view.is_met(first.providers, view.list_transitive([d])))
-    data = {**describe_need(package, first), "sources": sources[:1], "others": tuple(sorted(used.keys() - {name}))}
+    sources, others = list_sources(view, package, first)[:1], tuple(sorted(used.keys() - {name}))
+    data = {**describe_need(package, first), "sources": sources, "others": others}
     fix = tuple(step for other, need in used.items() for step in declare_need(view, package, need, other))
     yield Diagnostic(first.at, name, package.name, data, fix=fix)
 

@@ -39,6 +39,12 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     return found
 
 
+def list_sources(view: TargetView, package: Package, need: Need) -> tuple[str, ...]:
+    """What a package declares that brings what answers a need."""
+    declared = view.collect_declared(package)
+    return tuple(one for one in declared if view.is_met(need.providers, view.list_transitive([one])))
+
+
 def _choose_name(view: TargetView, need: Need) -> str | None:
     """The name a person would put into the manifest for a need: the first provider that can be had on the target, or
     the package that is named by its form, wherever it comes from."""
