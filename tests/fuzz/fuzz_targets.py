@@ -452,7 +452,7 @@ class _Memo:
 
 def memories(data: bytes) -> None:
     """What a run remembers for the next one: findings, the tree's stamps, git's index."""
-    memo.load_judgement(_Memo(data), b"key")  # pyright: ignore[reportArgumentType]
+    memo.load_yielded(_Memo(data), b"key")  # pyright: ignore[reportArgumentType]
     for path, (stamp, content) in working._decode_memory(data).items():
         require(isinstance(path, str) and len(stamp) == 4 and len(content) == 40, "a memory of another shape")
     # Version 4 is read path by path, the others are searched first.
