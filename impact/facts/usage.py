@@ -98,6 +98,8 @@ _AHEAD_OF_DECLARED = frozenset((b"", b" ", b"\t", b"\n", b":"))
 _SCOPES = re.compile(rb"(?:[A-Za-z_]\w*::)+\Z")
 # A type at the end of a line that begins no comment.
 _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&)[ \t]+\Z")
+# A macro in the place of a type: `SERVICE_PTR(T) create(...)`.
+_MACRO_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?\b([A-Z][A-Z0-9_]+)[ \t]*\([\w:<>, \t]*\)[ \t]+\Z")
 # The same before a variable, which may be a reference or a pointer.
 _TYPE_OF_VARIABLE = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|>)(?:\s*[&*]+\s*|[ \t]+)\Z")
 _ASSIGNED = re.compile(rb"\s*(?:\[\w*\]\s*)?=(?!=)")
@@ -190,19 +192,16 @@ def find_template_arguments(text: str, at: int) -> re.Match[str] | None:
 
 
 def declares(data: bytes, function: str) -> bool:
-    """Whether a C++ file seems to declare or define a function of this name: a type stands before it in its line, or
-    at the end of the line before where it begins its own."""
+    """Whether a C++ file seems to declare or define a function of this name: a type, or a macro for one, stands before
+    it in its line, or at the end of the line before where it begins its own."""
     for at, end in _find_occurrences(function.encode(), data):
         # Behind a blank a type may stand, behind colons a scope, and the start of a line tells nothing.
         if data[at - 1 : at] in _AHEAD_OF_DECLARED and _OPENED.match(data, end) is not None:
             start = _find_line_start(data, at)
-            ahead = data[start:at]
-            if ahead.isspace():
-                continue
-            ahead = _SCOPES.sub(b"", ahead)
-            if not ahead and start:
+            ahead = _SCOPES.sub(b"", data[start:at])
+            if start and (not ahead or ahead.isspace()):
                 ahead = data[_find_line_start(data, start - 1) : start - 1].rstrip() + b" "
-            found = _TYPE_AHEAD.search(ahead)
+            found = _TYPE_AHEAD.search(ahead) or _MACRO_AHEAD.search(ahead)
             if found is not None and found.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
                 return True
     return False

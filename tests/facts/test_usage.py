@@ -124,6 +124,13 @@ DECLARED = [
     ("  free && turn(1)", False),
     ("  // void turn(int)", False),
     ("// a table can\n  turn(1);", False),
+    ("  std::shared_ptr<Disc>\n  turn(int speed)", True),
+    ("  DISC_PTR(Disc)\n  turn(int speed)", True),
+    ("  DISC_PTR(const lib::Disc) turn(int speed)", True),
+    ("  disc =\n    turn(1);", False),
+    ("  if (discs)\n    turn(1);", False),
+    ("  else\n    turn(1);", False),
+    ("  do\n    turn(1);", False),
 ]
 
 
