@@ -108,7 +108,8 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     only: with FILES_MATCHING, so that nothing but what the patterns name is installed. rename: of files. export: the
     export set that targets are put into. namespace: of an export. includes: INCLUDES DESTINATION of targets.
     executable: a folder whose files keep, or are given, the permission to be executed. rewritten: the first line of
-    programs in Python is made to name the interpreter that the package is built with."""
+    programs in Python is made to name the interpreter that the package is built with. optional: files that need not be
+    there."""
 
     kind: str
     items: tuple[str, ...]
@@ -123,6 +124,7 @@ class Install(msgspec.Struct, frozen=True, array_like=True, gc=False):
     includes: tuple[str, ...] = ()
     executable: bool = False
     rewritten: bool = False
+    optional: bool = False
 
 
 class CMakeExport(msgspec.Struct, frozen=True, array_like=True, gc=False):

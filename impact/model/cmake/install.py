@@ -133,9 +133,10 @@ def _install_files(run: Interpreter, call: CommandCall, kind: str, args: list[Wo
         items.append(item)
     if kind == "files" and "PERMISSIONS" in args and any(item.endswith("_EXECUTE") for item in args):
         kind = "programs"
-    destination = _resolve_destination(run, call, args)
+    destination, optional = _resolve_destination(run, call, args), "OPTIONAL" in args
     for conditions, members in group_pairs((item.conditions, item) for item in split_words(items)).items():
         more = {"conditions": merge(run.conditions, conditions), "rename": run.clean(find_next(args, "RENAME") or "")}
+        more["optional"] = optional
         paths = tuple(map(run.resolve_tree_path, members))
         for path in paths:
             if _CONFIGURATION.search(path):
@@ -168,4 +169,5 @@ def _install_directory(run: Interpreter, call: CommandCall, args: list[Word]) ->
     paths = tuple(run.resolve_tree_path(item) for item in split_words(items))
     executable = "USE_SOURCE_PERMISSIONS" in args or any(item.endswith("_EXECUTE") for item in args)
     more = {"patterns": tuple(patterns), "only": "FILES_MATCHING" in args, "executable": executable}
+    more["optional"] = "OPTIONAL" in args
     run.add_install("directory", paths, _resolve_destination(run, call, args), call, **more)

@@ -1,8 +1,8 @@
 """nonexistent-install: an install rule names a file or folder that does not exist, or a variable that nothing sets.
 
 What it does
-    Reports files, programs and folders in install() that neither the tree has nor the build makes, rules without
-    DESTINATION, generator expressions as folders, and variables of catkin for places that are misspelt, were removed in
+    Reports files, programs and folders in install() that neither the tree has nor the build makes, patterns such as
+    `lib/*.so`, which install() does not expand, rules without DESTINATION, generator expressions as folders, and variables of catkin for places that are misspelt, were removed in
     Groovy, or are used before catkin_package() sets them.
 
 Why it breaks
@@ -20,7 +20,7 @@ Use instead
     install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})
 
 Not reported
-    Libraries, and folders that git cannot keep while they are empty; files that the build makes; rules under a
+    Libraries, what is OPTIONAL, and folders that git cannot keep while they are empty; files that the build makes; rules under a
     condition that is unknown on the target.
 """
 
@@ -37,6 +37,10 @@ from .install_rules import read_installs
     group="missing-install",
     texts={
         "absent": Text("`{subject}` is installed but does not exist", "create it, or drop it from the rule"),
+        "pattern": Text(
+            "install({kind}) does not expand `{subject}` and finds no file of that name",
+            "use install(DIRECTORY) with `FILES_MATCHING PATTERN`, or list the files by `file(GLOB)`",
+        ),
         "nothing": Text("`{subject}` does not exist, so the rule installs nothing", "correct the folder"),
         "target": Text("install(TARGETS) names `{subject}`, which is no target, so CMake stops", "add it, or drop it"),
         "no destination": Text("install({kind}) has no {subject}, so CMake stops", "add it"),
@@ -69,12 +73,17 @@ def _list_absent(view: TargetView, package: Package, installs) -> Iterator[Diagn
             continue
         if not install.destination:
             yield Diagnostic(install.at, "DESTINATION", package.name, {"kind": install.kind.upper()}, "no destination")
-        for item in install.items:
+        for item in () if install.optional else install.items:
             path = posixpath.normpath(item)
             if _stops_symlinks(package, install, item):
                 subject = item.replace(f"{package.path}/", "") if package.path else item
                 yield Diagnostic(install.at, subject, package.name, kind="symlinks", doubts=(Doubt.CONDITIONAL,))
-            if item.startswith(("/", "build", "devel")) or re.search(r"[$*?<>]", item):
+            if re.search(r"[*?]", item) and "$<" not in item:
+                doubts = (Doubt.DISTURBS,) if install.only else ()
+                subject, data = path.removeprefix(f"{package.path}/"), {"kind": install.kind.upper()}
+                yield Diagnostic(install.at, subject, package.name, data, "pattern", doubts=doubts)
+                continue
+            if item.startswith(("/", "build", "devel")) or re.search(r"[$<>]", item):
                 continue
             if package.path and not path.startswith(package.path + "/"):
                 continue
