@@ -64,7 +64,7 @@ def test_diff_as_text(repos):
   16.0.0: 16.0.0 of ros2/rclcpp
   28.1.0: 28.1.0 of ros2/rclcpp
 
-Breaks who uses it: 3
+Breaking changes: 3
   in rclcpp/node.hpp
   removed field  rclcpp::Node::rate
     - int rclcpp::Node::rate
@@ -76,7 +76,7 @@ Breaks who uses it: 3
 
 New: 1 (1 method)
 
---all lists what is new and what still builds
+--all also lists additions and compatible changes
 """,
     )
 

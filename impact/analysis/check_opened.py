@@ -210,7 +210,7 @@ def run_and_merge(
         merge(run_rules(opened, rules.values(), crashed, before, jobs)),
         allows,
         rules=known,
-        ran=[name for name in rules if name != "unguarded-split"],  # it speaks last, see _find_splits()
+        ran=[name for name in rules if name != "unguarded-split"],  # it runs last, see _find_splits()
     )
     kept = list(result.kept)
     if "unused-suppression" in rules and result.unused:

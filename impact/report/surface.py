@@ -37,10 +37,10 @@ class SurfaceDifference(NamedTuple):
 
 _GROUPS = ("breaks", "may break", "deprecated", "changed", "added")
 _TITLES = {
-    "breaks": "Breaks who uses it",
-    "may break": "May break who uses it",
-    "deprecated": "Warns now",
-    "changed": "Changed, and still builds",
+    "breaks": "Breaking changes",
+    "may break": "Possibly breaking changes",
+    "deprecated": "Newly deprecated",
+    "changed": "Compatible changes",
     "added": "New",
 }
 _ROLES = {"breaks": "error", "may break": "warning", "deprecated": "warning", "changed": "note", "added": "good"}
@@ -81,7 +81,7 @@ def render_diff_text(found: SurfaceDifference, style: Style, everything: bool) -
             lines += ["", "nothing changed"]
         lines.append("")
     if not everything and any(select_group(c) in ("changed", "added") for each in found.changes.values() for c in each):
-        lines += [paint(style, "dim", "--all lists what is new and what still builds"), ""]
+        lines += [paint(style, "dim", "--all also lists additions and compatible changes"), ""]
     return "\n".join(lines[:-1]) + "\n"
 
 
@@ -126,7 +126,7 @@ def _render_change(change: VersionChange, style: Style) -> Iterator[str]:
 
 
 def add_hashes(change: VersionChange, old: Mapping[str, str], new: Mapping[str, str]) -> VersionChange:
-    """A change of what goes over the wire, with the hashes of the interface where both are known. old, new: by
+    """A change of the serialized format, with the hashes of the interface where both are known. old, new: by
     `msg/Name`."""
     name = change.name.partition("/")[2]
     return msgspec.structs.replace(change, old=old[name], now=new[name]) if name in old and name in new else change
@@ -265,10 +265,10 @@ def show_text(
     if build.standard:
         facts.append(f"C++{build.standard}")
     if build.dependencies:
-        facts.append(f"passes on {', '.join(build.dependencies)}")
+        facts.append(f"exports dependencies: {', '.join(build.dependencies)}")
     lines += lay_out([LinePart("; ".join(facts))], style, 2, 4)
     if surface.guessed:
-        lines += lay_out([LinePart("the build does not tell which headers are installed; those of include/ are listed",
+        lines += lay_out([LinePart("installed headers are unknown; those of include/ are listed",
                                  "warning")], style, 2, 4)  # fmt: skip
     last = ""
     for item in iterate_items(surface, hashes):

@@ -144,7 +144,7 @@ class Calls:
         return "", self.find_own_kinds(fn), ""
 
     def _find_getter_kinds(self, receiver: str) -> frozenset[str]:
-        """What well-known functions give: nodelets hand out node handles."""
+        """Return types of well-known functions: nodelets hand out node handles."""
         name = get_tail(receiver.removesuffix("()")) if receiver.endswith("()") else ""
         return frozenset(("handle",)) if name.endswith("NodeHandle") and name.startswith("get") else frozenset()
 
@@ -241,7 +241,7 @@ class Calls:
 
     def _list_made_by_members(self, fn: Fn) -> Iterator[tuple[str, FlowCall]]:
         """Members that a class has by value, or makes where they stand, and that its constructors do not initialise,
-        told once."""
+        listed once."""
         owner = self.code.find_owner(fn) if fn.source.facts.language == "cpp" and fn.facts.owner else None
         if owner is None:
             return

@@ -1,13 +1,13 @@
-"""unguarded-split: the targets asked for need different spellings, and nothing tells them apart.
+"""unguarded-split: the targets asked for need different names, and nothing tells them apart.
 
 What it does
     Reports, once for each package of the workspace and each package or library that changed, that names it uses have
-    one spelling on some of the targets asked for and another on the others. The places are reported by the rules on
+    one name on some of the targets asked for and another on the others. The places are reported by the rules on
     what is gone or not there yet, each with the guarded form as help; this is the sum of them, for whoever keeps one
     branch for all targets.
 
 Why it matters
-    The fix that one developer applies breaks the build of another: no single spelling works on all targets asked for.
+    The fix that one developer applies breaks the build of another: no single name works on all targets asked for.
 
 Example
     #include <cv_bridge/cv_bridge.h>            // Humble has only this one, Jazzy only the other
@@ -20,7 +20,7 @@ Use instead
     #endif
 
 Not reported
-    Names of which one spelling is there on all targets asked for; uses under a test that tells the versions apart.
+    Names of which one is there on all targets asked for; uses under a test that tells the versions apart.
 """
 
 from collections.abc import Iterable, Iterator
@@ -28,7 +28,7 @@ from collections.abc import Iterable, Iterator
 from ...targets.evidence_record import Evidence
 from ..vocabulary import At, Diagnostic, Finding, Text, rule
 
-_MESSAGE = "no single spelling works on {where} for {names}, which changed in `{subject}`"
+_MESSAGE = "no single name works on {where} for {names}, which changed in `{subject}`"
 
 
 @rule(
@@ -36,7 +36,7 @@ _MESSAGE = "no single spelling works on {where} for {names}, which changed in `{
     severity="note",
     texts={
         "one name": Text(_MESSAGE),
-        "names": Text(_MESSAGE, "keep both spellings in one header of your own, and include that"),
+        "names": Text(_MESSAGE, "keep both names in one header of your own, and include that"),
     },
 )
 def unguarded_split(workspace):
@@ -47,8 +47,8 @@ def unguarded_split(workspace):
 def list_splits(
     findings: Iterable[tuple[Finding, Evidence, tuple[str, ...], tuple[str, ...]]],
 ) -> Iterator[tuple[str, Diagnostic]]:
-    """(target, diagnostic) of names that no spelling serves. findings: each with its evidence, and the targets that
-    take only the old or only the new spelling."""
+    """(target, diagnostic) of names that no single name replaces. findings: each with its evidence, and the targets
+    that take only the old or only the new name."""
     groups: dict[tuple[str, str], list] = {}
     for entry in findings:
         if entry[0].severity == "note":

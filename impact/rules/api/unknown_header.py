@@ -1,7 +1,7 @@
-"""unknown-header: the path of an included header is spelt as nobody has it.
+"""unknown-header: the path of an included header has a name that no package provides.
 
 What it does
-    Reports `#include` lines whose path no version of anything has: spellings of generated headers that belong to the
+    Reports `#include` lines that no version of any package provides: spellings of generated headers that belong to the
     other ROS generation, or to C where rclcpp is used, in another case, or without their folder; generated headers
     whose interface no version of the package has, or another package of the workspace has; own headers with a letter,
     the case or the ending wrong; headers that no file of the workspace is called like, where all that the package

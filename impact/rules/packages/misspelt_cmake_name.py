@@ -41,7 +41,7 @@ _SHORTEST = 6
     texts={
         "run together": Text("`{subject}` is `{first}` and `{second}` run together", "write `{first} {second}`"),
         "near": Text("no package provides `{subject}`; `{replacement}` is declared", "write `{replacement}`"),
-        "library": Text("`{target}` links `{subject}`, which is no target", "write `{replacement}`"),
+        "library": Text("`{target}` links `{subject}`, which is not a CMake target", "write `{replacement}`"),
     },
 )
 def misspelt_cmake_name(view: TargetView, package: Package):

@@ -69,7 +69,7 @@ from .install_rules import is_installed
             "export what the package builds, or drop it",
         ),
         "no package": Text(
-            "`{subject}` is no package that is known, declared or looked for, so find_package({package}) stops",
+            "package `{subject}` is neither known nor declared, so find_package({package}) stops",
             "leave it out of ament_export_dependencies",
         ),
     },

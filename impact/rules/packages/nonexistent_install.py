@@ -2,8 +2,9 @@
 
 What it does
     Reports files, programs and folders in install() that neither the tree has nor the build makes, patterns such as
-    `lib/*.so`, which install() does not expand, rules without DESTINATION, generator expressions as folders, and variables of catkin for places that are misspelt, were removed in
-    Groovy, or are used before catkin_package() sets them.
+    `lib/*.so`, which install() does not expand, rules without DESTINATION, generator expressions as folders, and
+    variables of catkin for places that are misspelt, were removed in Groovy, or are used before catkin_package() sets
+    them.
 
 Why it breaks
     `make install` stops: "file INSTALL cannot find". CMake stops at a rule without destination, also where its variable
@@ -20,8 +21,8 @@ Use instead
     install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})
 
 Not reported
-    Libraries, what is OPTIONAL, and folders that git cannot keep while they are empty; files that the build makes; rules under a
-    condition that is unknown on the target.
+    Libraries, what is OPTIONAL, and folders that git cannot keep while they are empty; files that the build makes;
+    rules under a condition that is unknown on the target.
 """
 
 import posixpath
@@ -42,7 +43,9 @@ from .install_rules import read_installs
             "use install(DIRECTORY) with `FILES_MATCHING PATTERN`, or list the files by `file(GLOB)`",
         ),
         "nothing": Text("`{subject}` does not exist, so the rule installs nothing", "correct the folder"),
-        "target": Text("install(TARGETS) names `{subject}`, which is no target, so CMake stops", "add it, or drop it"),
+        "target": Text(
+            "install(TARGETS) names `{subject}`, which is not a CMake target, so CMake stops", "add it, or drop it"
+        ),
         "no destination": Text("install({kind}) has no {subject}, so CMake stops", "add it"),
         "symlinks": Text(
             "`colcon build --symlink-install` treats `{subject}` as the name of a folder", "write the folder itself"

@@ -54,23 +54,23 @@ _SHORTEST = 8
             "declare it in package.xml, and call find_package() with the name of its CMake configuration",
         ),
         "twice": Text("a target named `{subject}` already exists", "rename one of the two targets"),
-        "command": Text("`{subject}` is no command of CMake or of a known package", "did you mean `{replacement}`?"),
+        "command": Text("`{subject}` is not a command of CMake or of a known package", "did you mean `{replacement}`?"),
         "project": Text(
             "the project is called `{subject}`, but package.xml names the package `{package}`, so CMake stops",
             "project({package})",
         ),
         "version": Text(
-            "project({subject}) is given a version, which CMake refuses as cmake_minimum_required() makes it behave",
+            "project({subject}) with a version needs cmake_minimum_required(VERSION 3.0) or newer, so CMake stops",
             "ask for CMake 3.0 or newer",
         ),
-        "no target": Text("`{subject}` is no target, so CMake stops", "name a target that the package adds"),
+        "no target": Text("`{subject}` is not a CMake target, so CMake stops", "name a target that the package adds"),
         "too early": Text("`{subject}` is used as a target before it is added, so CMake stops", "add the target first"),
         "mixed": Text(
             "`{subject}` is linked with PUBLIC or PRIVATE and without, so CMake stops",
             "write the keyword in all calls of target_link_libraries() and ament_target_dependencies(), or in none",
         ),
         "no value": Text(
-            "`{subject}` is not set, so that a property has no value, so CMake stops",
+            "`{subject}` is empty, so a target property has no value and CMake stops",
             "give project() a version",
         ),
         "slash": Text("target name `{subject}` contains a slash", "remove the slash from the name"),

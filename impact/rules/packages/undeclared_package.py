@@ -17,10 +17,10 @@ Severity
     something declared is not known, no version of that in any distro does. What CMake is asked for where tests are
     built counts, since it is asked whenever the package is configured, and so do tests of ROS 2, which are compiled
     along. warning: environment variables, tests of ROS 1, imports, launch files, installed headers that nothing here
-    compiles, or where a dependency is known nowhere and may bring it (one called as interfaces are brings interfaces).
-    note: conditional code, examples (installed ones too, in what they import and start), documentation, files that
-    nothing compiles, and all but the first of more than five imports (in ROS 1, of several), or packages that launch
-    files start, which a package does not declare.
+    compiles, or where a dependency is known nowhere and may bring it (a package named like an interface package may
+    provide interfaces). note: conditional code, examples (installed ones too, in what they import and start),
+    documentation, files that nothing compiles, and all but the first of more than five imports (in ROS 1, of several),
+    or packages that launch files start, which a package does not declare.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen

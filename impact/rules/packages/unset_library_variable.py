@@ -50,7 +50,7 @@ _SET_ALONG = re.compile(
             "`{variable}` is linked, but nothing sets it", "pkg_check_modules({stem} REQUIRED {subject})"
         ),
         "prefix": Text(
-            "`{prefix}` is taken as the prefix of the variables, so `{subject}` is not {prefix}",
+            "pkg_check_modules() uses `{prefix}` as the prefix of its variables, so `{subject}` is not {prefix}",
             "pkg_check_modules({variable} {prefix} {subject})",
         ),
     },
