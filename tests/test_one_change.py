@@ -15,6 +15,7 @@ from rosimpact.impact.analysis import result_cache as memo
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options, open_workspace
 from rosimpact.impact.model import tracked_names as watch
+from rosimpact.impact.model import workspace
 from rosimpact.impact.model.view import TargetView
 from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import load_rules
@@ -196,6 +197,43 @@ def test_a_package_of_the_workspace_is_not_the_released_one(ws, run):
     (ws / "rclcpp").mkdir()
     (ws / "rclcpp/package.xml").write_text(MANIFEST.format(name="rclcpp", depends=""))
     assert not [finding for finding in run(ws, "kept")[0] if finding.rule == "removed-symbol"]
+
+
+@pytest.fixture
+def across(ws) -> Path:
+    """arm uses a member whose type only a header of hand shows."""
+    member = "nav2_costmap_2d::Costmap2DPublisher * map;"
+    header = f"#include <nav2_costmap_2d/costmap_2d_publisher.hpp>\nstruct Grip {{ {member} }};\n"
+    (ws / "hand/include/hand/grip.hpp").write_text(header)
+    replaced("hand/package.xml", "<export>", "<depend>nav2_costmap_2d</depend><export>")(ws)
+    (ws / "hand/include/hand/hand.hpp").write_text('#include "grip.hpp"\nint hand();\n')
+    source = ws / "arm/src/arm.cpp"
+    source.write_text(source.read_text() + "bool is_active(Grip & grip) { return grip.map->active(); }\n")
+    return ws
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "still", "joined"),
+    [
+        ("struct", "// What the arm grips.\nstruct", True, []),
+        ("Costmap2DPublisher * map", "Costmap2DROS * map", False, ["arm", "hand"]),
+        ("struct Grip", "struct Claw", False, ["arm", "hand"]),
+    ],
+)
+def test_a_header_of_another_package(across, run, monkeypatch, old, new, still, joined):
+    def list_removed() -> list[str]:
+        return [one.path for one in run(across, "kept")[0] if one.rule == "removed-symbol" and "active" in one.subject]
+
+    assert list_removed() == ["arm/src/arm.cpp"]
+    anew: list[str] = []
+    combine = workspace._Linker.combine
+    monkeypatch.setattr(
+        workspace._Linker, "combine",
+        lambda self, places, stale: anew.extend(p.name for p in places) or combine(self, places, stale),
+    )  # fmt: skip
+    replaced("hand/include/hand/grip.hpp", old, new)(across)
+    assert list_removed() == (["arm/src/arm.cpp"] if still else [])
+    assert [name for name in sorted(anew) if name != "hand"] == [name for name in joined if name != "hand"]
 
 
 JUDGED = [

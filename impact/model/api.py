@@ -488,6 +488,12 @@ class Vocabulary:
         ending = f"::{word}::{word}"
         return tuple(name for name in self.list_by_last(word) if f"::{name}".endswith(ending))
 
+    @cached_property
+    def constructed(self) -> frozenset[str]:
+        """Last parts of the classes with changing constructors of which a use can matter."""
+        looked_for = self.select_wanted(self.words)
+        return frozenset(word for word in looked_for if self.list_constructors(word))
+
     @cache_method
     def is_member(self, word: str) -> bool:
         """Whether a member of a class is so called."""

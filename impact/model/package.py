@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from ..facts.extract import ExtractedFacts
     from ..targets.asked_versions import AskedVersions
     from .api import Changes
+    from .cpp.offered_headers import OfferedHeaders
     from .cpp.resolver import KnownFile
     from .discovery import PackagePlace
     from .members import FoundField
@@ -419,18 +420,20 @@ class PackageJoin:
     """Joins the facts of a package's files. build: what its CMake says. files: all its paths. read: path to bytes, used
     only to find members and changing names of C++. home: packages of the same workspace, which are not looked for in
     what changed elsewhere. asked: the versions of other packages that uses may be wrong in, all when None. changing:
-    C++ names of other packages that are not alike in those."""
+    C++ names of other packages that are not alike in those. offered: headers of other packages of the workspace.
+    offered_read: those that were looked into."""
 
     def __init__(
         self, place: PackagePlace, manifest: Manifest, build: Build, build_type: str, files: Iterable[str],
         gathered: ExtractedFacts, read: Callable[[str], bytes], watched: Watched, home: Collection[str] = frozenset(),
-        asked: AskedVersions | None = None, changing: Changes | None = None,
+        asked: AskedVersions | None = None, changing: Changes | None = None, offered: OfferedHeaders | None = None,
     ):  # fmt: skip
         self.name, self.path, self.manifest_path = place.name or manifest.name, place.path, place.manifest_path
         self.manifest, self.build, self.build_type, self.files = manifest, build, build_type, tuple(files)
         self.generation = 2 if build_type.startswith("ament") else 1 if build_type == "catkin" else 0
         self.kinds, self.facts, self.look = gathered.kinds, gathered.get_facts, gathered.look
-        self.watched, self.home, self.asked, self.changing = watched, home, asked, changing
+        self.watched, self.home, self.asked, self.changing, self.offered = watched, home, asked, changing, offered
+        self.offered_read: set[str] = set()
         self.read = cache(read)  # a file is looked into for several reasons
         self.prefix = f"{self.path}/" if self.path else ""
         self.cpp: dict[str, CppFile] = {}
@@ -919,7 +922,7 @@ class PackageJoin:
         are compiled."""
         from .api import ASSIGNING, Vocabulary
         from .cpp.resolver import Resolver
-        from .cpp.uses import ApiUses
+        from .cpp.uses import INITIALIZES, ApiUses
 
         if self.changing is None:
             return
@@ -927,6 +930,7 @@ class PackageJoin:
         packages = {i.path.partition("/")[0] for found in self.resolved.values() for to, i in found if to is None}
         packages.update(dependency.name for dependency in self.manifest.dependencies)
         packages.update(name.text.partition("::")[0] for facts in self.cpp.values() for name in facts.qualified)
+        packages.update(self.list_packages_of_offered(spoken))
         ros = self.generation
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.changing, ros, self.home)
         assigning = vocabulary.select_wanted(vocabulary.words & ASSIGNING.keys())
@@ -935,24 +939,32 @@ class PackageJoin:
         for path, (role, _, targets, conditions) in roles.items():
             words = vocabulary.select_wanted(vocabulary.words & spoken[path]) | assigning if path in spoken else set()
             has_exported = not exported_words.isdisjoint(spoken.get(path, ()))
-            if not words and not has_exported:
+            initializes = path in spoken and INITIALIZES.search(self.read(path)) is not None
+            if not words and not has_exported and not initializes:
                 continue
             reached = sorted(to for to in self.list_reached(path) if to != path and to in spoken)
-            near = [spoken[path], *(spoken[to] for to in reached)]
+            reached += self.list_offered(path)
+            near = [spoken[path], *map(self.list_words, reached)]
             has_exported = (
                 has_exported
                 and any(not one.isdisjoint(vocabulary.speakers_of_pure) for one in near)
                 and not exported_words.isdisjoint(self.load(path).code.like_classes)
             )
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
-            if not words and not has_exported:
+            built = vocabulary.constructed.intersection(frozenset().union(*near)) if initializes else frozenset()
+            if not words and not has_exported and not built:
                 continue
             code = self.load(path).code
             seen = set()
             resolver = Resolver([self.load(path), *(self.load(to) for to in reached)], vocabulary, None)
             heads = {include.partition("/")[0] for include in self.list_reaching_paths(path)}
             uses = ApiUses(resolver, heads)
-            for found in (*uses.find_uses(words), *(uses.find_unimplemented(exported) if has_exported else ())):
+            every = (
+                uses.find_uses(words),
+                uses.find_unimplemented(exported) if has_exported else (),
+                uses.find_initialized(built) if built else (),
+            )
+            for found in itertools.chain(*every):
                 around = code.find_conditions(found.offset)
                 # Every call is a use of its own.
                 key = (*(found if found.how == "call" else found._replace(offset=0)), around)
@@ -969,12 +981,12 @@ class PackageJoin:
         from ..facts.cpp.code import CppCode
         from .cpp.resolver import KnownFile
 
-        return KnownFile(CppCode(self.read(path)), self.list_words(path) if path in self.cpp else frozenset())
+        return KnownFile(CppCode(self.read(path)), self.list_words(path) if path in self.kinds else frozenset())
 
     @cache_method
     def list_words(self, path: str) -> frozenset[str]:
         """Every word of a C++ file that has four letters or more, and all parts of its qualified names."""
-        facts = self.cpp[path]
+        facts = self.cpp[path] if path in self.cpp else self.facts(path).facts
         parts = (part for name in facts.qualified for part in name.text.split("::"))
         return frozenset((*facts.words.split(" "), *parts, *facts.using))
 
@@ -1078,6 +1090,21 @@ class PackageJoin:
     def list_reached(self, path: str) -> tuple[str, ...]:
         """The file and the files of the package that it includes, directly or not."""
         return tuple(walk([path], lambda at: (to for to, _ in self.resolved.get(at, ()) if to is not None)))
+
+    @cache_method
+    def list_offered(self, path: str) -> list[str]:
+        """The headers of other packages of the workspace that a file includes, directly or not."""
+        if self.offered is None:
+            return []
+        headers = (self.offered.find(include, self.path) for include in self.list_outward(path))
+        found = frozenset().union(*(self.offered.list_with(header) for header in headers if header))
+        self.offered_read |= found
+        return sorted(found - self.cpp.keys())
+
+    def list_packages_of_offered(self, paths: Iterable[str]) -> set[str]:
+        """First parts of what those of them include that these files reach."""
+        headers = {header for path in paths for header in self.list_offered(path)}
+        return {include.path.partition("/")[0] for header in headers for include in self.facts(header).facts.includes}
 
     def declares(self, path: str, name: str) -> bool:
         """True when the file, or one of the package that it includes, announces or defines a type or function of this

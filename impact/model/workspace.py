@@ -36,6 +36,7 @@ from .cmake.build import Build
 from .cmake.installed import HEADER_NAME
 from .cmake.interpret import interpret, list_extras
 from .cmake.interpreter import calls_unmodelled
+from .cpp.offered_headers import OfferedHeaders
 from .discovery import Discovered, PackagePlace, detect_generation, discover, find_manifest
 from .ignored import holds_ignored, is_ignored
 from .package import LinkedPackage, PackageJoin, Watched, build_type_of
@@ -456,9 +457,17 @@ def _list_named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(d.name for d in manifest.dependencies if d.kind in kinds))
 
 
+class _Stale(NamedTuple):
+    """A digest whose package and headers of other packages say what they did, and what is remembered of these."""
+
+    digest: LinkedPackage
+    headers: dict[str, str]
+
+
 class _Joined(NamedTuple):
-    """A package's digest, the same encoded (empty where its names cannot be), and the encoded content ids of the CMake
-    files of other packages that it rests on (None: not to be stored)."""
+    """A package's digest, the same encoded (empty where its names cannot be), and, encoded, what other packages' files
+    say that it rests on: the content ids of CMake files, and headers as OfferedHeaders describes them (None: not to be
+    stored)."""
 
     digest: LinkedPackage
     packed: bytes | memoryview
@@ -473,7 +482,7 @@ _REMEMBERED = 5_000_000
 _INTERFACES = frozenset(("msg", "srv", "action", "idl"))
 
 
-def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, LinkedPackage | None]], path: str):
+def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, _Stale | None]], path: str):
     """What a process of its own does with a folder of tasks: a _Joined, with the digest in one form only."""
     processes.begin_part(0, _JOIN_BYTES + len(linker.paths_of[path]) * _JOIN_BYTES_OF_FILE)
     digest, packed, head = linker.join_one(*tasks[path])
@@ -521,7 +530,7 @@ class _Linker:
         decoder = msgspec.msgpack.Decoder(LinkedPackage)
         remembered = store.find_memos("digest", list(keys.values())) if store is not None else {}
         found: dict[str, _Joined] = {}
-        stale: dict[str, LinkedPackage] = {}
+        stale: dict[str, _Stale] = {}
         for place in places:
             blob = remembered.get(keys[place.path])
             if blob is not None:
@@ -532,10 +541,13 @@ class _Linker:
                     before = decoder.decode(packed)
                 except msgspec.MsgspecError:
                     continue  # of another version: made anew
-                if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items()):
+                headers = {path: described for path, described in read.items() if " " in described}
+                if not all(self.offered.still_says(path, described) for path, described in headers.items()):
+                    continue
+                if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items() if path not in headers):
                     found[place.path] = _Joined(before, packed, None)
                 else:
-                    stale[place.path] = before
+                    stale[place.path] = _Stale(before, headers)
         made = dict(self.combine([p for p in places if p.path not in found], stale))
         self.whole = all(one.packed and one.head is not None for one in made.values())
         found.update(made)
@@ -550,7 +562,7 @@ class _Linker:
             store.remember("digest", fresh)
         return [found[p.path].digest for p in places]
 
-    def combine(self, places: Iterable[PackagePlace], stale: dict[str, LinkedPackage]) -> Iterator[tuple[str, _Joined]]:
+    def combine(self, places: Iterable[PackagePlace], stale: dict[str, _Stale]) -> Iterator[tuple[str, _Joined]]:
         """Folder and join of these packages, several at once where there is much to do. stale: digests of an earlier
         run that may still hold, by folder."""
         tasks = {p.path: (p, stale.get(p.path)) for p in places}
@@ -573,7 +585,7 @@ class _Linker:
                 digest, packed, head = result
                 yield path, _Joined(digest or decoder.decode(packed), packed, head)
 
-    def join_one(self, place: PackagePlace, before: LinkedPackage | None) -> _Joined:
+    def join_one(self, place: PackagePlace, before: _Stale | None) -> _Joined:
         try:
             with self.gathered.defer_storing():
                 digest, read = self.join(place, before)
@@ -612,7 +624,7 @@ class _Linker:
         ids = self.gathered.ids
         asked = self.asked.identity if self.asked is not None else ""
         versions = f"{self.code}{format_limits()} {self.watched.version} {asked}"
-        about = f"{versions} {self.ros} {self._extras_key} {sorted(self.home)} {place.path}\n"
+        about = f"{versions} {self.ros} {self._extras_key} {self.offered.key} {sorted(self.home)} {place.path}\n"
         digest = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
         digest.update(
             "\n".join([f"{path} {ids.get(path, '')}" for path in self.paths_of[place.path]]).encode(
@@ -640,9 +652,9 @@ class _Linker:
         given = [path for place in self.discovered.packages for path in self.find_extras(place.name)]
         return hashlib.sha1("\n".join(given).encode("utf-8", "surrogateescape")).hexdigest()
 
-    def join(self, place, before: LinkedPackage | None) -> tuple[LinkedPackage, dict[str, str]]:
-        """The digest of a package, and the CMake files of others that it rests on. before: a digest of the very same
-        files of its own; where the others still say the same, it holds."""
+    def join(self, place, before: _Stale | None) -> tuple[LinkedPackage, dict[str, str]]:
+        """The digest of a package, and what files of others say that it rests on. before: a digest of the very same
+        files of its own; where the CMake files of others still say the same, it holds."""
         gathered = self.gathered
         manifest = find_manifest(gathered, place.manifest_path)
         assert manifest is not None
@@ -678,14 +690,20 @@ class _Linker:
         )
         ignored = tuple(self.list_ignored(build, read))
         build = msgspec.structs.replace(build, made=(*build.made, *ignored)) if ignored else build
-        if before is not None and build == before.build:
-            return before, read
+        if before is not None and build == before.digest.build:
+            return before.digest, {**read, **before.headers}
         build_type = _detect_build_type(build, build_type_of(manifest, self.ros))
         joined = PackageJoin(
             *(place, manifest, build, build_type, files, gathered, self.tree.read),
-            *(self.watched, self.home, self.asked, self.changing),
+            *(self.watched, self.home, self.asked, self.changing, self.offered),
         )
-        return joined.build_digest(), read
+        digest = joined.build_digest()
+        return digest, {**read, **{path: self.offered.describe(path) for path in joined.offered_read}}
+
+    @cached_property
+    def offered(self) -> OfferedHeaders:
+        """The headers that packages offer each other."""
+        return OfferedHeaders(self.paths_of, self.gathered)
 
     @cached_property
     def changing(self) -> Changes | None:

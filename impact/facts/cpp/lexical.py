@@ -4,6 +4,7 @@ Reading is lexical. Comments and literals are blanked without moving an offset, 
 into segments, and names are collected per segment. Nothing is expanded: what a macro hides is hidden here too.
 """
 
+import hashlib
 import re
 import sys
 from bisect import bisect_right
@@ -50,7 +51,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     packages and files named by literals (`package://`, getPath, get_package_share_directory).
     types: those that it defines in namespaces, with each namespace that the file opens, since which one encloses which
     is not followed. variables: qualified types of which some line declares a variable or member itself, not a pointer
-    or reference.
+    or reference. code: a digest of all but comments, literals, includes and blanks.
     """
 
     includes: tuple[Include, ...]
@@ -63,6 +64,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     references: tuple[Reference, ...] = ()
     types: tuple[str, ...] = ()
     variables: tuple[str, ...] = ()
+    code: str = ""
 
 
 # Conditions beyond these are one unknown condition: hostile input must not cost quadratic memory.
@@ -509,6 +511,7 @@ def extract(data: bytes) -> CppFile:
         references=_find_references(scanned.text, visible, place),
         types=list_defined_types(visible, tokens_text) if "namespace" in tokens_text else (),
         variables=_list_variable_types(visible),
+        code=hashlib.sha1(" ".join(visible.split()).encode()).hexdigest()[:16],
     )
 
 

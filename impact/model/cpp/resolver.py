@@ -292,6 +292,13 @@ class Resolver:
         if own is not None:
             return own
         meanings = list(dict.fromkeys(self.list_meanings(name, place)))
+        if rest:
+            for full in meanings:
+                scope, _, last = full.rpartition("::")
+                for alias in (one for file in self.files for one in file.list_aliases(last) if one.scope == scope):
+                    inner = self.find_type(alias.type, CodePlace(scope, "", False), depth + 1)
+                    if inner is not None:
+                        return inner
         for file in self.files:
             for alias in file.list_aliases(head):
                 inner = self.find_type(alias.type, CodePlace(alias.scope, "", False), depth + 1)
@@ -484,7 +491,7 @@ class Resolver:
     def _resolve_name_value(self, expr: Expr, place: CodePlace, depth: int) -> CppType | None:
         local = expr.local
         if local is None:
-            return None if "::" in expr.text else self._resolve_variable(expr.text, place)
+            return None if "::" in expr.text else self.resolve_variable(expr.text, place)
         if local.how in ("variable", "parameter"):
             if "auto" not in local.type:
                 return self.find_type(local.type, place) if local.type else None
@@ -499,7 +506,7 @@ class Resolver:
             return type_._replace(several=False) if type_ is not None and type_.several else None
         return None
 
-    def _resolve_variable(self, name: str, place: CodePlace) -> CppType | None:
+    def resolve_variable(self, name: str, place: CodePlace) -> CppType | None:
         """What a name is that no function declares: a member of the class around, or a variable outside of all."""
         if place.owner:
             for one in self.list_own_lineage(place.owner):

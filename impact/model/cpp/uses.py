@@ -42,6 +42,9 @@ _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\
 _FARTHEST, _FAR = 4000, 160
 _INTERFACES = ("::msg", "::srv", "::action")
 _CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*\()")
+_INITIALIZED = re.compile(r"\s*\(")
+INITIALIZES = re.compile(rb"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]")
+"""What a text has where a constructor may initialize members."""
 _TYPES = CLASSES | {"alias", "enum"}
 
 
@@ -251,6 +254,30 @@ class ApiUses:
         count, given = self._describe_arguments(use)
         return FoundName(self.vocabulary.names[name].package, name, use.offset, "call", count, given,
                      use.template is not None, True, ())  # fmt: skip
+
+    def find_initialized(self, classes: Collection[str]) -> Iterator[FoundName]:
+        """Constructors of other packages' classes that initializer lists of the file call by the name of a member.
+        classes: last parts of the classes that may be meant."""
+        code, home = self.resolver.known.code, self.vocabulary.home
+        declared = re.compile(rf"\b(?:{'|'.join(sorted(classes))})(?:\s*<[^;{{}}]{{0,200}}>)?\s+(\w+)\s*[;={{]")
+        texts = (file.code.text for file in self.resolver.files if file.mentions_any(frozenset(classes)))
+        members = {name for text in texts for name in declared.findall(text) if code.mentions(name)}
+        for use in code.list_uses(sorted(members), self._may_initialize):
+            type_ = self.resolver.resolve_variable(use.word, use.place) if use.form == "initializer" else None
+            if type_ is None or type_.own or not type_.plain or use.call is None:
+                continue
+            name = f"{type_.name}::{type_.name.rpartition('::')[2]}"
+            if name in self.vocabulary.names and self.vocabulary.names[name].package not in home:
+                count, given = self._describe_arguments(use)
+                found = FoundName(self.vocabulary.names[name].package, name, use.offset, "call", count, given, False,
+                                  True, ())  # fmt: skip
+                if self._differs(found):
+                    yield found
+
+    def _may_initialize(self, word: str, at: int) -> bool:
+        """Whether a name at an offset may begin a part of an initializer list."""
+        text = self.resolver.known.code.text
+        return _INITIALIZED.match(text, at + len(word)) is not None and text[:at].rstrip()[-1:] in (":", ",")
 
     def _make_use(self, name: str, use: Written, sure: bool, through: tuple[str, ...]) -> FoundName:
         """The use that a name at a place is."""
