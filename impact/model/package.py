@@ -922,7 +922,7 @@ class PackageJoin:
         are compiled."""
         from .api import ASSIGNING, Vocabulary
         from .cpp.resolver import Resolver
-        from .cpp.uses import INITIALIZES, ApiUses
+        from .cpp.uses import INITIALIZES, ApiUses, find_instantiated
 
         if self.changing is None:
             return
@@ -935,6 +935,8 @@ class PackageJoin:
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.changing, ros, self.home)
         assigning = vocabulary.select_wanted(vocabulary.words & ASSIGNING.keys())
         exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
+        if any(not words.isdisjoint(vocabulary.speakers_of_pure) for words in spoken.values()):
+            exported.update(name for path in spoken for name in find_instantiated(self.read(path)))
         exported_words = {name.rpartition("::")[2] for name in exported}
         for path, (role, _, targets, conditions) in roles.items():
             words = vocabulary.select_wanted(vocabulary.words & spoken[path]) | assigning if path in spoken else set()

@@ -45,6 +45,7 @@ _CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*\()")
 _INITIALIZED = re.compile(r"\s*\(")
 INITIALIZES = re.compile(rb"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]")
 """What a text has where a constructor may initialize members."""
+_INSTANTIATED = re.compile(rb"\b(?:new\s+|make_(?:shared|unique)\s*<\s*)(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{,)]")
 _TYPES = CLASSES | {"alias", "enum"}
 
 
@@ -370,8 +371,8 @@ class ApiUses:
                                     given, False, True, member[1])  # fmt: skip
 
     def find_unimplemented(self, exported: Collection[str]) -> Iterator[FoundName]:
-        """Methods that a base class in another package makes others implement in some version, and that an exported
-        class of the file does not have. exported: full names of classes that others make objects of."""
+        """Methods that a base class in another package makes others implement in some version, and that a class of the
+        file does not have of which objects are made. exported: the names of such classes."""
         code = self.resolver.known.code
         if not code.may_derive:
             return
@@ -394,6 +395,11 @@ class ApiUses:
 
     def _find_first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
         return next((found for one in classes if (found := self.vocabulary.find_member(one, word)) is not None), None)
+
+
+def find_instantiated(data: bytes) -> set[str]:
+    """The names of classes of which a file makes objects by `new`, std::make_shared() or std::make_unique()."""
+    return {name.decode() for name in _INSTANTIATED.findall(data)}
 
 
 def _find_ahead(pattern: re.Pattern[str], text: str, end: int) -> str:
