@@ -266,6 +266,9 @@ def measure_coverage(
     cmake = sum(len(package.build.unresolved) for package in workspace)
     if cmake:
         counts["cmake"] = counts.get("cmake", 0) + cmake
+    platforms = {view.target.platform for view in views if not view.target.knows_libraries}
+    if platforms:
+        counts["platform"] = len(platforms)
     receivers = sum(package.digest.unresolved_receivers for package in workspace)
     if receivers:
         counts["receiver"] = receivers

@@ -128,6 +128,22 @@ def test_a_platform_without_a_sync_is_noted():
     assert target("rolling@2024-03-10", platform="ubuntu noble").notes == ()
 
 
+@pytest.mark.parametrize(
+    ("platform", "versions", "known"),
+    [
+        ("ubuntu noble", {}, None),
+        ("conda-forge", {}, None),
+        ("debian sid", {}, "no library versions of debian sid are known: what they lack is not reported"),
+        ("fedora", {"opencv": "4.9"}, "no library versions of fedora are known besides those given for the target: "
+                                      "what they lack is not reported"),
+    ],
+)  # fmt: skip
+def test_platform_without_library_versions(platform, versions, known):
+    asked = DistroTarget("jazzy", platform=platform, versions=versions)
+    assert asked.notes == ((known,) if known else ())
+    assert asked.knows_libraries is (known is None)
+
+
 LIBRARIES = [
     ("humble", "opencv", "4.5.4"),
     ("jazzy", "opencv", "4.6.0"),

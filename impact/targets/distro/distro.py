@@ -157,9 +157,18 @@ class DistroTarget:
         self._cut, self.approximate = self._find_commit_time()
         self._rule_ts = end_of_day(self.date)
         self.platform = self._choose_platform(platform, notes)
-        self.notes = tuple(notes)
+        self._notes = tuple(notes)
         self.name = name or (distro if date is None else f"{distro}@{date}")
         self._changes: ChangeTable | None = None
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """What was adjusted, and that no versions of libraries are known on the platform."""
+        if self.knows_libraries:
+            return self._notes
+        given = " besides those given for the target" if self._own_libraries else ""
+        platform = self.platform or "its platform"
+        return (*self._notes, f"no library versions of {platform} are known{given}: what they lack is not reported")
 
     def __reduce__(self):
         # A target travels to worker processes as its recipe; each opens the shared cache file itself.
@@ -615,6 +624,11 @@ class DistroTarget:
     def is_overridden(self, package: str) -> bool:
         """True for ROS packages whose version was given for this machine, and is not the distro's."""
         return package in self._overrides
+
+    @property
+    def knows_libraries(self) -> bool:
+        """Whether versions of libraries are known on the platform, besides those that are given for the target."""
+        return bool(self._load_libraries())
 
     def list_library_names(self) -> frozenset[str]:
         """Platform libraries whose version is known here."""
