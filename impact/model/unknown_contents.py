@@ -43,6 +43,11 @@ def _may_be_called_after(name: str, wanted: str) -> bool:
     return len(stem) >= _SHORTEST and stem in name
 
 
+def is_called_after(name: str, folder: str) -> bool:
+    """Whether a package is called after a folder of this name, which most likely holds it."""
+    return len(folder) >= _SHORTEST and name.startswith(folder.replace("-", "_"))
+
+
 class UnknownContents:
     """What may be there for the packages of a workspace on one target although nobody is known to have it."""
 
@@ -89,8 +94,7 @@ class UnknownContents:
 
     def is_of_submodule(self, name: str) -> bool:
         """Whether a package is called after a folder of the workspace that was not read, which most likely holds it."""
-        folders = (folder.replace("-", "_") for folder in self._view.workspace.unread_names)
-        return any(len(folder) >= _SHORTEST and name.startswith(folder) for folder in folders)
+        return any(is_called_after(name, folder) for folder in self._view.workspace.unread_names)
 
     def list_opaque(self, package: Package) -> tuple[str, ...]:
         """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them

@@ -185,6 +185,11 @@ class Workspace:
         return frozenset(path.rpartition("/")[2] for path in self.unread)
 
     @cached_property
+    def unread_submodules(self) -> list[str]:
+        """The folders of submodules that were not read, in order."""
+        return sorted(problem.path for problem in self.gathered.problems if problem.is_submodule)
+
+    @cached_property
     def may_have(self) -> frozenset[str]:
         """Names of its packages, and of those that folders which were not read are called after."""
         return self.unread_names.union(self.packages)

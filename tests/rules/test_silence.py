@@ -1185,3 +1185,15 @@ def test_a_submodule_that_is_not_checked_out_has_packages_that_are_called_after_
         (tmp_path / name).write_text(text)
     report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
     assert [finding.severity for finding in report.findings if finding.rule == "unreleased-package"] == expected
+
+
+@pytest.mark.parametrize("folder", ["external/our_gimbal", "external/drivers"])
+def test_a_submodule_that_is_not_checked_out_may_have_a_package_that_nobody_knows(folder, tmp_path):
+    files = ament("find_package(our_gimbal_msgs REQUIRED)", "our_gimbal_msgs")
+    files[".gitmodules"] = f'[submodule "ours"]\n\tpath = {folder}\n\turl = https://example.org/b.git\n'
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
+    (finding,) = (one for one in report.findings if one.rule == "unresolvable-key")
+    assert finding.severity == "note"
+    assert finding.message.endswith(f"may be in a submodule that was not read: `{folder}`")

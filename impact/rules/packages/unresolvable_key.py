@@ -12,7 +12,7 @@ Why it breaks
 
 Severity
     error, since `rosdep install` stops; note for names that are not known in public, which may belong to a private
-    repository; warning for unknown names that nothing in the package uses or that have the form of a key (`python3-x`,
+    repository or to a submodule that was not read; warning for unknown names that nothing in the package uses or that have the form of a key (`python3-x`,
     `libx-dev`, `x-pip`, `x_1.2`), for a name `x` or `x2` if exactly one package or key such as `x_vendor` or `libx-dev`
     exists, for one that differs from a package of the workspace in the ending of a word, or is called after the package
     that declares it, and for keys of Python 2 or pip.
@@ -34,6 +34,7 @@ from collections.abc import Iterator
 
 from ...model.misspelling import is_slip
 from ...model.package import BUILD_TOOLS
+from ...model.unknown_contents import is_called_after
 from ...targets.target import Resolution
 from ..vocabulary import Diagnostic, Doubt, Package, Remove, Replace, TargetView, Text, rule
 from .used_names import list_used_names, shows_uses, stands_in_cmake
@@ -67,6 +68,10 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
             "declare a key that apt resolves, or treat the module as optional",
         ),
         "build type": Text("`{subject}` is a build type, not a package or rosdep key", "declare it as build_type only"),
+        "unread": Text(
+            "`{subject}` is not a public package or rosdep key, and may be in a submodule that was not read: {unread}",
+            "run `git submodule update --init`; or, if it is your own, add it to `[workspace] private` in rosimpact.toml",
+        ),
         "unknown": Text(
             "`{subject}` is not a public package or rosdep key",
             "if it is your own, add it to `[workspace] private` in rosimpact.toml",
@@ -81,9 +86,13 @@ def unresolvable_key(view: TargetView, package: Package):
         if name in seen or name in view.workspace.packages or target.find_version(name) is not None:
             continue
         seen.add(name)
-        if view.is_private(name) or view.unknown_contents.is_of_submodule(name):
+        if view.is_private(name):
             continue
         at = view.find_place(package, dependency)
+        if view.unknown_contents.is_of_submodule(name):
+            if not target.was_ever_released(name) and not target.knows_key(name):
+                yield _diagnose_unread(view, package, at, name)
+            continue
         resolution = target.resolve(name)
         if resolution is not None:
             yield from _list_unfit(view, package, at, name, resolution)
@@ -129,12 +138,21 @@ def _diagnose_unknown(view: TargetView, package: Package, at, name: str) -> Diag
         return Diagnostic(at, name, package.name, kind="build type", fix=(Remove(at.path, name),))
     if _KEY.fullmatch(name):
         return Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.AMBIGUOUS,))
+    if view.workspace.unread_submodules:
+        return _diagnose_unread(view, package, at, name)
     if name.startswith(f"{package.name}_"):
         return Diagnostic(at, name, package.name, kind="called after", doubts=(Doubt.AMBIGUOUS,))
     hidden = package.build.unresolved or not shows_uses(package)
     if hidden or stands_in_cmake(package, name) or name in list_used_names(view, package):
         return Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.PRIVATE,))
     return Diagnostic(at, name, package.name, kind="unused", doubts=(Doubt.AMBIGUOUS,))
+
+
+def _diagnose_unread(view: TargetView, package: Package, at, name: str) -> Diagnostic:
+    """A name that nobody knows in public, where submodules were not read: those that it is called after, or all."""
+    unread = view.workspace.unread_submodules
+    after = [path for path in unread if is_called_after(name, path.rpartition("/")[2])]
+    return Diagnostic(at, name, package.name, {"unread": tuple(after or unread)}, "unread", (Doubt.PRIVATE,))
 
 
 def _find_namesake(view: TargetView, package: Package, name: str) -> str:
