@@ -1,5 +1,5 @@
-"""Distros that files name: folders of an installed one (`/opt/ros/humble`), and in Dockerfiles and CI files also base
-images and Debian packages."""
+"""Distros that files name: folders of an installed one (`/opt/ros/humble`), in shell scripts, Dockerfiles and CI files
+also Debian packages, and in the latter two base images."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -22,7 +22,7 @@ class DistroUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class DistroFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What a file names: folders, and the lower-case words that may be the names of other distros."""
+    """What a file names: folders and Debian packages, and the lower-case words that may be the names of other distros."""
 
     uses: tuple[DistroUse, ...] = ()
     words: str = ""
@@ -68,10 +68,12 @@ _CLOSES = re.compile(r"\s*(?:fi|esac|endif|#\s*endif)\b")
 _ASKS = re.compile(r"(?:\$\{?|ENV\{|env[ (]+)ROS_DISTRO|(?:environ|getenv)\W.{0,9}ROS_DISTRO|ROS_VERSION")
 
 
-def find_distros(data: bytes) -> DistroFile | None:
-    """The folders of distros that the code of a file names, None for none: not in comments and not in messages."""
-    if _MARK not in data:
+def find_distros(data: bytes, kind: str) -> DistroFile | None:
+    """The folders of distros that the code of a file names, and in shell scripts their Debian packages, None for none:
+    not in comments and not in messages."""
+    if _MARK not in data and (kind != "shell" or b"ros-" not in data):
         return None
+    patterns = (_FOLDER, _PACKAGE) if kind == "shell" else (_FOLDER,)
     text = _LONG_COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), decode(data))
     asks = _ASKS.search(text) is not None
     uses: list[DistroUse] = []
@@ -84,10 +86,10 @@ def find_distros(data: bytes) -> DistroFile | None:
         while around and around[-1][0] >= indent:
             around.pop()
         depth += bool(_OPENS.match(line))
-        m = _FOLDER.search(line[:_LONG_LINE])
-        if m is not None and not _PROSE.search(line[: m.start()]):
-            tested = asks or depth > 0 or any(head for _, head in around) or _TEST.search(line) is not None
-            uses.append(DistroUse(m[1], m[0], number, m.start() + 1, tested))
+        for m in filter(None, (pattern.search(line[:_LONG_LINE]) for pattern in patterns)):
+            if not _PROSE.search(line[: m.start()]):
+                tested = asks or depth > 0 or any(head for _, head in around) or _TEST.search(line) is not None
+                uses.append(DistroUse(m[1], m[0], number, m.start() + 1, tested))
         depth = max(0, depth - bool(_CLOSES.match(line)))
         around.append((indent, _HEAD.match(line) is not None))
     return DistroFile(tuple(uses), " ".join(sorted(set(_WORD.findall(text))))) if uses else None

@@ -212,7 +212,8 @@ def extract(kind: str, data: bytes) -> FileFacts[Any]:
         kind = "flow_python"
     if len(data) > find_size_limit(kind):
         return FileFacts(kind, make_empty(kind, Problem(1, f"larger than {format_size(find_size_limit(kind))}")))
-    return FileFacts(kind, _catch_errors(kind, lambda: _extract_content(kind, data)), allows(data), find_distros(data))
+    facts = _catch_errors(kind, lambda: _extract_content(kind, data))
+    return FileFacts(kind, facts, allows(data), find_distros(data, kind))
 
 
 def search(kind: str, data: bytes, facts: Any, table: Any) -> FileFacts[Any]:

@@ -23,8 +23,27 @@ FOLDERS = [
 
 @pytest.mark.parametrize(("text", "expected"), FOLDERS)
 def test_folders(text, expected):
-    found = find_distros(text.encode())
+    found = find_distros(text.encode(), "shell")
     assert [(use.distro, use.tested) for use in (found.uses if found else ())] == expected
+
+
+PACKAGES = [
+    ("sudo apt-get install -y ros-humble-desktop git", "shell", ["ros-humble-desktop"]),
+    ("apt install \\\n  ros-humble-nav2-bringup \\\n  ros-humble-slam-toolbox", "shell",
+     ["ros-humble-nav2-bringup", "ros-humble-slam-toolbox"]),
+    ("source /opt/ros/humble/setup.bash && apt install ros-foxy-desktop", "shell",
+     ["/opt/ros/humble", "ros-foxy-desktop"]),
+    ("apt install ros-${ROS_DISTRO}-desktop", "shell", []),
+    ("echo apt install ros-humble-desktop", "shell", []),
+    ("# apt install ros-humble-desktop", "shell", []),
+    ("names = ['ros-humble-desktop']", "python", []),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "kind", "expected"), PACKAGES)
+def test_packages(text, kind, expected):
+    found = find_distros(text.encode(), kind)
+    assert [use.text for use in (found.uses if found else ())] == expected
 
 
 PARTS = [

@@ -1,12 +1,13 @@
-"""hard-coded-distro: code contains the /opt/ros path of a distro other than the target's.
+"""hard-coded-distro: code names the folder or the Debian packages of a distro other than the target's.
 
 What it does
     Reports paths below /opt/ros/<distro> in scripts, CMake code, launch files, Python and C++ of packages, and in
-    scripts of the workspace, where the distro is not the target's.
+    scripts of the workspace, where the distro is not the target's. In shell scripts it also reports Debian packages
+    `ros-<distro>-*`.
 
 Why it breaks
-    The folder does not exist on a machine that has only the target's distro. On a machine with both, the code mixes two
-    distros.
+    The folder does not exist on a machine that has only the target's distro, and the archive of its platform may not
+    have the packages. On a machine with both, the code mixes two distros.
 
 Severity
     warning; note in examples and documentation.
