@@ -22,7 +22,7 @@ class DistroUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class DistroFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What a file names: folders and Debian packages, and the lower-case words that may be the names of other distros."""
+    """What a file names: folders and packages, and the lower-case words that may be the names of other distros."""
 
     uses: tuple[DistroUse, ...] = ()
     words: str = ""
@@ -60,21 +60,29 @@ _PROSE = re.compile(
     r"|(?i:log|warn|error|info)[\w.:]{0,30}\s?[(<]"
 )
 _TEST = re.compile(
-    r"\b(?:if|elif|elseif|case|when|test|unless|while|for|try|except|else)\b|exist|is_?(?:dir|file)|\[ |\|\|"
+    r"\b(?:if|elif|elseif|case|when|test|unless|while|for|try|except|else)\b|exist|is_?(?:dir|file)|\[ |\|\|",
+    re.IGNORECASE,
 )
-_HEAD = re.compile(r"\s*(?:\}\s*)?(?:#\s*)?(?:if|ifdef|elif|elseif|else|case|for|foreach|while|try|except)\b")
-_OPENS = re.compile(r"\s*(?:if|case|#\s*if(?:def)?)\b")
-_CLOSES = re.compile(r"\s*(?:fi|esac|endif|#\s*endif)\b")
+_HEAD = re.compile(
+    r"\s*(?:\}\s*)?(?:#\s*)?(?:if|ifdef|elif|elseif|else|case|for|foreach|while|try|except)\b", re.IGNORECASE
+)
+_OPENS = re.compile(r"\s*(?:if|case|#\s*if(?:def)?)\b", re.IGNORECASE)
+_CLOSES = re.compile(r"\s*(?:fi|esac|endif|#\s*endif)\b", re.IGNORECASE)
+# How tools head what they write.
+_GENERATED = re.compile(r"\s*(?:#|//|/\*)[ ]?(?:auto-?)?generated (?:from|by)\b", re.IGNORECASE)
 _ASKS = re.compile(r"(?:\$\{?|ENV\{|env[ (]+)ROS_DISTRO|(?:environ|getenv)\W.{0,9}ROS_DISTRO|ROS_VERSION")
 
 
 def find_distros(data: bytes, kind: str) -> DistroFile | None:
     """The folders of distros that the code of a file names, and in shell scripts their Debian packages, None for none:
-    not in comments and not in messages."""
+    not in comments, messages and files that a tool has generated."""
     if _MARK not in data and (kind != "shell" or b"ros-" not in data):
         return None
     patterns = (_FOLDER, _PACKAGE) if kind == "shell" else (_FOLDER,)
-    text = _LONG_COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), decode(data))
+    text = decode(data)
+    if _GENERATED.match(text):
+        return None
+    text = _LONG_COMMENT.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), text)
     asks = _ASKS.search(text) is not None
     uses: list[DistroUse] = []
     around: list[tuple[int, bool]] = []

@@ -18,6 +18,8 @@ FOLDERS = [
     ('"""Reads /opt/ros/humble."""', []),
     ("include_directories(/opt/ros/foxy/include)", [("foxy", False)]),
     ("message(STATUS /opt/ros/foxy)", []),
+    ('IF(EXISTS "/opt/ros/foxy/include")\n  SET(ROOT /opt/ros/foxy)\nENDIF()', [("foxy", True), ("foxy", True)]),
+    ("# generated from genmsg/cmake/pkg-genmsg.cmake.em\nset(FLAGS -I/opt/ros/foxy/share)", []),
 ]
 
 

@@ -56,7 +56,8 @@ def nonexistent_executable(view: TargetView, package: Package) -> Iterator[Diagn
         if own in folders or "" in folders or any("$" in folder for folder in folders):
             continue
         doubts = (*list_place_doubts(view, use.role), not reference.conditional or Doubt.CONDITIONAL)
-        plain = [one for one in programs if "*" not in one] if not folders else []
+        startable = (one for one, places in programs.items() if not places.isdisjoint((own, "")))
+        plain = [one for one in startable if "*" not in one] if not folders else []
         close = difflib.get_close_matches(posixpath.basename(name), plain, 1)
         data = {"upstream": owner.name, "alike": close[0] if close else "", "folder": min(folders, default="")}
         yield Diagnostic(use.at, name, package.name, data, "folder" if folders else "", doubts)

@@ -21,7 +21,7 @@ Use instead
 Not reported
     Comments and messages; paths under a condition; files that read ROS_DISTRO or also name the target's distro; files
     and folders named after a distro; distros of the other ROS generation, which a bridge needs; tests; folders such as
-    third_party; scripts beside a Dockerfile, which run in its image.
+    third_party; what a build has written into the source folder; scripts beside a Dockerfile, which run in its image.
 """
 
 import posixpath
@@ -54,6 +54,10 @@ def hard_coded_distro(view: TargetView) -> Iterator[Diagnostic]:
         yield from _list_uses(view, path, file, "", find_folder_role(path) or "run")
 
 
+# Folders that CMake and catkin write into when a package is built in its own folder.
+_BUILD_FOLDERS = frozenset(("CMakeFiles", "catkin_generated"))
+
+
 def _list_uses(view: TargetView, path: str, file: DistroFile, package: str, role: str) -> Iterator[Diagnostic]:
     """The first use of each distro in a file."""
     own = view.target.distro
@@ -64,6 +68,8 @@ def _list_uses(view: TargetView, path: str, file: DistroFile, package: str, role
     if any(posixpath.dirname(other) == posixpath.dirname(path) for other in view.workspace.outside.containers):
         return
     if any(word in DISTROS for word in re.split(r"[^a-z]+", path.lower())):
+        return
+    if not _BUILD_FOLDERS.isdisjoint(path.split("/")):
         return
     reported: set[str] = set()
     for use in file.uses:
