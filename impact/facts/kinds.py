@@ -37,6 +37,7 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("launch.references", "ReferenceFile",
      ("launch_xml", "launch_yaml", "xacro", "plugin_xml", "xml", "params", "shell")),
     ("setup", "SetupFile", ("setup_py", "setup_cfg", "pyproject")),
+    ("requirements", "RequirementsFile", ("requirements",)),
     ("gitignore", "IgnoreFile", ("gitignore",)),
     ("", "", ("script", "flow_script")),
     ("cpp.flow", "FlowFile", ("flow_cpp",)),
@@ -73,6 +74,7 @@ BY_NAME = {
     "setup.py": "setup_py",
     "setup.cfg": "setup_cfg",
     "pyproject.toml": "pyproject",
+    "requirements.txt": "requirements",
     ".gitignore": "gitignore",
 }
 BY_ENDING = {
@@ -156,7 +158,7 @@ _BUDGETS = {
     "colcon_cmake": "cmake",
     "shell": "script",
     **dict.fromkeys(("dockerfile", "ci"), "script"),
-    "gitignore": "script",
+    **dict.fromkeys(("gitignore", "requirements"), "script"),
 }
 
 

@@ -3,7 +3,7 @@
 import ast
 import posixpath
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import msgspec
@@ -16,6 +16,7 @@ from .python.constants import Constants, TextConstant, UnknownValue
 from .python.source import PythonFile, read
 from .python.source import extract as read_python
 from .python.text import format_dotted
+from .requirements import Requirement
 
 
 class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -23,8 +24,9 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
     entry_points: (name, module, line, function) of console_scripts. data_files: (destination, pattern, line), where
     glob(...) and os.path.join(...) of literals become a pattern such as `launch/*.launch.py`. scripts: as written.
-    packages: dotted, `*` when find_packages. requires: install_requires names. unresolved: what was not a literal, in
-    one clause each. python: of a setup.py, its imports and syntax like those of any Python file.
+    packages: dotted, `*` when find_packages. requirements: of install_requires. python_requires: the versions of Python
+    that the package accepts, as written. unresolved: what was not a literal, in one clause each. python: of a setup.py,
+    its imports and syntax like those of any Python file.
     script_folders: (command, folder, line) of the commands `install` and `develop` (--symlink-install): where programs
     are installed, as written (`$base/lib/package`, without which `ros2 run` does not find them).
     """
@@ -34,11 +36,12 @@ class SetupFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     entry_points: tuple[tuple[str, str, int, str], ...] = ()
     data_files: tuple[tuple[str, str, int], ...] = ()
     scripts: tuple[str, ...] = ()
-    requires: tuple[str, ...] = ()
+    requirements: tuple[Requirement, ...] = ()
     unresolved: tuple[str, ...] = ()
     problems: tuple[Problem, ...] = ()
     python: PythonFile | None = None
     script_folders: tuple[tuple[str, str, int], ...] = ()
+    python_requires: Requirement | None = None
 
     def list_module_paths(self, folder: str, module: str) -> tuple[str, str]:
         """The paths that a module of the package in this folder can have: as a file, and as a package."""
@@ -61,7 +64,6 @@ def extract(data: bytes, kind: str) -> SetupFile:
 
 
 _TOO_DEEP = Problem(1, "nested too deeply to be read")
-REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)")
 ENTRY_POINT = re.compile(r"\s*([^=\s][^=]*)=\s*([\w.]+)(?:\s*:\s*([\w.]+))?(?:\s*\[.*\])?\s*\Z")
 # What each command of setuptools calls the folder that it installs programs into.
 _FOLDER_OPTIONS = {"install": "install_scripts", "develop": "script_dir"}
@@ -147,7 +149,11 @@ class _Reader(Constants):
             tuple(self.list_entry_points(given.get("entry_points"))),
             tuple(self.list_data_files(given.get("data_files"))),
             tuple(self.list_strings("scripts")),
-            tuple(_parse_requirements(self.list_strings("install_requires"))),
+            tuple(
+                Requirement(str(text).strip(), _find_line(text))
+                for text in self.iterate_strings("install_requires", given.get("install_requires"))
+            ),
+            python_requires=_make_python(given.get("python_requires")),
             script_folders=tuple(self.list_script_folders(given.get("options"))),
             unresolved=tuple(self.unresolved),
         )
@@ -220,8 +226,8 @@ def _parse_entry_point(text: str, line: int) -> list[tuple[str, str, int, str]]:
     return [(found[1].rstrip(), found[2], line, found[3] or "")] if found is not None else []
 
 
-def _parse_requirements(texts: Iterable[str]) -> list[str]:
-    return [found.group(1) for text in texts if (found := REQUIREMENT.match(text)) is not None]
+def _make_python(value: Any) -> Requirement | None:
+    return Requirement(str(value).strip(), _find_line(value)) if isinstance(value, str) else None
 
 
 class _Lines:
@@ -230,7 +236,7 @@ class _Lines:
     def __init__(self, text: str):
         self.first: dict[str, int] = {}
         for number, line in enumerate(text.split("\n"), 1):
-            for key in (line.strip(), line.partition("=")[0].strip(" \t\"'")):
+            for key in (line.strip(), line.partition("=")[0].strip(" \t\"'"), line.strip(" \t\"',")):
                 self.first.setdefault(key, number)
 
     def find_line(self, *entries: str) -> int:
@@ -277,13 +283,18 @@ def _read_setup_cfg(data: bytes) -> SetupFile:
         for option in (parser.options(command) if parser.has_section(command) else ())
         if option.replace("-", "_") == wanted
     ]
+    requires = (parser.get("options", "install_requires", fallback="") or "").split("\n")
+    python = parser.get("options", "python_requires", fallback="")
     return SetupFile(
         tuple(packages + list_entries("options", "py_modules")),
         directories,
         tuple(points),
         tuple(files),
         tuple(list_entries("options", "scripts")),
-        tuple(_parse_requirements(list_entries("options", "install_requires"))),
+        tuple(
+            Requirement(text, lines.find_line(text, "install_requires")) for each in requires if (text := each.strip())
+        ),
+        python_requires=Requirement(python, lines.find_line("python_requires")) if python else None,
         script_folders=tuple(folder for folder in folders if folder[1]),
     )
 
@@ -308,7 +319,7 @@ def _read_pyproject(data: bytes) -> SetupFile:
             if isinstance(target, str):
                 module, _, function = target.partition(":")
                 points.append((name, module.strip(), lines.find_line(name), function.partition("[")[0].strip()))
-    packages = setuptools.get("packages", [])
+    packages, python = setuptools.get("packages", []), project.get("requires-python")
     files = [
         (destination, file, lines.find_line(destination))
         for destination, patterns in _find_table(setuptools, "data-files").items()
@@ -326,7 +337,11 @@ def _read_pyproject(data: bytes) -> SetupFile:
         tuple(points),
         tuple(files),
         tuple(_list_texts(setuptools.get("script-files"))),
-        tuple(_parse_requirements(_list_texts(project.get("dependencies")))),
+        tuple(
+            Requirement(text, lines.find_line(text, "dependencies"))
+            for text in _list_texts(project.get("dependencies"))
+        ),
+        python_requires=Requirement(python, lines.find_line("requires-python")) if isinstance(python, str) else None,
         script_folders=tuple(folders),
     )
 

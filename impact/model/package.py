@@ -30,6 +30,7 @@ from ..facts.place import Allow, Reference
 from ..facts.python.reader import Import
 from ..facts.python.source import PythonFile
 from ..facts.python.uses import PythonUse
+from ..facts.requirements import RequirementsFile
 from ..facts.searches import SearchedCpp, WordUse, declares_in_tf2, declares_type, opens_namespace
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
@@ -294,6 +295,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     own_calls: tuple[tuple[str, str, str], ...] = ()
     # Files that name folders of distros.
     distros: tuple[tuple[str, DistroFile], ...] = ()
+    # Each requirements.txt, with its path.
+    requirements: tuple[tuple[str, RequirementsFile], ...] = ()
 
 
 BUILD_TOOLS = ("ament_cmake_auto", "ament_cmake", "ament_python", "catkin")
@@ -473,7 +476,7 @@ class PackageJoin:
         parameters: list[str] = []
         launches: list[tuple[str, str]] = []
         data_words: list[str] = []
-        references, plugins, registered, setup, interfaces = [], [], [], [], []
+        references, plugins, registered, setup, requirements, interfaces = [], [], [], [], [], []
         for path in self.files:
             kind = self.kinds.get(path)
             if kind is None:
@@ -508,6 +511,8 @@ class PackageJoin:
                 interfaces.append(InterfaceFile(name, path, facts))
             elif isinstance(facts, SetupFile):
                 setup.append((path, facts))
+            elif isinstance(facts, RequirementsFile):
+                requirements.append((path, facts))
             elif isinstance(facts, CMakeFile):
                 interpreted.update(_list_interpreted(facts))
             else:
@@ -609,6 +614,7 @@ class PackageJoin:
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.list_settings(parameters, launches)),
             distros=tuple(distros),
+            requirements=tuple(requirements),
         )
 
     def find_included_file(self, include: str, includer: str) -> str | None:

@@ -28,11 +28,13 @@ from ..facts.distros import ContainerFile, DistroFile
 from ..facts.extract import ExtractedFacts
 from ..facts.kinds import make_overall_version
 from ..facts.manifest import Manifest
+from ..facts.requirements import RequirementsFile
+from ..facts.setup import SetupFile
 from ..facts.store import Store
 from ..source_keys import compute_source_key
 from ..targets.surface.fields import ROS1_SUFFIXES, make_snake_case
 from ..tree.paths import Tree, is_vendored
-from .cmake.build import Build
+from .cmake.build import At, Build
 from .cmake.installed import HEADER_NAME
 from .cmake.interpret import interpret, list_extras
 from .cmake.interpreter import calls_unmodelled
@@ -79,6 +81,20 @@ class Package:
         wanted = (each for each in self.manifest.dependencies if each.kind not in ("conflict", "replace"))
         return {name: set(kinds) for name, kinds in group_pairs((each.name, each.kind) for each in wanted).items()}
 
+    @property
+    def setup_files(self) -> Iterator[tuple[str, SetupFile]]:
+        """Its own setup.py, setup.cfg and pyproject.toml, which install it; none where others do."""
+        if self.build_type in ("ament_python", "catkin"):
+            for path, setup in self.digest.setup:
+                if posixpath.dirname(path) == self.path:
+                    yield path, setup
+
+    def list_requirements(self) -> Iterator[tuple[At, str]]:
+        """The Python packages that it asks for in its setup files and requirements.txt."""
+        for path, file in (*self.setup_files, *self.digest.requirements):
+            for requirement in file.requirements:
+                yield At(path, requirement.line), requirement.text
+
     @cached_property
     def is_interface_package(self) -> bool:
         """True when it generates messages, services or actions."""
@@ -113,12 +129,14 @@ class FilesOutside:
         self._gathered = gathered
         self.lists_repositories = discovered.lists_repositories
         self._scripts = [path for path in gathered.list_paths("shell", "script") if discovered.find_owner(path) is None]
+        self._requirements = [p for p in gathered.list_paths("requirements") if discovered.find_owner(p) is None]
         self._containers = [path for path in gathered.list_paths("dockerfile", "ci") if not is_vendored(path)]
 
     @property
     def identity(self) -> bytes:
         """Differs whenever one of them does."""
-        ids = [(path, self._gathered.ids[path]) for path in (*self._scripts, *self._containers)]
+        paths = (*self._scripts, *self._requirements, *self._containers)
+        ids = [(path, self._gathered.ids[path]) for path in paths]
         return repr((ids, self.lists_repositories)).encode("utf-8", "backslashreplace")
 
     @cached_property
@@ -127,6 +145,12 @@ class FilesOutside:
         self._gathered.preload(self._scripts)
         found = ((path, self._gathered.get_facts(path).distros) for path in self._scripts)
         return {path: distros for path, distros in found if distros is not None}
+
+    @cached_property
+    def requirements(self) -> dict[str, RequirementsFile]:
+        """Files called requirements.txt."""
+        self._gathered.preload(self._requirements)
+        return {path: self._gathered.get_facts(path).facts for path in self._requirements}
 
     @cached_property
     def containers(self) -> dict[str, ContainerFile]:

@@ -12,7 +12,9 @@ from .version import parse_number
 class _Platforms(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What the file holds. codenames: release number → codename. frozen: platforms in the order in which their packages
     were frozen. other_systems: that ROS runs on and rosdep has no rules for. other_releases: of Debian by role, and of
-    Ubuntu between the long-term ones. library_aliases: other names under which people ask for a platform library."""
+    Ubuntu between the long-term ones. library_aliases: other names under which people ask for a platform library.
+    python_libraries: platform libraries that PyPI has under the same name and in the same versions, each with the
+    Debian package that has it."""
 
     source: str
     codenames: dict[str, str]
@@ -20,11 +22,13 @@ class _Platforms(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     other_systems: str
     other_releases: str
     library_aliases: dict[str, str]
+    python_libraries: dict[str, str]
 
 
 _SHIPPED = read_table(DATA / "platforms.json", _Platforms)
 CODENAMES, _FROZEN = _SHIPPED.codenames, _SHIPPED.frozen
 OTHER_SYSTEMS, OTHER_RELEASES = frozenset(_SHIPPED.other_systems.split()), frozenset(_SHIPPED.other_releases.split())
+PYTHON_LIBRARIES = _SHIPPED.python_libraries
 _KNOWN = {name.split()[1]: name for name in CODENAMES.values()}
 
 

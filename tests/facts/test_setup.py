@@ -5,6 +5,7 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from rosimpact.impact.facts.requirements import Requirement
 from rosimpact.impact.facts.setup import extract
 
 AMENT = """
@@ -49,7 +50,7 @@ def test_ament_python():
         ("share/walker/config", "extra.yaml", 16),
         ("share/walker/maps", "maps/*", 17),
     )
-    assert facts.requires == ("setuptools", "numpy")
+    assert [each.text for each in facts.requirements] == ["setuptools", "numpy>=1.2"]
     assert facts.unresolved == ("data_files: `files()`",)
     assert facts.problems == ()
 
@@ -132,8 +133,8 @@ script_dir=$base/lib/walker
 install_scripts=$base/lib/walker
 [options]
 packages = find:
-package_dir =
-  = src
+python_requires = >=3.8
+package_dir = = src
 install_requires =
   numpy >= 1.2
   scipy
@@ -152,7 +153,8 @@ def test_setup_cfg():
     facts = extract(SETUP_CFG.encode(), "setup_cfg")
     assert facts.packages == ("*",)
     assert facts.package_dirs == {"": "src"}
-    assert facts.requires == ("numpy", "scipy")
+    assert [(each.text, each.line) for each in facts.requirements] == [("numpy >= 1.2", 12), ("scipy", 13)]
+    assert facts.python_requires == Requirement(">=3.8", 9)
     assert facts.entry_points == (("walk", "walker.walk", 16, "main"),)
     assert facts.data_files == (
         ("share/walker", "package.xml", 18),
@@ -166,6 +168,7 @@ PYPROJECT = """\
 [project]
 name = "walker"
 dependencies = ["numpy>=1.2", "scipy"]
+requires-python = ">=3.8"
 [project.scripts]
 walk = "walker.walk:main"
 [tool.setuptools]
@@ -183,10 +186,11 @@ def test_pyproject():
     facts = extract(PYPROJECT.encode(), "pyproject")
     assert facts.packages == ("walker",)
     assert facts.package_dirs == {"": "src"}
-    assert facts.entry_points == (("walk", "walker.walk", 5, "main"),)
-    assert facts.data_files == (("share/walker", "package.xml", 11),)
+    assert facts.entry_points == (("walk", "walker.walk", 6, "main"),)
+    assert facts.data_files == (("share/walker", "package.xml", 12),)
     assert facts.scripts == ("bin/x",)
-    assert facts.requires == ("numpy", "scipy")
+    assert [(each.text, each.line) for each in facts.requirements] == [("numpy>=1.2", 3), ("scipy", 3)]
+    assert facts.python_requires == Requirement(">=3.8", 4)
 
 
 PIECES = [

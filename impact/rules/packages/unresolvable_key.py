@@ -12,10 +12,10 @@ Why it breaks
 
 Severity
     error, since `rosdep install` stops; note for names that are not known in public, which may belong to a private
-    repository or to a submodule that was not read; warning for unknown names that nothing in the package uses or that have the form of a key (`python3-x`,
-    `libx-dev`, `x-pip`, `x_1.2`), for a name `x` or `x2` if exactly one package or key such as `x_vendor` or `libx-dev`
-    exists, for one that differs from a package of the workspace in the ending of a word, or is called after the package
-    that declares it, and for keys of Python 2 or pip.
+    repository or to a submodule that was not read; warning for unknown names that nothing in the package uses or that
+    have the form of a key (`python3-x`, `libx-dev`, `x-pip`, `x_1.2`), for a name `x` or `x2` if exactly one package or
+    key such as `x_vendor` or `libx-dev` exists, for one that differs from a package of the workspace in the ending of a
+    word, or is called after the package that declares it, and for keys of Python 2 or pip.
 
 Example
     <depend>Eigen3</depend>
@@ -70,7 +70,7 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
         "build type": Text("`{subject}` is a build type, not a package or rosdep key", "declare it as build_type only"),
         "unread": Text(
             "`{subject}` is not a public package or rosdep key, and may be in a submodule that was not read: {unread}",
-            "run `git submodule update --init`; or, if it is your own, add it to `[workspace] private` in rosimpact.toml",
+            "run `git submodule update --init`, or, if it is your own, add it to `[workspace] private`",
         ),
         "unknown": Text(
             "`{subject}` is not a public package or rosdep key",

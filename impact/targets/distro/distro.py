@@ -557,6 +557,17 @@ class DistroTarget:
                     found.setdefault(name, []).append(key)
         return {name: tuple(sorted(keys, key=lambda k: (len(k), k))) for name, keys in found.items()}
 
+    @cached_property
+    def python_keys(self) -> dict[str, tuple[str, ...]]:
+        """Rosdep keys that install a Python package here, by pip or as the platform's own, by the name that PyPI or
+        Debian has for it, in lower case with `-`."""
+        found: dict[str, list[str]] = {}
+        for key, resolution in self._resolve_keys().items():
+            for name in resolution.packages:
+                plain = re.sub(r"[-_.]+", "-", re.split(r"[=<>!~\[ ]", name)[0].lower())
+                found.setdefault(plain.removeprefix("python3-"), []).append(key)
+        return {name: tuple(sorted(keys)) for name, keys in found.items()}
+
     @cache_method
     def _resolve_keys(self) -> dict[str, Resolution]:
         """Every key that resolves here with its resolution, read at once."""
