@@ -70,6 +70,11 @@ def removed_plugin(view: TargetView, package: Package):
                 doubts = (*list_place_doubts(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
                 yield Diagnostic(use.at, name, package.name, data, "own", doubts)
             continue
+        if library := _LIBRARY.fullmatch(name):
+            owner = "" if use.reference.conditional else _find_lost_owner(view, library[1])
+            if owner:
+                yield from find_gone_package(view, package, use, owner, name)
+            continue
         found = find_missing(view, "plugin", name, _list_candidates(view, package, use))
         if found is None:
             yield from find_gone_package(view, package, use, head, name)
@@ -78,6 +83,19 @@ def removed_plugin(view: TargetView, package: Package):
         doubts = (*list_place_doubts(view, use.role), loaded or Doubt.LATE, use.role != "test" or Doubt.TEST)
         found = found._replace(replacement=other, moved_to="") if other else found
         yield diagnose(found, use.at, name, package.name, doubts)
+
+
+# A file that Gazebo or Ignition loads.
+_LIBRARY = re.compile(r"(?:lib)?([\w-]+)\.so")
+
+
+def _find_lost_owner(view: TargetView, library: str) -> str:
+    """A package that installed a library, where none that the target or the workspace has does; else empty."""
+    made = (target.output_name or target.name for package in view.workspace for target in package.build.targets)
+    if library in made:
+        return ""
+    owners = view.offers.list_library_owners(library)
+    return owners[0] if owners and not any(map(view.is_available, owners)) else ""
 
 
 @cache_in_derived

@@ -3,6 +3,7 @@ changed or on their way out. Asked of the shipped surfaces; packages of which no
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -81,6 +82,19 @@ class Offers:
     def find_history(self, package: str) -> SurfaceHistory | None:
         """All stored versions of a package that the target's ROS generation has; None when there is none."""
         return self.surfaces.find_history(package, self.target.ros)
+
+    @cache_method
+    def list_library_owners(self, library: str) -> list[str]:
+        """Packages of the target's ROS generation whose newest stored version has a library of this name, of those
+        that are called after it: they begin with the same word."""
+        word = re.split(r"[_-]", library)[0]
+        alike = sorted(name for name in self.surfaces.packages if re.split(r"[_-]", name)[0] == word)
+        return [name for name in alike if library in self._list_libraries(name)]
+
+    def _list_libraries(self, package: str) -> tuple[str, ...]:
+        history = self.find_history(package)
+        build = history.build(history.versions[-1], ("libraries",)) if history is not None else None
+        return build.libraries if build is not None else ()
 
     def find_standard(self, name: str) -> int:
         """The C++ standard that a package asks of those who link it, as CMake writes it; 0 when nothing tells."""
