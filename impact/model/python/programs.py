@@ -125,6 +125,7 @@ def _list_of_cmake(package: Package) -> dict[str, set[str]] | None:
     found: dict[str, set[str]] = {}
     outputs = {target.name: target.output_name or target.name for target in build.targets}
     placed: set[str] = set()
+    libraries = {target.name for target in build.targets if target.kind in ("library", "module")}
     for install in build.installs:
         if install.kind in ("python", "export"):
             if install.kind == "python" and package.digest.setup:
@@ -142,12 +143,14 @@ def _list_of_cmake(package: Package) -> dict[str, set[str]] | None:
                         found.setdefault(posixpath.basename(path), set()).add(posixpath.normpath(folder))
                 continue
             placed.add(item)
+            if item in libraries:
+                continue
             name = install.rename or outputs.get(item, posixpath.basename(item))
             found.setdefault(name, set()).add(posixpath.normpath(install.destination) if install.destination else "")
     for target in build.targets:
         if "$" in target.name or "$" in outputs[target.name]:
             return None
-        if target.name not in placed:
+        if target.name not in placed and target.name not in libraries:
             found.setdefault(outputs[target.name], set()).add("")
     for export in build.exports:
         if export.how == "component" and export.executable:

@@ -31,7 +31,6 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_plac
 
 
 @rule(
-    preview=True,
     texts={
         "": Text("`{upstream}` has no executable `{subject}`", "[[did you mean `{alike}`?]]"),
         "folder": Text(
