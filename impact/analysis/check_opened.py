@@ -11,6 +11,7 @@ from ...edges.console import describe_unforeseen
 from ...edges.version import __version__
 from ..config import Config, PathSetting
 from ..facts.extract import ExtractedFacts
+from ..model.cmake.link_forms import find_link_form
 from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, FixAction, Insert, Replace
@@ -225,8 +226,12 @@ def run_and_merge(
 def is_right_on(action: FixAction, view: TargetView) -> bool:
     """Whether an action of a fix is right on a target where the rule found nothing to fix.
 
-    A declaration is when the package is there, an include when its header surely is; anything else cannot be told.
+    A declaration is when the package is there, an include when its header surely is, what links when the packages have
+    it for CMake; anything else cannot be told.
     """
+    if isinstance(action, (Replace, Insert)) and action.needs:
+        forms = ((find_link_form(view, package), item) for package, item in action.needs)
+        return all(form is not None and item in form.items for form, item in forms)
     if isinstance(action, Declare):
         return view.is_available(action.name)
     if isinstance(action, Replace):

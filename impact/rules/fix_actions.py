@@ -20,22 +20,25 @@ class Remove(msgspec.Struct, frozen=True, array_like=True, tag=True):
 
 
 class Replace(msgspec.Struct, frozen=True, array_like=True, tag=True):
-    """Replace `old`, which stands at a line and column (characters, from 1), by `new`. column 0: the only one."""
+    """Replace `old`, which stands at a line and column (characters, from 1), by `new`. column 0: the only one. needs:
+    packages of CMake, each with something of LinkForm.items that it has to have; empty where `new` is a header."""
 
     path: str
     line: int
     column: int
     old: str
     new: str
+    needs: tuple[tuple[str, str], ...] = ()
 
 
 class Insert(msgspec.Struct, frozen=True, array_like=True, tag=True):
     """Put lines behind a line (0: at the start of the file), with that line's indentation; in CMake, behind the command
-    that the line belongs to. text: without a line end."""
+    that the line belongs to. text: without a line end. needs: as of Replace."""
 
     path: str
     line: int
     text: str
+    needs: tuple[tuple[str, str], ...] = ()
 
 
 class Edit(msgspec.Struct, frozen=True, array_like=True, tag=True):

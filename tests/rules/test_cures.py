@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 # Cases whose cure is known on every target that they ask for: it undoes the change that they make, to the byte.
 CURED = (
     "api/moved_header",
+    "api/removed_cmake_name__linked",
     "api/removed_header",
     "packages/invalid_manifest",
     "packages/misspelt_cmake_name",
@@ -149,6 +150,29 @@ UNTOUCHED = {
                 "<name>ice", "<name>snow"
             ),
             "b/CMakeLists.txt": "cmake_minimum_required(VERSION 3.8)\nproject(snow)\nfind_package(ice REQUIRED)\n",
+        },
+    ),
+    "a package of which no targets are known is linked": (
+        "removed-cmake-name",
+        ("lyrical",),
+        {
+            **ament(body=RCLCPP, package="rclcpp", source=NODE.format(header="rclcpp/rclcpp.hpp")),
+            "CMakeLists.txt": CMAKE_2.format(package="OurPrivateLights").replace(
+                "target_link_libraries(ice rclcpp::rclcpp OurPrivateLights::OurPrivateLights)",
+                "ament_target_dependencies(ice rclcpp OurPrivateLights)",
+            ),
+        },
+    ),
+    "other people's code": (
+        "removed-cmake-name",
+        ("lyrical",),
+        {
+            f"third_party/ice/{path}": text.replace(
+                "target_link_libraries(ice rclcpp::rclcpp rclcpp::rclcpp)", "ament_target_dependencies(ice rclcpp)"
+            )
+            for path, text in ament(
+                body=RCLCPP, package="rclcpp", source=NODE.format(header="rclcpp/rclcpp.hpp")
+            ).items()
         },
     ),
     "a misspelt tag whose end stands in another line": (

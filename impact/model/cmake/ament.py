@@ -6,7 +6,7 @@ Source: the CMake files of those packages, and the ament_cmake user documentatio
 import posixpath
 
 from .blocks import CommandCall
-from .build import FoundPackage, GeneratedInterfaces
+from .build import At, DependencyCall, FoundPackage, GeneratedInterfaces
 from .find import set_catkin_destinations
 from .interpreter import SOURCES, Interpreter, handles, stands_in_for
 from .names import make_name_set
@@ -24,6 +24,22 @@ def add_target_dependencies(run: Interpreter, call: CommandCall, args: list[Word
     if any(item in declared or "$" in item for item in items):
         note_signature(run, draft, [args[0], *items])
     add_links(run, draft, items, "ament")
+    if not run.silent:
+        conditions = run.merge_with(args[0])
+        made = DependencyCall(run.locate(call.at), draft.name, _tell_arguments(run, call), conditions)
+        run.dependency_calls[made] = None
+
+
+def _tell_arguments(run: Interpreter, call: CommandCall) -> tuple[tuple[str, At, tuple[str, ...]], ...]:
+    """The arguments of a call as DependencyCall has them."""
+    told: list[tuple[str, At, tuple[str, ...]]] = []
+    for template in call.templates:
+        words = split_words(run.expand([template]))
+        unsure = any(not word.sure or word.conditions or "$" in word for word in words)
+        if template.quoted or unsure or run.locate(template.at) != template.at:
+            return ()
+        told.append((template.raw, template.at, tuple(map(str, words))))
+    return tuple(told)
 
 
 _EXPORTS = {

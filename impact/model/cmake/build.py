@@ -196,6 +196,16 @@ class CMakeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     makes: tuple[str, ...] = ()
 
 
+class DependencyCall(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A call of ament_target_dependencies(). arguments: each as written, where it stands, and the words that it stands
+    for; empty where these, or where it stands, cannot be told."""
+
+    at: At
+    target: str
+    arguments: tuple[tuple[str, At, tuple[str, ...]], ...]
+    conditions: tuple[Condition, ...] = ()
+
+
 class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A name at which CMake stops. kind: `twice` (a target that is added a second time; conditions are those of both
     times), `mixed` (a target that is linked with keywords and without), `no target` (something is given to a target
@@ -257,6 +267,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     read_elsewhere: tuple[ReadFile, ...] = ()
     asked: tuple[str, ...] = ()
     stops: tuple[tuple[At, str, tuple[Condition, ...]], ...] = ()
+    dependency_calls: tuple[DependencyCall, ...] = ()
 
     @property
     def finds_declared(self) -> bool:
@@ -264,7 +275,8 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return any(found.how == "declared" for found in self.found)
 
 
-_CONDITIONAL = ("found", "targets", "installs", "exports", "generated", "uses", "links", "handed_on", "refused")
+_CONDITIONAL = ("found", "targets", "installs", "exports", "generated", "uses", "links", "handed_on", "refused",
+                "dependency_calls")  # fmt: skip
 
 
 def select_active(build: Build, active: Callable[[tuple[Condition, ...]], bool]) -> Build:

@@ -25,6 +25,7 @@ from .build import (
     CMakeUse,
     DeclaredPackages,
     DefinedMacro,
+    DependencyCall,
     FoundPackage,
     GeneratedInterfaces,
     Install,
@@ -103,6 +104,7 @@ _ON_TARGETS = frozenset({"add_dependencies", "add_executable", "add_library", "t
 _COLLECTED = (
     *("macros", "found", "installs", "exports", "generated", "uses", "include_dirs", "links", "unresolved", "files"),
     *("message_files", "made", "handed_on", "refused", "read_elsewhere", "asked", "stops"),
+    "dependency_calls",
 )
 
 
@@ -180,6 +182,7 @@ class Interpreter:
         self.refused: dict[RefusedName, None] = {}
         self.asked: dict[str, None] = {}
         self.stops: list[tuple[At, str, tuple[Condition, ...]]] = []
+        self.dependency_calls: dict[DependencyCall, None] = {}
         self.ament_package: At | None = None
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}

@@ -23,13 +23,14 @@ Not reported
     Calls under a condition that does not hold on the target; names that the package or the workspace defines.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from ...facts.condition import Condition
 from ...model.cmake.names import MODULES
-from ...targets.symbol import Symbol
+from ...targets.symbol import Availability, Symbol
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Upcoming, list_place_doubts, rate_upcoming, rule
-from .diagnosis import build_availability_texts, diagnose, find_missing
+from .diagnosis import build_availability_texts, build_data, diagnose, find_missing
+from .link_fixes import make_link_fix, tell_replacement
 
 Names = list[tuple[str, At, tuple[Condition, ...], str]]
 
@@ -63,7 +64,7 @@ def _list_reviewed(
         if view.breaks_under(found, conditions):
             seen.add(name)
             doubts = (*list_place_doubts(view, "build", conditions), kind != "variable" or Doubt.INCOMPLETE)
-            yield diagnose(found._replace(sure=True), at, name, package.name, doubts)
+            yield _diagnose(view, package, found._replace(sure=True), at, name, doubts)
 
 
 def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterator[Diagnostic | Upcoming]:
@@ -88,7 +89,19 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
             continue
         if not (lost.library and _may_be_made(view, package, name)):
             alone = not lost.library or not _may_be_built(view, package, name)
-            yield diagnose(lost, at, name, package.name, (certain or Doubt.CONDITIONAL, alone or Doubt.INCOMPLETE))
+            doubts = (certain or Doubt.CONDITIONAL, alone or Doubt.INCOMPLETE)
+            yield _diagnose(view, package, lost, at, name, doubts)
+
+
+def _diagnose(
+    view: TargetView, package: Package, found: Availability, at: At, name: str, doubts: Iterable[Doubt | bool | None]
+) -> Diagnostic | Upcoming:
+    call = next((call for call in package.build.dependency_calls if call.at == at), None)
+    if call is None:
+        return diagnose(found, at, name, package.name, doubts)
+    data = {**build_data(found), "replacement": tell_replacement(view, package, call)}
+    fix = make_link_fix(view, package) if found.is_missing else ()
+    return diagnose(found, at, name, package.name, doubts, data=data, fix=fix)
 
 
 def _may_be_built(view: TargetView, package: Package, name: str) -> bool:
