@@ -19,3 +19,7 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, gc=False):
     negated: bool = False
     declared: tuple[str, ...] = ()
     gate: bool = False
+
+
+UNDECIDED = Condition("launch", "")
+"""Stands for any test of which only running tells."""

@@ -2,6 +2,8 @@
 
 import msgspec
 
+from .condition import Condition
+
 
 class Place(msgspec.Struct, frozen=True, array_like=True, gc=False, order=True):
     """A position in one file. Lines and columns count from 1; columns count characters, 0 means the whole line."""
@@ -32,7 +34,8 @@ class Reference(msgspec.Struct, frozen=True, array_like=True, gc=False):
     `ros2 run`), `file` (a launch or data file inside `package`), `place` (a file or folder that code opens or writes
     to, or the folder of a file whose name is not known), `plugin` (class name), `command` (shell).
     package: its name, empty when only `name` is known. name: executable, file, class or command, empty for `package`.
-    conditional: stands under if/unless/try, so it may never run.
+    conditional: stands under if/unless/try, so it may never run. conditions: of those, where one tells about the
+    machine, these and UNDECIDED for any other; so the mention surely counts where all hold.
     arguments: names of the launch arguments that an include of the file gives; None for what is no include, or where
     they cannot all be told.
     """
@@ -44,3 +47,4 @@ class Reference(msgspec.Struct, frozen=True, array_like=True, gc=False):
     column: int = 0
     conditional: bool = False
     arguments: tuple[str, ...] | None = None
+    conditions: tuple[Condition, ...] = ()

@@ -11,6 +11,8 @@ from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from msgspec import structs
+
 from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
 from ...edges.reach import Reach, walk
@@ -37,7 +39,7 @@ from ..targets.version import is_at_least
 from .cmake.build import At, FoundPackage, is_for_tests, select_active
 from .cmake.names import MODULES, SINCE
 from .misspelling import SpellingIndex
-from .package import find_folder_role
+from .package import ReferenceUse, find_folder_role
 from .python.api import find_python_packages
 from .roles import Roles
 from .unknown_contents import INTERFACES, UnknownContents
@@ -145,7 +147,23 @@ class TargetView:
     def _select_active(self, package: Package) -> Package:
         """A package without what its CMake surely does not do on this target."""
         build = select_active(package.build, self.applies)
-        return package if build is package.build else Package(package.digest, build)
+        references = self._select_references(package.digest.references)
+        if build is package.build and references is package.digest.references:
+            return package
+        return Package(structs.replace(package.digest, references=references), build)
+
+    def _select_references(self, references: tuple[ReferenceUse, ...]) -> tuple[ReferenceUse, ...]:
+        """Without those that surely do not count on this target, and with those as unconditional that surely do."""
+        if not any(use.reference.conditions for use in references):
+            return references
+        kept = []
+        for use in references:
+            conditions = use.reference.conditions
+            if self.applies(conditions):
+                if conditions and self.is_sure(conditions):
+                    use = structs.replace(use, reference=structs.replace(use.reference, conditional=False))
+                kept.append(use)
+        return tuple(kept)
 
     def builds(self, package: Package) -> bool:
         """False for a package that is built with the tools of the other generation of ROS."""

@@ -7,6 +7,7 @@ from functools import partial
 import msgspec
 from msgspec import structs
 
+from ..condition import UNDECIDED, Condition
 from ..markup import TOKEN, Attribute, Document, Element, decode, find_xml_problems, scan
 from ..place import Problem, Reference
 from ..words import list_words
@@ -64,11 +65,20 @@ class _Found:
         self.unresolved: list[Problem] = []
         # What the include that is being read gives.
         self.arguments: tuple[str, ...] | None = None
+        # Under which it stands, as Reference has them.
+        self.conditions: tuple[Condition, ...] = ()
 
     def add(self, kind: str, package: str, name: str, offset: int, conditional: bool) -> None:
         line, column = self.place(offset)
         arguments = self.arguments if kind == "file" else None
-        self.references.append(Reference(kind, package, name, line, column, conditional, arguments))
+        self.references.append(
+            Reference(kind, package, name, line, column, conditional, arguments, self.conditions)
+        )
+
+    def stand_under(self, conditions: tuple[Condition, ...]) -> bool:
+        """Sets the conditions of what follows; returns whether there are any."""
+        self.conditions = conditions if any(condition is not UNDECIDED for condition in conditions) else ()
+        return bool(conditions)
 
     def mentions(self, text: str, offset: int, conditional: bool) -> None:
         """All substitutions and resource URLs of a text; offset: where it starts in the file."""
@@ -174,9 +184,9 @@ def _find_root(data: bytes) -> str:
 _ARGUMENT = re.compile(r"\s*\$\((?:arg|var)\s+([\w.-]+)\s*\)\s*\Z")
 
 
-def _find_conditional(document: Document) -> list[bool]:
-    """For each element, whether it or one around it stands under an if or unless that keeps it from running when the
-    file is started without arguments, or that cannot be told."""
+def _find_conditions(document: Document) -> list[tuple[Condition, ...]]:
+    """For each element, the if and unless of it and those around it that keep it from running when the file is started
+    without arguments, or that cannot be told."""
     defaults: dict[str, set[str]] = {}
     for element in document.elements:
         if element.name == "arg" and (preset := _find_attribute(element, "default", "value")) is not None:
@@ -189,20 +199,37 @@ def _find_conditional(document: Document) -> list[bool]:
         values = defaults.get(argument.group(1), set()) if argument is not None else {text}
         return next(iter(values)).strip().lower() if len(values) == 1 else ""
 
-    flags: list[bool] = []
+    found: list[tuple[Condition, ...]] = []
     for element in document.elements:
-        flag = element.parent >= 0 and flags[element.parent]
-        if not flag:
-            if element.name in ("xacro:if", "xacro:unless"):
-                flag = element.get("value").strip().lower() not in ("true", "1", "${true}")
-            else:
-                flag = any(
-                    (a.name == "if" and resolve_text(a.value) not in ("true", "1"))
-                    or (a.name == "unless" and resolve_text(a.value) not in ("false", "0"))
-                    for a in element.attributes
-                )
-        flags.append(flag)
-    return flags
+        conditions = found[element.parent] if element.parent >= 0 else ()
+        if element.name in ("xacro:if", "xacro:unless"):
+            if element.get("value").strip().lower() not in ("true", "1", "${true}"):
+                conditions = (*conditions, UNDECIDED)
+        else:
+            for attribute in element.attributes:
+                passed = {"if": ("true", "1"), "unless": ("false", "0")}.get(attribute.name)
+                if passed is not None and resolve_text(attribute.value) not in passed:
+                    conditions = (*conditions, _read_test_of_machine(attribute))
+        found.append(conditions)
+    return found
+
+
+_EVAL = re.compile(r"\s*\$\(\s*eval\s+(.*)\)\s*\Z", re.DOTALL)
+_QUOTED_WHOLE = re.compile(r"""(['"])((?:(?!\1)[^\\]|\\.)*)\1\Z""", re.DOTALL)
+_VARIABLE = re.compile(r"""(['"])\$\((?:opt)?env\s+(ROS_\w+)[^()]*\)\1|\b(?:opt)?env\(\s*['"](ROS_\w+)['"]""")
+_OTHER = re.compile(r"""(['"]?)\$\([^()]*\)\1""")
+
+
+def _read_test_of_machine(attribute: Attribute) -> Condition:
+    """An if or unless that asks for a variable of the environment that ROS sets, as a test of Python; UNDECIDED for any
+    other."""
+    test = _EVAL.match(attribute.value)
+    if test is None or "ROS_" not in test[1]:
+        return UNDECIDED
+    whole = _QUOTED_WHOLE.match(test[1].strip())
+    text = re.sub(r"\\(['\"])", r"\1", whole[2] if whole is not None else test[1])
+    text = _VARIABLE.sub(lambda m: f"os.environ['{m[2]}']" if m[2] else f"os.environ.get('{m[3]}'", text)
+    return Condition("python", _OTHER.sub("undecided", text).strip(), attribute.name == "unless")
 
 
 def _find_attribute(element: Element, *names: str) -> Attribute | None:
@@ -225,8 +252,8 @@ def _read_launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
         return structs.replace(_read_yaml(data), problems=document.problems)
     found = _Found(document.place)
     given = _find_include_arguments(document)
-    for at, (element, conditional) in enumerate(zip(document.elements, _find_conditional(document), strict=True)):
-        name = element.name
+    for at, (element, conditions) in enumerate(zip(document.elements, _find_conditions(document), strict=True)):
+        name, conditional = element.name, found.stand_under(conditions)
         found.arguments = given.get(at)
         if name in NODES:
             _add_node(found, element, conditional)
@@ -302,7 +329,8 @@ def _add_command(found: _Found, attribute: Attribute | None, conditional: bool) 
 def _read_robot_description(data: bytes) -> ReferenceFile:
     document = scan(data)
     found = _Found(document.place)
-    for element, conditional in zip(document.elements, _find_conditional(document), strict=True):
+    for element, conditions in zip(document.elements, _find_conditions(document), strict=True):
+        conditional = found.stand_under(conditions)
         if element.name == "plugin":
             library = _find_attribute(element, "filename")
             if library is not None and library.value and not any(c in library.value for c in "$/{"):

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import msgspec
 
 from ....edges.dispatch import collect_node_methods
-from ..condition import Condition
+from ..condition import UNDECIDED, Condition
 from ..place import Problem, Reference
 from .bound import PYTHON2_BUILTINS, PYTHON2_METHODS
 from .text import SourceText, find_child_fields, list_caught_exceptions
@@ -54,6 +54,8 @@ _ABOUT_MACHINE = re.compile(
     r"version|PY[23]|PYTHON|TYPE_CHECKING|platform|os\.name|environ|getenv|ROS_|distro|hasattr|find_spec|find_loader",
     re.IGNORECASE,
 )
+_ROS_VARIABLE = re.compile(r"(?:environ|getenv)\b.*\bROS_(?:DISTRO|VERSION|PYTHON_VERSION)\b", re.DOTALL)
+_READING = frozenset((ast.Call, ast.Subscript))
 _COMMAND_CALLS = frozenset((
     "system", "popen", "Popen", "call", "check_call", "check_output", "run", "getoutput", "ExecuteProcess",
     "ExecuteLocal", "Command",
@@ -275,14 +277,16 @@ class PythonReader(ObjectUses, SourceText):
 
     def walk_under(self, nodes, condition: Condition | None, use: Condition | None) -> None:
         """Visits statements with one more condition for imports and one for uses."""
-        before = self.conditions, self.use_conditions, self.conditional
+        before = self.conditions, self.use_conditions, self.conditional, self.undecided
         if condition is not None:
             self.conditions = (*self.conditions, condition)
         if use is not None:
             self.use_conditions = (*self.use_conditions, use)
+        else:
+            self.undecided = True
         self.conditional = True
         self.walk_branch(nodes)
-        self.conditions, self.use_conditions, self.conditional = before
+        self.conditions, self.use_conditions, self.conditional, self.undecided = before
 
     def walk_branch(self, nodes) -> None:
         """Visits statements, what these bind is noted in `ways` and holds no longer."""
@@ -328,7 +332,7 @@ class PythonReader(ObjectUses, SourceText):
     visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_ListComp
 
     def visit_If(self, node: ast.If) -> None:
-        test = self.format_source(node.test)
+        test = self.format_test(node.test)
         self.visit(node.test)
         if "__main__" in test and "__name__" in test:
             self.main_lines = range(node.body[0].lineno, (node.body[-1].end_lineno or 0) + 1)
@@ -339,7 +343,7 @@ class PythonReader(ObjectUses, SourceText):
         plain = node.test
         if isinstance(plain, ast.UnaryOp) and isinstance(plain.op, ast.Not):
             plain, negated = plain.operand, True
-            test = self.format_source(plain)
+            test = self.format_test(plain)
         if test.endswith(".TYPE_CHECKING"):
             test = "TYPE_CHECKING"
         about_machine = _ABOUT_MACHINE.search(test) is not None
@@ -349,17 +353,27 @@ class PythonReader(ObjectUses, SourceText):
             self.walk_under(branch, condition, condition if about_machine else None)
         self.merge(first)
 
+    def format_test(self, node: ast.expr) -> str:
+        """The source of a test, names that stand for a variable of the environment replaced by what reads it."""
+        test = self.format_source(node)
+        for name in {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}:
+            holder = next((scope for scope in self.scope.chain if name in scope.bound), None)
+            if holder is not None and name in holder.machine:
+                test = re.sub(rf"(?<![\w.'\"]){name}(?![\w'\"])", lambda _, text=holder.machine[name]: text, test)
+        return test
+
     def visit_IfExp(self, node: ast.IfExp) -> None:
         self.visit(node.test)
-        test = self.format_source(node.test)
-        before = self.use_conditions, self.conditional
+        test = self.format_test(node.test)
+        before = self.use_conditions, self.conditional, self.undecided
         self.conditional = True
         about_machine = _ABOUT_MACHINE.search(test) is not None
+        self.undecided = self.undecided or not about_machine
         for branch, denied in ((node.body, False), (node.orelse, True)):
             if about_machine:
                 self.use_conditions = (*before[0], Condition("python", test, denied))
             self.visit(branch)
-        self.use_conditions, self.conditional = before
+        self.use_conditions, self.conditional, self.undecided = before
 
     def visit_Try(self, node) -> None:
         caught = list_caught_exceptions(node.handlers)
@@ -558,6 +572,11 @@ class PythonReader(ObjectUses, SourceText):
 
     def remember(self, name: str, node: ast.expr, annotated: str = "") -> None:
         scope = self.scope
+        source = self.format_source(node) if name not in scope.bound and node.__class__ in _READING else ""
+        if _ROS_VARIABLE.search(source):
+            scope.machine[name] = source
+        else:
+            scope.machine.pop(name, None)
         scope.bound.add(name)
         value = self.find_text(node)
         if name in scope.values and scope.values[name] != value:
@@ -611,7 +630,11 @@ class PythonReader(ObjectUses, SourceText):
     def refer_to(self, kind: str, package: str, name: str, node, conditional: bool = False) -> None:
         column = self.find_column(node.lineno, node.col_offset)
         arguments = self.included if kind == "file" else None
-        reference = Reference(kind, package, name, node.lineno, column, self.conditional or conditional, arguments)
+        conditions = self.use_conditions
+        if conditions and (self.undecided or conditional):
+            conditions = (*conditions, UNDECIDED)
+        conditional = self.conditional or conditional
+        reference = Reference(kind, package, name, node.lineno, column, conditional, arguments, conditions)
         self.references[reference] = None
 
     def visit_BinOp(self, node: ast.BinOp) -> None:
@@ -666,9 +689,9 @@ class PythonReader(ObjectUses, SourceText):
         keywords = {keyword.arg: keyword.value for keyword in node.keywords if keyword.arg}
         if keywords and getattr(node.func, "id", "") == "print" and "print_function" not in "".join(self.lines):
             self.need(0, "`print` with keywords", node)
-        before = self.conditional
+        before = self.conditional, self.undecided
         if "condition" in keywords and not isinstance(keywords["condition"], ast.Constant):
-            self.conditional = True
+            self.conditional = self.undecided = True
         if function in JOINS or function in WRAPPERS:
             self.add_path(node)
         elif function in PACKAGE_CALLS or (function in ("get_path", "find") and node.args):
@@ -714,7 +737,7 @@ class PythonReader(ObjectUses, SourceText):
         else:
             self.walk_all(node.args)
         self.walk_all(keyword.value for keyword in node.keywords)
-        self.conditional = before
+        self.conditional, self.undecided = before
 
     def add_package_call(self, node: ast.Call, function: str) -> None:
         value = self.find_text(node)

@@ -118,6 +118,8 @@ class ObjectUses(PythonValues):
         # In a function that may not run, or under a condition.
         self.lazy = False
         self.conditional = False
+        # Under a condition that does not tell about the interpreter or the machine.
+        self.undecided = False
         # Tests about the interpreter or the machine that hold here.
         self.use_conditions: tuple[Condition, ...] = ()
         # The same of calls alone.

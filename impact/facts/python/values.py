@@ -31,7 +31,7 @@ VALUED = frozenset((ast.Constant, ast.Name, ast.BinOp, ast.JoinedStr, ast.List, 
 class PythonScope:
     """Names of a module, class or function: imported, otherwise bound, and bound to a known value."""
 
-    __slots__ = ("bound", "chain", "imports", "is_class", "objects", "parameters", "parent", "values")
+    __slots__ = ("bound", "chain", "imports", "is_class", "machine", "objects", "parameters", "parent", "values")
 
     def __init__(self, parent: "PythonScope | None", is_class: bool) -> None:
         # A class body is no scope for the functions in it.
@@ -42,6 +42,8 @@ class PythonScope:
         self.imports: dict[str, list[tuple[str, tuple[Condition, ...]]]] = {}
         self.bound: set[str] = set()
         self.values: dict[str, object] = {}
+        # Names bound once, to what reads a variable of the environment that ROS sets, with the source of that.
+        self.machine: dict[str, str] = {}
         # Types of what variables hold, see uses.py.
         self.objects: dict[str, str] = {}
         self.parameters: list[str] = []

@@ -109,9 +109,13 @@ def find_gone_package(
     launch files that are no longer used."""
     if view.target.ros == 1 or use.role == "test":
         return
-    if not view.is_package(upstream) or upstream in view.workspace.packages or upstream in package.declared:
+    if not view.is_package(upstream) or upstream in view.workspace.packages:
         return
     if view.is_available(upstream) or view.underlaid or view.is_private(upstream):
+        return
+    # What is declared for another distro is often used by files for that distro, unless these choose by it themselves.
+    chosen = bool(use.reference.conditions) and not use.reference.conditional
+    if upstream in package.declared and (not chosen or upstream in view.collect_declared(package)):
         return
     found = find_missing(view, "package", upstream, ())
     if found is not None and found.state in ("removed", "not yet"):

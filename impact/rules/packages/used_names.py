@@ -13,8 +13,8 @@ def shows_uses(package: Package) -> bool:
 
 def list_used_names(view: TargetView, package: Package) -> frozenset[str]:
     """Names of packages and keys that something in a package means: includes, imports, launch files, interfaces,
-    exports, commands of CMake, or words of YAML and robot descriptions."""
-    digest, build = package.digest, package.build
+    exports, commands of CMake, or words of YAML and robot descriptions; also what they mean on other targets alone."""
+    digest, build = view.workspace.packages.get(package.name, package).digest, package.build
     return frozenset((
         *(provider.name for need in view.list_needs(package) for provider in need.providers),
         *(name for made in build.generated for name, _ in made.dependencies),
