@@ -8,7 +8,7 @@ from .build import At, BuildTarget, Link
 
 class TargetDraft(msgspec.Struct, eq=False):
     """A BuildTarget that still grows; lists keep the order of the commands. sources: path to the conditions under which
-    it was added. installed_as: the artifact: executable, library, static or module. signatures: of
+    it was added. ways: the conditions of each command that makes it. installed_as: the artifact: executable, library, static or module. signatures: of
     link_target_libraries(), True with keywords, False without, each with the conditions of its first call."""
 
     name: str
@@ -29,6 +29,7 @@ class TargetDraft(msgspec.Struct, eq=False):
     added: bool = False
     archive: bool = False
     signatures: dict[bool, tuple[Condition, ...]] = {}
+    ways: tuple[tuple[Condition, ...], ...] = ()
 
     def finish(self) -> BuildTarget:
         """The target as it stands."""
@@ -89,6 +90,8 @@ class Targets:
             # Made in both branches of an if: only what both have in common is a condition of the target.
             draft.conditions = tuple(held for held in draft.conditions if held in conditions)
             draft.kind = "test" if kind == "test" else draft.kind
+        if kind != "unknown":
+            draft.ways = (*draft.ways, conditions)
         return draft
 
     def finish(self) -> tuple[BuildTarget, ...]:

@@ -1019,8 +1019,10 @@ class Interpreter:
         return any(re.match(r"(?!find_package\()|find_package\(\$", reason) for _, reason in self.unresolved)
 
     def is_target(self, name: str) -> bool | None:
-        """True when the tree makes this target."""
-        return True if name in self.targets or self.is_typesupport(name) else None
+        """True when the tree makes this target, whatever other conditions hold than those which stand here."""
+        draft = self.targets.get(name) if name in self.targets else None
+        made = draft is not None and (not draft.ways or any(set(way).issubset(self.conditions) for way in draft.ways))
+        return True if made or self.is_typesupport(name) else None
 
     def is_typesupport(self, name: str) -> bool:
         """True for `T__x`, where rosidl generates interfaces as T: which x there are hangs on what is installed."""
@@ -1164,7 +1166,8 @@ class Interpreter:
         before, conditions = self.targets.get(name), self.merge_with(name)
         if before is not None and before.added and kind not in ("imported", "alias") and name.sure and not self.silent:
             opposite = {(held.text, not held.negated) for held in before.conditions}
-            if not any((held.text, held.negated) in opposite for held in conditions):
+            asked = re.compile(rf"TARGET {re.escape(name)}(?!\S)")
+            if not any((held.text, held.negated) in opposite or asked.search(held.text) for held in conditions):
                 self.refuse("twice", name, before.conditions)
         draft = self.ensure_target(name, kind, name.at)
         draft.added = name.sure and kind not in ("imported", "alias")

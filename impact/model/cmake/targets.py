@@ -4,7 +4,7 @@ import re
 
 from ...conditions.cmake import parse_constant
 from .blocks import CommandCall
-from .build import GeneratedInterfaces, Link
+from .build import GeneratedInterfaces, Link, RefusedName
 from .drafts import TargetDraft
 from .genex import reduce_expression, rejoin
 from .interpreter import BINARY, Interpreter, handles
@@ -121,6 +121,7 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
     if followed is not None and followed.kind != "alias":
         draft = followed
     if draft is not None:
+        note_branches(run, draft, name)
         return draft
     typesupport = run.is_typesupport(name)
     # add_dependencies() is given what catkin makes (`tests`), and CMake lets it wait for what comes later.
@@ -128,6 +129,14 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
     if not known and not _is_asked_for(run, name):
         run.refuse("no target", name)
     return run.ensure_target(name, "generated" if typesupport else "unknown", name.at)
+
+
+def note_branches(run: Interpreter, draft: TargetDraft, name: Word) -> None:
+    """Notes a target that is used where only other branches make it."""
+    here = run.merge_with(name)
+    made_here = any(set(way).issubset(here) for way in draft.ways)
+    if draft.ways and not made_here and name.sure and not run.silent and not _is_asked_for(run, name):
+        run.refused[RefusedName("branch", draft.name, run.locate(name.at), here, draft.ways)] = None
 
 
 def _is_asked_for(run: Interpreter, name: Word) -> bool:

@@ -2,8 +2,8 @@
 
 What it does
     Reports names that CMake never accepts: find_package() of an imported target or of a package of Debian, a second
-    target with the same name, a name that is given include directories or libraries and is no target, or not yet, a
-    project that is not called as package.xml calls the package, a target that is linked with keywords and without, a
+    target with the same name, a name that is given include directories or libraries and is no target, or not yet, or
+    that only branches for other distros add, a project that is not called as package.xml calls the package, a target that is linked with keywords and without, a
     property of a target whose value is an unset version, a version of the project under the policies of a CMake before
     3.0, commands that are misspelt by a letter, and target names with a slash, including those that
     install_python_package() makes from its argument.
@@ -29,6 +29,7 @@ Not reported
 
 from collections.abc import Iterator
 
+from ...facts.condition import Condition
 from ...model.cmake.build import RefusedName
 from ...model.cmake.conditions import make_version_key
 from ...model.cmake.interpreter import HANDLERS, WRAPPERS
@@ -65,6 +66,10 @@ _SHORTEST = 8
         ),
         "no target": Text("`{subject}` is not a CMake target, so CMake stops", "name a target that the package adds"),
         "too early": Text("`{subject}` is used as a target before it is added, so CMake stops", "add the target first"),
+        "branch": Text(
+            "`{subject}` is no target on {distro}, since other distros alone add it, so CMake stops",
+            "add the target on {distro} too",
+        ),
         "mixed": Text(
             "`{subject}` is linked with PUBLIC or PRIVATE and without, so CMake stops",
             "write the keyword in all calls of target_link_libraries() and ament_target_dependencies(), or in none",
@@ -87,10 +92,16 @@ def refused_cmake_name(view: TargetView, package: Package):
             yield Diagnostic(found.at, found.name, package.name, kind=kind, doubts=doubts)
     seen = set()
     for kind, refused in _list_refused(package):
+        # In other branches a target is made on other machines alone.
+        if refused.kind == "branch" and (
+            any(map(view.applies, refused.ways)) or not any(map(_asks_for_distro, refused.ways))
+        ):
+            continue
         if refused.name not in seen and view.applies(refused.conditions):
             seen.add(refused.name)
             doubts = list_place_doubts(view, "build", refused.conditions)
-            yield Diagnostic(refused.at, refused.name, package.name, {"package": package.name}, kind, doubts)
+            data = {"package": package.name, "distro": view.target.distro}
+            yield Diagnostic(refused.at, refused.name, package.name, data, kind, doubts)
     yield from _list_misspelt(view, package)
     refused = ("custom", "executable", "library") if _find_policy_version(package) >= (3,) else ("custom",)
     slashed = [(target.name, target.at, target.conditions) for target in build.targets if target.kind in refused]
@@ -129,6 +140,10 @@ def _list_refused(package: Package) -> Iterator[tuple[str, RefusedName]]:
         early = refused.kind == "no target" and refused.name in added
         if refused.kind in ("twice", "project", "mixed", "version") or not hidden:
             yield "too early" if early else refused.kind, refused
+
+
+def _asks_for_distro(conditions: tuple[Condition, ...]) -> bool:
+    return any("ROS_DISTRO" in condition.text for condition in conditions)
 
 
 def _is_of_debian(view: TargetView, package: Package, name: str) -> bool:

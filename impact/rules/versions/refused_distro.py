@@ -28,7 +28,6 @@ from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 
 
 @rule(
-    preview=True,
     texts=Text("CMakeLists.txt stops on {distro}: {message}", help="add a branch for {distro}"),
 )
 def refused_distro(view: TargetView, package: Package) -> Iterator[Diagnostic]:
