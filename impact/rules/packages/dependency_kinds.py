@@ -4,6 +4,8 @@ from collections.abc import Iterable, Set
 from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
+from ...model.cmake.links import list_exported_targets, resolve_package
+from ...targets.providers.libraries import load_libraries
 from ..vocabulary import Declare, Need, Package, Remove, TargetView
 from .clean_machine import TEST_HEADERS, is_circular
 
@@ -16,7 +18,8 @@ FOR_RUN = frozenset({"exec", "build_export"})
 
 class WrongKind(NamedTuple):
     """A need whose package is declared for something else alone. name: as declared. kinds: those declared. lacking:
-    what it is not declared for: `build`, `run` or `dependants`."""
+    what it is not declared for: `build`, `run`, `linked` (to run, since an installed target is linked to it) or
+    `dependants`."""
 
     need: Need
     name: str
@@ -28,6 +31,8 @@ class WrongKind(NamedTuple):
 def list_wrong_kinds(view: TargetView, package: Package) -> Iterable[WrongKind]:
     """The first such need of each declared name, the weightiest first."""
     declared = view.collect_declared(package)
+    linked = _list_linked(package)
+    to_run: dict[str, WrongKind] = {}
     seen: set[str] = set()
     brought: dict[Set[str], frozenset[str]] = {}
     for need in view.sort_needs(package):
@@ -38,14 +43,21 @@ def list_wrong_kinds(view: TargetView, package: Package) -> Iterable[WrongKind]:
         lacking, fitting = _find_lacking(need, kinds)
         if not lacking:
             continue
+        if lacking == "linked" and (need.subject not in linked or not _has_shared_library(view, need.subject)):
+            continue
         if fitting not in brought:
             brought[fitting] = view.list_transitive(name for name, of_name in declared.items() if of_name & fitting)
         if not view.is_met(need.providers, brought[fitting]):
             # Of several that may bring it, the one that is named as it is (`gmock/gmock.h`: libgmock-dev, not gtest).
             head = need.subject.partition("/")[0]
             name = next((name for name in own if head in name), own[0])
+            wrong = WrongKind(need, name, kinds, lacking)
+            if lacking == "linked":  # unless more is lacking
+                to_run.setdefault(name, wrong)
+                continue
             seen.add(name)
-            yield WrongKind(need, name, kinds, lacking)
+            yield wrong
+    yield from (wrong for name, wrong in to_run.items() if name not in seen)
 
 
 def _find_lacking(need: Need, kinds: Set[str]) -> tuple[str, Set[str]]:
@@ -56,9 +68,42 @@ def _find_lacking(need: Need, kinds: Set[str]) -> tuple[str, Set[str]]:
         tests = need.subject.startswith(TEST_HEADERS)  # whoever includes what helps in tests makes tests
         if need.public and need.how == "include" and not tests and not kinds & {"build_export", "exec"}:
             return "dependants", _FOR_DEPENDANTS
+        if need.how == "find_package" and not kinds & FOR_RUN:
+            return "linked", FOR_RUN
     elif need.role == "run" and need.how in ("import", "launch") and not kinds & FOR_RUN:
         return "run", FOR_RUN
     return "", frozenset()
+
+
+def _list_linked(package: Package) -> frozenset[str]:
+    """The packages that installed programs and shared libraries are linked to themselves."""
+    installed = {item for install in package.build.installs if install.kind == "targets" for item in install.items}
+    return frozenset(
+        resolve_package(link.item)
+        for target in package.build.targets
+        if target.name in installed and not target.archive and target.kind in ("executable", "library", "module")
+        for link in target.links
+        if link.how in ("link", "ament")
+    )
+
+
+def _has_shared_library(view: TargetView, name: str) -> bool:
+    """Whether a package, by the name that find_package() takes, is known to have a library that is loaded to run."""
+    own = view.workspace.packages.get(name)
+    if own is not None:
+        return any(target.kind == "library" and not target.archive for target in list_exported_targets(own))
+    offer = view.offers.find_package(name)
+    if offer is not None:
+        return any(target.kind == "library" for target in offer.build.targets)
+    if view.is_package(name):
+        return False
+    libraries = load_libraries()
+    for library in view.list_libraries(name):
+        version = libraries.find_range(library, view.target.platform)[0]
+        build = libraries.build(library, version) if version else None
+        if build is not None and any(target.kind == "library" for target in build.targets):
+            return True
+    return False
 
 
 def fix_kind(view: TargetView, package: Package, name: str, tag: str, kinds: Set[str]) -> tuple[Declare | Remove, ...]:
