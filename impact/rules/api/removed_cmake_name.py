@@ -3,7 +3,8 @@
 What it does
     Reports calls of macros and functions, and uses of imported targets and variables, that the target's version of the
     providing package does not define: names that the known-changes table lists as removed, and names that other
-    versions of the package export and this one does not.
+    versions of the package export and this one does not. So are variables X_LIBRARIES that a target is linked to, and
+    that lack the libraries of X since it exports targets alone.
 
 Why it breaks
     CMake stops at an unknown command or target; an unknown variable is empty and the build fails later.
@@ -20,22 +21,47 @@ Use instead
     target_link_libraries(node rclcpp::rclcpp)
 
 Not reported
-    Calls under a condition that does not hold on the target; names that the package or the workspace defines.
+    Calls under a condition that does not hold on the target; names that the package or the workspace defines; variables
+    beside which something else may bring their package.
 """
 
+import re
 from collections.abc import Iterable, Iterator
 
+from ....edges.reach import walk
 from ...facts.condition import Condition
+from ...model.cmake.links import list_linked_items
 from ...model.cmake.names import MODULES
+from ...targets.surface.offers import PackageOffer
 from ...targets.symbol import Availability, Symbol
-from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Upcoming, list_place_doubts, rate_upcoming, rule
+from ..vocabulary import (
+    At,
+    Diagnostic,
+    Doubt,
+    Package,
+    TargetView,
+    Text,
+    Upcoming,
+    list_place_doubts,
+    rate_upcoming,
+    rule,
+)
 from .diagnosis import build_availability_texts, build_data, diagnose, find_missing
 from .link_fixes import make_link_fix, tell_replacement
 
 Names = list[tuple[str, At, tuple[Condition, ...], str]]
 
 
-@rule(scope="target", texts=build_availability_texts())
+@rule(
+    scope="target",
+    texts={
+        **build_availability_texts(),
+        "emptied": Text(
+            "`{subject}` does not hold the libraries of {upstream} {version}, which exports targets alone",
+            "link `{replacement}`",
+        ),
+    },
+)
 def removed_cmake_name(view: TargetView):
     rows = view.list_changes("cmake-removed", "cmake-renamed")
     gone = {c.old: c.package for c in rows if c.state in ("removed", "deprecated")}
@@ -48,6 +74,7 @@ def removed_cmake_name(view: TargetView):
         ]
         yield from rate_upcoming(_list_unexported(view, package, [name for name in names if name[0] not in gone]))
         yield from rate_upcoming(_list_reviewed(view, package, names, gone))
+        yield from _list_emptied(view, package)
 
 
 def _list_reviewed(
@@ -102,6 +129,52 @@ def _diagnose(
     data = {**build_data(found), "replacement": tell_replacement(view, package, call)}
     fix = make_link_fix(view, package) if found.is_missing else ()
     return diagnose(found, at, name, package.name, doubts, data=data, fix=fix)
+
+
+def _list_emptied(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Variables that target_link_libraries() is given and that other versions of their packages fill, where a target
+    gets the package in no other way."""
+    seen: set[str] = set()
+    for target in package.build.targets:
+        for link in target.links:
+            name = link.item.removeprefix("${").removesuffix("_LIBRARIES}")
+            if link.how != "link" or link.item != f"${{{name}_LIBRARIES}}" or link.item in seen:
+                continue
+            conditions = (*target.conditions, *link.conditions)
+            offer = view.offers.find_package(name) if name not in view.workspace.may_have else None
+            if offer is None or not view.is_sure(conditions) or not _exports_targets_alone(offer):
+                continue
+            items = list_linked_items(package, target.name)
+            if items is None or _is_linked_otherwise(view, name, items):
+                continue
+            seen.add(link.item)
+            libraries = [one.name for one in offer.build.targets if one.kind == "library"]
+            best = f"{name}::{name}" if f"{name}::{name}" in libraries else libraries[0]
+            data = {"upstream": name, "version": offer.version, "replacement": best}
+            # The target may use nothing but what stands in headers.
+            yield Diagnostic(link.at, link.item, package.name, data, "emptied", (Doubt.INCOMPLETE,))
+
+
+def _exports_targets_alone(offer: PackageOffer) -> bool:
+    """Whether a package fills no variable with its libraries here, and does in another version."""
+    build = offer.build
+    if build.libraries or build.variables or any(part in ("libraries", "targets") for part, _ in build.unknown):
+        return False
+    if not any(target.kind == "library" and target.sure for target in build.targets):
+        return False
+    history = offer.history
+    others = (history.build(version, ("libraries",)) for version in history.versions if version != offer.stored)
+    return any(other is not None and other.libraries for other in others)
+
+
+def _is_linked_otherwise(view: TargetView, name: str, items: Iterable[str]) -> bool:
+    """Whether something else than the variables of packages that a target is linked to may bring a package."""
+    known = [item for item in items if "$" not in item]
+    packages = {item.partition("::")[0] for item in known}
+    if any("$" in item and not re.fullmatch(r"\$\{\w+_LIBRARIES\}", item) for item in items):
+        return True
+    brought = walk(packages, lambda one: view.offers.list_exports(one) or ())
+    return name in brought or any(one in view.workspace.packages for one in packages)
 
 
 def _may_be_built(view: TargetView, package: Package, name: str) -> bool:
