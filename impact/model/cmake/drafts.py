@@ -8,8 +8,9 @@ from .build import At, BuildTarget, Link
 
 class TargetDraft(msgspec.Struct, eq=False):
     """A BuildTarget that still grows; lists keep the order of the commands. sources: path to the conditions under which
-    it was added. ways: the conditions of each command that makes it. installed_as: the artifact: executable, library, static or module. signatures: of
-    link_target_libraries(), True with keywords, False without, each with the conditions of its first call."""
+    it was added. ways: the conditions of each command that makes it. installed_as: the artifact: executable, library,
+    static or module. signatures: of link_target_libraries(), True with keywords, False without, each with the
+    conditions of its first call."""
 
     name: str
     kind: str

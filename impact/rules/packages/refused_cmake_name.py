@@ -3,10 +3,10 @@
 What it does
     Reports names that CMake never accepts: find_package() of an imported target or of a package of Debian, a second
     target with the same name, a name that is given include directories or libraries and is no target, or not yet, or
-    that only branches for other distros add, a project that is not called as package.xml calls the package, a target that is linked with keywords and without, a
-    property of a target whose value is an unset version, a version of the project under the policies of a CMake before
-    3.0, commands that are misspelt by a letter, and target names with a slash, including those that
-    install_python_package() makes from its argument.
+    that only branches for other distros add, a project that is not called as package.xml calls the package, a target
+    that is linked with keywords and without, a property of a target whose value is an unset version, a version of the
+    project under the policies of a CMake before 3.0, commands that are misspelt by a letter, and target names with a
+    slash, including those that install_python_package() makes from its argument.
 
 Why it breaks
     CMake finds no package `a::b` or `liba-dev`, since no configuration file has such a name. It stops at a second
