@@ -1231,12 +1231,12 @@ def test_scripts_that_a_package_hands_on_are_read_for_what_they_find():
     assert (made.found, made.targets) == ((), ())
 
 
-def test_targets_before_catkin_package_are_in_the_order_of_the_run_and_of_its_own_branch():
+def test_targets_before_catkin_destinations_are_in_the_order_of_the_run_and_of_its_own_branch():
     source = (
         "project(pkg)\nif(USE_ROSBUILD)\nrosbuild_add_library(old a.cpp)\nelse()\nadd_library(early a.cpp)\n"
         "catkin_package()\nadd_library(late a.cpp)\nendif()"
     )
-    assert build(source).before_catkin_package == ("early",)
+    assert build(source).before_catkin_destinations == ("early",)
 
 
 @pytest.mark.parametrize("name", ["pkg__rosidl_typesupport_introspection_cpp", "pkg__rosidl_generator_rs"])

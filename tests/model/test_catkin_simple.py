@@ -88,7 +88,7 @@ def test_libraries_are_exported():
         ("system_depends", "EIGEN3"),
     }
     assert made.catkin_package is not None
-    assert made.before_catkin_package == ()
+    assert made.before_catkin_destinations == ()
 
 
 def test_a_tree_that_defines_the_macros_itself_is_followed():

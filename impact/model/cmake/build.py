@@ -237,8 +237,9 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
-    they register). before_catkin_package: targets that are added before catkin_package() is called. refused: names at
-    which CMake stops. read_elsewhere: the CMake files that it asks for and that do not lie in the package. asked: the
+    they register). catkin_destinations: catkin_package(), or a macro that calls catkin_destinations() as
+    generate_messages() does, sets where targets are built, so that the devel space has them.
+    before_catkin_destinations: targets that are added before that. refused: names at which CMake stops. read_elsewhere: the CMake files that it asks for and that do not lie in the package. asked: the
     packages whose X_FOUND a test reads. stops: each message(FATAL_ERROR) under conditions, with its text."""
 
     project: str = ""
@@ -264,12 +265,13 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     macros: tuple[DefinedMacro, ...] = ()
     made: tuple[str, ...] = ()
     handed_on: tuple[FoundPackage, ...] = ()
-    before_catkin_package: tuple[str, ...] = ()
+    before_catkin_destinations: tuple[str, ...] = ()
     refused: tuple[RefusedName, ...] = ()
     read_elsewhere: tuple[ReadFile, ...] = ()
     asked: tuple[str, ...] = ()
     stops: tuple[tuple[At, str, tuple[Condition, ...]], ...] = ()
     dependency_calls: tuple[DependencyCall, ...] = ()
+    catkin_destinations: bool = False
 
     @property
     def finds_declared(self) -> bool:

@@ -8,6 +8,7 @@ import posixpath
 from ...facts.condition import Condition
 from .blocks import CommandCall
 from .build import At, GeneratedInterfaces
+from .find import set_catkin_destinations
 from .interpreter import Interpreter, handles
 from .names import make_name_set
 from .targets import add_links, add_sources, note_made
@@ -34,12 +35,7 @@ def run_catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) ->
     run.refuse_project()
     if not run.silent:
         run.catkin_package = run.locate(call.at)
-        opposite = {(held.text, not held.negated) for held in run.conditions}
-        run.before_catkin_package = tuple(
-            target.name
-            for target in run.targets.finish()
-            if not any((held.text, held.negated) in opposite for held in target.conditions)
-        )
+    set_catkin_destinations(run, call, args)
     for keyword, items in group_by_keyword(_mark_forgotten(args), _PACKAGE).items():
         how = _PROMISES.get(keyword)
         if how is None:
@@ -96,6 +92,7 @@ def add_interface_files(run: Interpreter, call: CommandCall, args: list[Word]) -
     """add_message_files() and kin; without files it takes the whole folder."""
     if run.silent:
         return
+    set_catkin_destinations(run, call, args)
     kind = _MESSAGE_FOLDERS[call.name]
     given = group_by_keyword(args, _ADD_FILES)
     folder = str(given["DIRECTORY"][0]) if given.get("DIRECTORY") else kind
@@ -119,6 +116,7 @@ def generate_messages(run: Interpreter, call: CommandCall, args: list[Word]) -> 
     """generate_messages(): its targets are X_generate_messages, X_generate_messages_cpp, X_gencpp and so on."""
     if run.silent:
         return
+    set_catkin_destinations(run, call, args)
     given = group_by_keyword(args, frozenset({"DEPENDENCIES", "LANGS"}))
     package = run.installed_name
     target = f"{package}_generate_messages"
@@ -136,6 +134,7 @@ def generate_dynamic_reconfigure_options(run: Interpreter, call: CommandCall, ar
     """generate_dynamic_reconfigure_options(): its target is X_gencfg."""
     if run.silent:
         return
+    set_catkin_destinations(run, call, args)
     target = f"{run.installed_name}_gencfg"
     files = tuple(run.resolve_tree_path(item) for item in split_words(args))
     run.generated.append(GeneratedInterfaces("reconfigure", target, files, (), run.locate(call.at), run.conditions))

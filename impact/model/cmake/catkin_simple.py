@@ -118,4 +118,3 @@ def export_simple_package(run: Interpreter, call: CommandCall, args: list[Word])
         given["INCLUDE_DIRS"] = [wrap("include", call.at), *given.get("INCLUDE_DIRS", [])]
     words = [word for key, items in given.items() if key and items for word in (wrap(key, call.at), *items)]
     run_catkin_package(run, call, words)
-    run.before_catkin_package = ()  # the macros made the targets ready for it

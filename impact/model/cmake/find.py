@@ -188,8 +188,16 @@ def _set_catkin_variables(run: Interpreter, call: CommandCall) -> None:
 
 @handles("catkin_destinations")
 def set_catkin_destinations(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """catkin_destinations() sets what find_package(catkin) and project() set together."""
-    run.catkin_destinations = True
+    """catkin_destinations() sets what find_package(catkin) and project() set together, and where targets are built from
+    there on."""
+    if not run.catkin_destinations and not run.silent:
+        run.catkin_destinations = True
+        opposite = {(held.text, not held.negated) for held in run.conditions}
+        run.before_catkin_destinations = tuple(
+            target.name
+            for target in run.targets.finish()
+            if not any((held.text, held.negated) in opposite for held in target.conditions)
+        )
     _set_catkin_variables(run, call)
 
 

@@ -49,7 +49,7 @@ def install(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     if run.silent:
         return
     form = args[0]
-    if run.catkin_package is None and not run.catkin_destinations:
+    if not run.catkin_destinations:
         for name in _OF_CATKIN_PACKAGE.findall(" ".join(argument.text for argument in call.arguments)):
             run.use_variable(name, call.at)
     if form in ("TARGETS", "IMPORTED_RUNTIME_ARTIFACTS"):

@@ -175,8 +175,8 @@ class Interpreter:
         self.include_dirs: dict[tuple[str, At], None] = {}
         self.links: dict = {}
         self.catkin_package: At | None = None
-        self.catkin_destinations = False  # its folders are set without catkin_package()
-        self.before_catkin_package: tuple[str, ...] = ()
+        self.catkin_destinations = False  # catkin's folders are set
+        self.before_catkin_destinations: tuple[str, ...] = ()
         self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
         self.renamed: set[str] = set()  # what find_package(x NAMES ...) calls its variables after
         self.refused: dict[RefusedName, None] = {}
@@ -268,7 +268,8 @@ class Interpreter:
             catkin_package=self.catkin_package,
             ament_package=self.ament_package,
             project_by_variable=self._uses_project_name(),
-            before_catkin_package=self.before_catkin_package,
+            before_catkin_destinations=self.before_catkin_destinations,
+            catkin_destinations=self.catkin_destinations,
             **{name: tuple(getattr(self, name)) for name in _COLLECTED},
         )
 

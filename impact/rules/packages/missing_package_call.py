@@ -6,10 +6,12 @@ What it does
 
 Why it breaks
     The package builds, and its files are installed. Nothing tells where it is: `ros2 run`, launch files and
-    find_package() do not find it.
+    find_package() do not find it. In catkin's devel space, launch files find it in the source tree, and its programs
+    where a macro such as generate_messages() or generate_dynamic_reconfigure_options() calls catkin_destinations().
 
 Severity
-    error where another package of the workspace finds it, or launch files look for it; warning otherwise.
+    error where another package of the workspace finds it, or launch files look for it; warning otherwise, also where
+    they look for a package of catkin that only fails where it is installed.
 
 Example
     install(PROGRAMS scripts/trim.py DESTINATION lib/${PROJECT_NAME})
@@ -23,32 +25,57 @@ Not reported
     CMake code that calls commands which nobody is known to have, or that is not known in full; code of rosbuild.
 """
 
+from collections.abc import Collection
+
 from ...model.cmake.interpreter import is_modelled
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 
-_CALLS = {"ament_cmake": "ament_package", "catkin": "catkin_package"}
+_HELP = "call {subject}() {where}"
+_CALLS = {
+    "ament_cmake": ("ament_package", "at the end"),
+    "catkin": ("catkin_package", "after find_package(catkin)"),
+}
 
 
 @rule(
     group="missing-install",
-    texts=Text("CMake never calls {subject}(), so nothing finds `{package}`", "call {subject}() at the end"),
+    texts={
+        "": Text("CMake never calls {subject}(), so nothing finds `{package}`", _HELP),
+        "installed": Text("CMake never calls {subject}(), so nothing finds `{package}` once it is installed", _HELP),
+    },
 )
 def missing_package_call(view: TargetView, package: Package):
-    build, wanted = package.build, _CALLS.get(package.build_type)
-    if wanted is None or not build.files or not build.project or build.unresolved:
+    build = package.build
+    if package.build_type not in _CALLS or not build.files or not build.project or build.unresolved:
         return
     if build.ament_package is not None or build.catkin_package is not None or package.manifest.metapackage:
         return
     known = view.providers.commands.get(view.target.ros, {})
     called = {use.name for use in build.uses if use.kind == "command"}
-    if any(name.startswith("rosbuild_") or not (is_modelled(name, ()) or name in known) for name in called):
+    foreign = {name for name in called if not is_modelled(name, ())}
+    if any(name.startswith("rosbuild_") for name in called) or not foreign <= known.keys():
         return
-    found = any(other.name != package.name and _is_found_by(other, package.name) for other in view.list_built())
-    path = build.files[0]
-    yield Diagnostic(At(path, 1), wanted, package.name, doubts=(found or Doubt.DISTURBS,))
+    wanted, where = _CALLS[package.build_type]
+    others = [other for other in view.list_built() if other.name != package.name]
+    if package.build_type == "ament_cmake":
+        found = any(_is_asked_for(other, package.name) or _is_launched(other, package.name) for other in others)
+    else:
+        found = any(_is_asked_for(other, package.name) for other in others)
+        if not build.catkin_destinations and not foreign:  # which may call catkin_destinations()
+            made = {target.name for target in build.targets if target.kind == "executable"}
+            found = found or any(_is_launched(other, package.name, made) for other in others)
+    kind = "" if found or package.build_type == "ament_cmake" else "installed"
+    yield Diagnostic(At(build.files[0], 1), wanted, package.name, {"where": where}, kind, (found or Doubt.DISTURBS,))
 
 
-def _is_found_by(package: Package, name: str) -> bool:
-    return any(f.name == name for f in package.build.found) or any(
-        use.reference.package == name for use in package.digest.references
+def _is_asked_for(package: Package, name: str) -> bool:
+    return any(found.name == name for found in package.build.found)
+
+
+def _is_launched(package: Package, name: str, programs: Collection[str] | None = None) -> bool:
+    """Whether launch files or scripts of a package start or open something of another one; only the named programs of
+    it, where they are given."""
+    references = (use.reference for use in package.digest.references)
+    return any(
+        r.package == name and (programs is None or (r.kind == "executable" and r.name in programs)) for r in references
     )
