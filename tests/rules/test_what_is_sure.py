@@ -152,11 +152,11 @@ def test_an_installed_header_that_only_another_header_includes(name, first, expe
     assert told == expected
 
 
-@pytest.mark.parametrize(("opened", "expected"), [("sled", {"error"}), ("snow", {"warning"})])
-def test_a_package_of_data_that_installs_none_of_it(opened, expected, tmp_path):
+@pytest.mark.parametrize("opened", ["sled", "snow"])
+def test_a_package_of_data_that_installs_none_of_it_works_in_the_devel_space(opened, tmp_path):
     launch = f'<launch><include file="$(find {opened})/launch/drive.launch" /></launch>\n'
     told = severities(tmp_path, "missing-install", "install", "noetic", launch__sled_DOT_launch=launch)
-    assert told == expected
+    assert told == {"warning"}
 
 
 @pytest.mark.parametrize(

@@ -3,15 +3,14 @@
 What it does
     Compares the install rules of CMake, or data_files of setup.py, with the launch files, scripts and data that launch
     files and scripts of the workspace start or open in the package's share folder, and with the folder `launch` of
-    packages of ROS 2, and of ROS 1 where other folders are installed. Reports packages of catkin that only hold data
-    and install nothing, and nodes in Python of packages that install no program.
+    packages of ROS 2, and of ROS 1 where other folders are installed. Reports packages of catkin that compile and
+    install nothing, and nodes in Python of packages that install no program.
 
 Why it breaks
     Everything works from the source tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
 
 Severity
-    error for all of a package that only holds data which launch files open; warning otherwise: in a workspace that is
-    never installed all of this works.
+    warning, since in a workspace that is never installed all of this works.
 
 Example
     install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})         # and a launch file opens config/robot.yaml
@@ -28,12 +27,13 @@ import re
 from collections.abc import Iterator
 
 from ...model.package import find_folder_role
-from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, rule
 from .data_files import list_copied
 from .install_rules import is_installed, list_places, list_references, read_installs
 
 
 @rule(
+    severity="warning",
     group="missing-install",
     texts={
         "nothing": Text(
@@ -65,7 +65,7 @@ def uninstalled_file(view: TargetView, package: Package):
         if copied := list_copied(package):
             yield from _list_opened(package, copied, opened)
     elif not installs and package.build_type == "catkin" and not package.build.targets:
-        yield from _list_nothing(package, opened=bool(list_references(view, package)))
+        yield from _list_nothing(package, opened)
     else:
         yield from _list_opened(package, installs, opened)
         yield from _list_scripts(package, installs, started)
@@ -76,13 +76,13 @@ _FOLDERS = (Together("folder not installed", few=3),)
 _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
 
 
-def _list_nothing(package: Package, opened: bool) -> Iterator[Diagnostic]:
-    """A package that only holds data, and installs none of it. opened: a launch file or a script opens files of it."""
-    folders = tuple(folder for folder in _DATA if package.has_files(folder))
+def _list_nothing(package: Package, opened: set[str]) -> Iterator[Diagnostic]:
+    """A package that compiles nothing and installs nothing. opened: what launch files and scripts open in it."""
+    inside = {posixpath.normpath(name).split("/")[0] for name in opened}
+    folders = tuple(folder for folder in (*_DATA, *sorted(inside - {*_DATA})) if package.has_files(folder))
     if folders and package.build.catkin_package is not None and not package.manifest.metapackage:
         data = {"folders": folders, "listed": " ".join(folders)}
-        doubts = (opened or Doubt.DISTURBS,)
-        yield Diagnostic(package.build.catkin_package, "install", package.name, data, "nothing", doubts)
+        yield Diagnostic(package.build.catkin_package, "install", package.name, data, "nothing")
 
 
 def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagnostic]:
@@ -117,7 +117,7 @@ def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagn
             share = f"share/{package.name}"
             how = f"add `('{share}/{folder}', glob('{folder}/*'))` to data_files"
         data = {"file": name, "share": share, "how": how}
-        yield Diagnostic(at, folder, package.name, data, kind, (Doubt.DISTURBS,), together=_FOLDERS)
+        yield Diagnostic(at, folder, package.name, data, kind, together=_FOLDERS)
 
 
 def _list_below(package: Package, folder: str) -> list[str]:
@@ -177,7 +177,7 @@ def _list_scripts(package: Package, installs, scripts: set[str]) -> Iterator[Dia
             if package.build_type == "catkin" and path not in package.digest.shells:
                 how = "catkin_install_python(PROGRAMS ...)"
             kind = "script" if name in scripts else "beside" if beside else "node"
-            yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, (Doubt.DISTURBS,), together=_ONCE)
+            yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, together=_ONCE)
 
 
 def _list_nodes(package: Package, installs) -> frozenset[str]:
