@@ -89,7 +89,7 @@ _SOURCES = 6
 class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An include that no file of the package answers. role: build, test or aside; public: in an installed header.
     targets: CMake targets that compile it. idle: no file of the package names anything of the namespace, or a macro,
-    that its first folder is called after."""
+    that its first folder is called after. angled: in <...>, not in quotes."""
 
     path: str
     at: At
@@ -98,6 +98,7 @@ class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...] = ()
     targets: tuple[str, ...] = ()
     idle: bool = False
+    angled: bool = False
 
 
 class ImportUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -456,7 +457,7 @@ class PackageJoin:
     def list_inner_includes(self, path: str) -> tuple[IncludeUse, ...]:
         """The includes of a header that files of the package answer."""
         return tuple(
-            IncludeUse(i.path, At(path, i.line, i.column), "", True, i.conditions)
+            IncludeUse(i.path, At(path, i.line, i.column), "", True, i.conditions, angled=i.angled)
             for to, i in self.resolved.get(path, ())
             if to is not None
         )
@@ -738,7 +739,7 @@ class PackageJoin:
                     includes.append(
                         IncludeUse(include.path, At(path, include.line, include.column), role, public,
                                    conditions + self.macros.resolve_conditions(include.conditions, targets), targets,
-                                   self.is_idle(include.path.partition("/")[0]))
+                                   self.is_idle(include.path.partition("/")[0]), include.angled)
                     )  # fmt: skip
             types = set()
             for name in facts.qualified:

@@ -50,7 +50,7 @@ class IncludedHeaders:
             path = include.path
             if path in self._quiet or not view.applies(include.conditions):
                 continue
-            if self._parameters.find_fault(include):
+            if self._parameters.find_fault(package, include):
                 continue
             if view.workspace.provides_header(path):
                 self._quiet.add(path)

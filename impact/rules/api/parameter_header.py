@@ -20,11 +20,14 @@ Use instead
     #include <planner/planner_parameters.hpp>
 
 Not reported
-    Workspaces that hold generate_parameter_library itself.
+    A header included in quotes by one that is installed into the same folder, where the compiler looks first;
+    workspaces that hold generate_parameter_library itself.
 """
 
+import posixpath
 from collections.abc import Iterator
 
+from ...model.cmake.installed import list_copied_files
 from ...model.cmake.links import list_linked_items
 from ...model.package import IncludeUse
 from ...targets.version import is_at_least
@@ -49,7 +52,7 @@ class ParameterHeaders:
             if item.how == "parameters" and self.version
         }
 
-    def find_fault(self, include: IncludeUse) -> tuple[str, str] | None:
+    def find_fault(self, package: Package, include: IncludeUse) -> tuple[str, str] | None:
         """What is wrong with the include of such a header, as the kind of a text, and what to include instead."""
         head, _, file = include.path.rpartition("/")
         owner = self.owner.get(file.removesuffix(".hpp")) if file.endswith(".hpp") else None
@@ -60,9 +63,19 @@ class ParameterHeaders:
             return "early", file
         if not head and only_new:
             return "gone", f"{owner}/{file}"
-        if not head and include.public and installed:
+        if not head and include.public and installed and not _lies_beside(package, include, f"include/{owner}"):
             return "installed", f"{owner}/{file}"
         return None
+
+
+def _lies_beside(package: Package, include: IncludeUse, folder: str) -> bool:
+    """Whether the including header is installed into a folder of the prefix, so that the compiler looks there first."""
+    return not include.angled and any(
+        path == include.at.path and posixpath.dirname(place) == folder
+        for rule in package.build.installs
+        if rule.kind in ("files", "directory")
+        for path, place in list_copied_files(rule, posixpath.normpath(rule.destination), (include.at.path,))
+    )
 
 
 @rule(
@@ -86,7 +99,7 @@ def parameter_header(view: TargetView):
     headers = ParameterHeaders(view)
     for package in view:
         for include in package.digest.includes:
-            fault = headers.find_fault(include)
+            fault = headers.find_fault(package, include)
             if fault is not None and view.applies(include.conditions):
                 kind, replacement = fault
                 data = {"version": headers.version, "replacement": replacement}
