@@ -24,6 +24,7 @@ CURED = (
     "packages/unreachable_script__copied",
     "packages/unresolvable_key",
     "packages/unresolvable_key__spelling",
+    "packages/unresolvable_key__system_package",
     "packages/wrong_dependency_kind",
     "sources/missing_include",
 )

@@ -2,8 +2,9 @@
 
 What it does
     Reports dependencies of a manifest that are not in the workspace, not released on the target, and that rosdep cannot
-    turn into something installable on the target's platform, although the name is known elsewhere, is one edit away
-    from a known one, or is that of a repository whose packages are called after it. Also reports keys of a module of
+    turn into something installable on the target's platform, although the name is known elsewhere, is that of a
+    package of Debian, CMake or pkg-config which a key installs, is one edit away from a known one, is that of a
+    repository whose packages are called after it, or that of a target of the package itself. Also reports keys of a module of
     Python 2 where the target has Python 3, and keys that only pip resolves, in packages that have been released.
 
 Why it breaks
@@ -15,7 +16,7 @@ Severity
     repository or to a submodule that was not read; warning for unknown names that nothing in the package uses or that
     have the form of a key (`python3-x`, `libx-dev`, `x-pip`, `x_1.2`), for a name `x` or `x2` if exactly one package or
     key such as `x_vendor` or `libx-dev` exists, for one that differs from a package of the workspace in the ending of a
-    word, or is called after the package that declares it, and for keys of Python 2 or pip.
+    word, is a target of the package that declares it or is called after that, and for keys of Python 2 or pip.
 
 Example
     <depend>Eigen3</depend>
@@ -47,6 +48,8 @@ _HELP = "declare a key that exists on the target, or put a condition on the depe
         "no rule": Text("rosdep has no rule for `{subject}` on {platform}", _HELP),
         "no rule, similar": Text("rosdep has no rule for `{subject}` on {platform}", "declare `{replacement}`"),
         "misspelt": Text("`{subject}` is neither a package nor a rosdep key", "declare `{replacement}`"),
+        "system package": Text("`{subject}` is a system package, not a rosdep key", "declare `{replacement}`"),
+        "own target": Text("`{subject}` is a target of `{package}`, not a package or rosdep key", "remove it"),
         "repository": Text(
             "`{subject}` is neither a package nor a rosdep key, but {packages} are packages",
             "declare the packages that are used",
@@ -102,8 +105,18 @@ def unresolvable_key(view: TargetView, package: Package):
             if not target.has_rosdep_rules():
                 continue
             instead = next(iter(target.find_replacement_keys(name)), "")
-            data = {"platform": target.platform, "replacement": instead}
-            yield Diagnostic(at, name, package.name, data, kind="no rule, similar" if instead else "no rule")
+            meant = _find_installing(view, package, name) if not instead else ""
+            fix = _replace(view, package, name, meant) if meant else ()
+            data = {"platform": target.platform, "replacement": instead or meant}
+            kind = "no rule, similar" if instead or meant else "no rule"
+            yield Diagnostic(at, name, package.name, data, kind=kind, fix=fix)
+        elif meant := _find_installing(view, package, name):
+            kind = "system package" if target.find_keys(name) else "misspelt"
+            fix = _replace(view, package, name, meant)
+            yield Diagnostic(at, name, package.name, {"replacement": meant}, kind=kind, fix=fix)
+        elif any(made.name == name and made.kind in _MADE for made in package.build.targets):
+            fix = (Remove(at.path, name),)
+            yield Diagnostic(at, name, package.name, kind="own target", doubts=(Doubt.AMBIGUOUS,), fix=fix)
         elif (guess := view.known_names.find_nearest(name)) and view.is_available(guess):
             fix = _make_fix(view, package, name, guess)
             yield Diagnostic(at, name, package.name, {"replacement": guess}, kind="misspelt", fix=fix)
@@ -114,6 +127,20 @@ def unresolvable_key(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, data, kind="misspelt", doubts=(Doubt.AMBIGUOUS,))
         else:
             yield _diagnose_unknown(view, package, at, name)
+
+
+_MADE = frozenset(("executable", "library", "interface", "module"))
+
+
+def _find_installing(view: TargetView, package: Package, name: str) -> str:
+    """The key that installs what a name stands for elsewhere: a package of the platform, else a library that
+    find_package() or pkg-config finds; empty where there is none, or where a module of Python may be meant."""
+    if keys := view.target.find_keys(name):
+        return min(keys, key=lambda key: len(view.list_debs(key)))
+    if not package.build.targets and _find_namesake(view, package, name):
+        return ""
+    providers = (*view.find_cmake(name), *view.providers.find_pkgconfig(name))
+    return next((p.name for p in providers if p.kind == "system" and p.sure and view.target.resolve(p.name)), "")
 
 
 def _list_unfit(view: TargetView, package: Package, at, name: str, found: Resolution) -> Iterator[Diagnostic]:
@@ -204,6 +231,10 @@ def _make_fix(view: TargetView, package: Package, name: str, guess: str) -> tupl
     # A digit tells versions apart.
     if _normalize(name) != _normalize(guess) and not (len(name) > 5 and is_slip(name, guess)):
         return ()
+    return _replace(view, package, name, guess)
+
+
+def _replace(view: TargetView, package: Package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
     path = package.digest.manifest_path
     declared = view.collect_declared(package)
     if guess in declared:
