@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...edges.files import write_file
-from ..rules.fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace
+from ..rules.fix_actions import Declare, Edit, FixAction, Insert, Remove, Replace, translate_tag
 from ..rules.rule import Finding
 from ..tree.paths import is_vendored
 
@@ -41,14 +41,6 @@ _TAG_ORDER = (
 _COVERS = {
     "depend": ("build_depend", "build_export_depend", "exec_depend"),
     "run_depend": ("build_export_depend", "exec_depend"),
-}
-# REP 127, format 1: run_depend stands for what a package's users need when building and when running.
-_FORMAT_1 = {
-    "depend": ("build_depend", "run_depend"),
-    "exec_depend": ("run_depend",),
-    "build_export_depend": ("run_depend",),
-    "buildtool_export_depend": (),
-    "doc_depend": (),
 }
 
 
@@ -346,7 +338,7 @@ def declare_dependency(data: bytes, name: str, tag: str = "depend", path: str = 
     if any(child.conditional for child in manifest.children if child.text == name):
         return ()
     if manifest.format == 1:
-        tags = tuple(each for each in _FORMAT_1.get(tag, (tag,)) if each not in present)
+        tags = tuple(each for each in translate_tag(tag, 1) if each not in present)
         covered = present & ({"build_depend", "run_depend"} if tag == "test_depend" else {"test_depend"})
     else:
         wanted = _COVERS.get(tag, (tag,))

@@ -978,12 +978,12 @@ class TargetView:
     def _guess_by_form(self, name: str, sure: bool = False) -> tuple[Provider, ...]:
         """The package that a name nobody is known to provide stands for: it is called as packages of interfaces are, or
         another manifest of the workspace declares it. sure: its place tells that already."""
-        if not _PACKAGE.match(name) or not (sure or INTERFACES.search(name) or name in self._declared_somewhere):
+        if not _PACKAGE.match(name) or not (sure or INTERFACES.search(name) or name in self.declared_somewhere):
             return ()
         return (Provider("ros", name),)
 
     @cached_property
-    def _declared_somewhere(self) -> frozenset[str]:
+    def declared_somewhere(self) -> frozenset[str]:
         """What manifests of the workspace declare, besides keys."""
         names = {dependency.name for package in self.workspace for dependency in package.manifest.dependencies}
         return frozenset(name for name in names if not self.target.knows_key(name))

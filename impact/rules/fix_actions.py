@@ -11,6 +11,21 @@ class Declare(msgspec.Struct, frozen=True, array_like=True, tag=True):
     tag: str = "depend"
 
 
+# REP 127, format 1: run_depend stands for what a package's users need when building and when running.
+_FORMAT_1 = {
+    "depend": ("build_depend", "run_depend"),
+    "exec_depend": ("run_depend",),
+    "build_export_depend": ("run_depend",),
+    "buildtool_export_depend": (),
+    "doc_depend": (),
+}
+
+
+def translate_tag(tag: str, manifest_format: int) -> tuple[str, ...]:
+    """The tags of a format that say what a tag of format 2 and 3 says."""
+    return _FORMAT_1.get(tag, (tag,)) if manifest_format == 1 else (tag,)
+
+
 class Remove(msgspec.Struct, frozen=True, array_like=True, tag=True):
     """Take a dependency out of a manifest: one tag of it, or all when tag is empty."""
 

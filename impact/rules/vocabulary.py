@@ -3,7 +3,7 @@
 from ..model.cmake.build import At
 from ..model.view import Need, TargetView, make_sort_key
 from ..model.workspace import Package, Workspace
-from .fix_actions import Declare, FixAction, Insert, Remove, Replace
+from .fix_actions import Declare, FixAction, Insert, Remove, Replace, translate_tag
 from .rule import Diagnostic, Finding, rule
 from .severity import SEVERITIES, Doubt, Together, limit_severity, list_place_doubts
 from .text import Text, Value
@@ -12,5 +12,5 @@ from .upcoming import Upcoming, rate_upcoming
 __all__ = [
     "SEVERITIES", "At", "Declare", "Diagnostic", "Doubt", "Finding", "FixAction", "Insert", "Need", "Package", "Remove",
     "Replace", "TargetView", "Text", "Together", "Upcoming", "Value", "Workspace", "limit_severity",
-    "list_place_doubts", "make_sort_key", "rate_upcoming", "rule",
+    "list_place_doubts", "make_sort_key", "rate_upcoming", "rule", "translate_tag",
 ]  # fmt: skip

@@ -21,6 +21,7 @@ CURED = (
     "packages/missing_interface_wiring",
     "packages/missing_interface_group",
     "packages/undeclared_package",
+    "packages/undeclared_package__format_1",
     "packages/unreachable_script__copied",
     "packages/unresolvable_key",
     "packages/unresolvable_key__spelling",

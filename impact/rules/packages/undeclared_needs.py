@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
 from ...model.misspelling import fold_name, is_one_edit
-from ..vocabulary import Declare, Need, Package, TargetView
+from ..vocabulary import Declare, Need, Package, TargetView, translate_tag
 from .clean_machine import TEST_HEADERS, is_circular
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
-DECLARE = "add `<{tag}>{subject}</{tag}>` to {manifest}"
+DECLARE = "add `<{tag}>{subject}</{tag}>`[[ and `<{also}>{subject}</{also}>`]] to {manifest}"
 """The help that names what to declare, with the data of describe_need()."""
 
 
@@ -61,9 +61,11 @@ def _choose_name(view: TargetView, need: Need) -> str | None:
 
 def describe_need(package: Package, need: Need) -> dict[str, str]:
     """The data of a text that says what a package uses, and of DECLARE."""
+    tag, *also = translate_tag(_tag(need), package.manifest.format)
     return {
         "use": _describe_use(need),
-        "tag": _tag(need, package.manifest.format),
+        "tag": tag,
+        "also": also[0] if also else "",
         "manifest": package.digest.manifest_path,
     }
 
@@ -95,14 +97,14 @@ def declare_need(view: TargetView, package: Package, need: Need, name: str) -> t
         return ()
     if is_circular(view, package, name) or not view.is_available(name):
         return ()
-    return (Declare(package.digest.manifest_path, name, _tag(need, 2)),)
+    return (Declare(package.digest.manifest_path, name, _tag(need)),)
 
 
-def _tag(need: Need, manifest_format: int) -> str:
+def _tag(need: Need) -> str:
     if need.role == "test":
         return "test_depend"
     if need.how == "environment":
         return "build_depend"
     if need.how in ("import", "launch", "plugin", "shell"):
-        return "exec_depend" if manifest_format > 1 else "run_depend"
-    return "depend" if manifest_format > 1 else "build_depend"
+        return "exec_depend"
+    return "depend"

@@ -46,6 +46,10 @@ runs ROS 1 has most of it at hand, and its manifests were rarely complete."""
 @rule(
     texts={
         "": Text("{use}, but `{package}` does not depend on `{subject}`", DECLARE),
+        "nowhere": Text(
+            "{use}, but `{package}` does not depend on `{subject}`",
+            "declare it and add its repository: `{subject}` is neither in the workspace nor in {distro}",
+        ),
         "condition": Text(
             "{use}, but `{package}` declares `{subject}` only under `{condition}`",
             "declare it without the condition, or use it under the same one",
@@ -65,12 +69,14 @@ def undeclared_package(view: TargetView, package: Package):
         condition = next((d.condition for d in package.manifest.dependencies if d.name == name and d.condition), "")
         if condition and "$ROS_" not in condition:
             doubts = (*doubts, Doubt.CONDITIONAL)  # whoever uses it may set the variable
+        known = view.is_available(name) or view.is_private(name) or name in view.declared_somewhere
+        data = {**describe_need(package, first), "condition": condition, "distro": view.target.distro}
         yield Diagnostic(
             first.at,
             name,
             package.name,
-            {**describe_need(package, first), "condition": condition},
-            "condition" if condition else "",
+            data,
+            "condition" if condition else "" if known else "nowhere",
             doubts,
             fix=declare_need(view, package, first, name) if limit_severity(*doubts) != "note" and not condition else (),
             together=at_run_time,
