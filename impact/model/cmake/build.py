@@ -239,8 +239,10 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
     they register). catkin_destinations: catkin_package(), or a macro that calls catkin_destinations() as
     generate_messages() does, sets where targets are built, so that the devel space has them.
-    before_catkin_destinations: targets that are added before that. refused: names at which CMake stops. read_elsewhere: the CMake files that it asks for and that do not lie in the package. asked: the
-    packages whose X_FOUND a test reads. stops: each message(FATAL_ERROR) under conditions, with its text."""
+    before_catkin_destinations: targets that are added before their folders are set. refused: names at which CMake
+    stops. read_elsewhere: the CMake files that it asks for and that do not lie in the package. asked: the packages
+    whose X_FOUND a test reads. stops: each message(FATAL_ERROR) under conditions, with its text. dependency_calls: the
+    calls of ament_target_dependencies()."""
 
     project: str = ""
     minimum: tuple[str, At] | None = None

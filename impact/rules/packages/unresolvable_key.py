@@ -4,8 +4,9 @@ What it does
     Reports dependencies of a manifest that are not in the workspace, not released on the target, and that rosdep cannot
     turn into something installable on the target's platform, although the name is known elsewhere, is that of a
     package of Debian, CMake or pkg-config which a key installs, is one edit away from a known one, is that of a
-    repository whose packages are called after it, or that of a target of the package itself. Also reports keys of a module of
-    Python 2 where the target has Python 3, and keys that only pip resolves, in packages that have been released.
+    repository whose packages are called after it, or that of a target of the package itself. Also reports keys of a
+    module of Python 2 where the target has Python 3, and keys that only pip resolves, in packages that have been
+    released.
 
 Why it breaks
     `rosdep install` stops with "No definition of [x] for OS version", and bloom refuses to release the package, as it
