@@ -64,7 +64,7 @@ class Later(CorpusError):
         self.until = until
 
 
-class Refused(CorpusError):
+class StatusError(CorpusError):
     """The service answered with a status that no second try mends."""
 
     def __init__(self, message: str, status: int):
@@ -155,7 +155,7 @@ class Client:
 
         accept: statuses besides 200 that are an answer and no fault (304, 404, 410). Waits and tries again on rate
         limits, on 5xx, and on connections that fail, stall or end early. Raises Later when that would take longer than
-        the patience that is left, Refused when the service means no, CorpusError when it cannot be reached.
+        the patience that is left, StatusError when the service means no, CorpusError when it cannot be reached.
         """
         return self._get(url, params, headers, lane, frozenset(accept), None)
 
@@ -465,7 +465,7 @@ class _Fault(Exception):
     """What went wrong with one request, as a clause whose subject is the address."""
 
 
-def _make_refusal(service: str, at: str, answer: ServiceAnswer) -> Refused:
+def _make_refusal(service: str, at: str, answer: ServiceAnswer) -> StatusError:
     said = ""
     with contextlib.suppress(ValueError, AttributeError):
         said = _clean(str(answer.parse_json().get("message") or answer.parse_json().get("error_message") or ""))[:200]
@@ -477,7 +477,7 @@ def _make_refusal(service: str, at: str, answer: ServiceAnswer) -> Refused:
         422: "check what is asked for",
     }.get(answer.status, "check what is asked for")
     says = f" ({said})" if said else ""
-    return Refused(f"{service}: {at} answered with status {answer.status}{says}; {help}", answer.status)
+    return StatusError(f"{service}: {at} answered with status {answer.status}{says}; {help}", answer.status)
 
 
 def _retry_after(answer: ServiceAnswer, now: float) -> float | None:

@@ -1,4 +1,4 @@
-"""Report and Label: what was reported, and what it was judged to be; their files, one JSON object a line.
+"""BugReport and Label: what was reported, and what it was judged to be; their files, one JSON object a line.
 
 The labels and what each means are in GUIDE.md; those of the corpus are in labels.jsonl beside this file.
 Texts of reports belong to those who wrote them and are in no file of the project: they are gathered again by id.
@@ -36,7 +36,7 @@ class CorpusError(UserError):
     """What was asked for cannot be done; the text names the file or place and what to do."""
 
 
-class Report(msgspec.Struct, frozen=True, omit_defaults=True):
+class BugReport(msgspec.Struct, frozen=True, omit_defaults=True):
     """One GitHub issue or pull request, ROS Answers question or Robotics Stack Exchange question.
 
     id: `owner/name#12`, `ros-answers:10010` or `robotics-se:98659`; unique. url: where it can be read. source: one of
@@ -102,9 +102,9 @@ def group_of(id: str) -> str:
     return find_repository(id) or id
 
 
-def read_reports(path: Path) -> Iterator[Report]:
+def read_reports(path: Path) -> Iterator[BugReport]:
     """The reports of a JSON Lines file, one at a time. Raises CorpusError."""
-    return _read(path, Report)
+    return _read(path, BugReport)
 
 
 def read_labels(path: Path = LABELS_FILE) -> list[Label]:

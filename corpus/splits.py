@@ -18,7 +18,7 @@ FOLDS = 5
 SEED = 20260822
 
 
-class Split(NamedTuple):
+class TrainTestSplit(NamedTuple):
     """Places of the rows to train on and to test on, each rising."""
 
     train: list[int]
@@ -57,16 +57,18 @@ def make_grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = F
     return [fold_of[group_of(id)] for id in ids]
 
 
-def make_grouped_splits(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED) -> list[Split]:
+def make_grouped_splits(
+    ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED
+) -> list[TrainTestSplit]:
     """The splits of grouped_folds: each fold once as the test side."""
     fold_of = make_grouped_folds(ids, labels, folds, seed)
     return [
-        Split([i for i, f in enumerate(fold_of) if f != fold], [i for i, f in enumerate(fold_of) if f == fold])
+        TrainTestSplit([i for i, f in enumerate(fold_of) if f != fold], [i for i, f in enumerate(fold_of) if f == fold])
         for fold in range(folds)
     ]
 
 
-def make_time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_day: str) -> Split:
+def make_time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_day: str) -> TrainTestSplit:
     """Rows before a day to train on, rows from that day on to test on.
 
     dates: as day_of reads them; rows without one are on neither side. first_test_day: an ISO day. The test side keeps
@@ -76,7 +78,9 @@ def make_time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_
     if len(ids) != len(dates):
         raise ValueError(f"{len(ids)} ids and {len(dates)} dates; give one date, or None, for each id")
     dated = [(i, day) for i, date in enumerate(dates) if (day := parse_day(date))]
-    return Split([i for i, day in dated if day < first_test_day], [i for i, day in dated if day >= first_test_day])
+    return TrainTestSplit(
+        [i for i, day in dated if day < first_test_day], [i for i, day in dated if day >= first_test_day]
+    )
 
 
 def parse_day(date: str | None) -> str:
@@ -91,7 +95,7 @@ def parse_day(date: str | None) -> str:
     return ""
 
 
-def select_unseen(ids: Sequence[str], split: Split) -> list[int]:
+def select_unseen(ids: Sequence[str], split: TrainTestSplit) -> list[int]:
     """The rows of a split's test side whose group is not on its train side."""
     seen = {group_of(ids[i]) for i in split.train}
     return [i for i in split.test if group_of(ids[i]) not in seen]

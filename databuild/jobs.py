@@ -14,7 +14,7 @@ from .surface.clones import Clone
 from .surface.compare import RepositorySurfaces
 from .surface.package import build_surfaces
 from .surface_changes import Lines
-from .surface_file import Including, Packed, Packer, Stored
+from .surface_file import IncludesPacker, Packed, Packer, Stored
 
 
 class Wanted(NamedTuple):
@@ -58,7 +58,7 @@ class Packing:
 
     def __init__(self) -> None:
         self._packers: dict[tuple[str, int], Packer] = {}
-        self._including: dict[tuple[str, int], Including] = {}
+        self._including: dict[tuple[str, int], IncludesPacker] = {}
         self._lines = Lines()
 
     def add(
@@ -75,7 +75,7 @@ class Packing:
         for ros in generations:
             key = package, ros
             self._packers.setdefault(key, Packer()).add(Stored(version, approximate, surface))
-            self._including.setdefault(key, Including()).add(version, surface.headers, approximate)
+            self._including.setdefault(key, IncludesPacker()).add(version, surface.headers, approximate)
         self._lines.add(package, version, generations, state, approximate)
 
     def pack_packages(self) -> dict[tuple[str, int], Packed]:

@@ -22,7 +22,7 @@ from ..impact.targets.snapshot import Snapshot, load_snapshot
 from ..impact.targets.surface.store import SurfaceHistory
 from ..impact.targets.version import parse
 from .jobs import Job, Result, Wanted, run
-from .surface.clones import Clone, Clones, Release, Version
+from .surface.clones import Clone, Clones, DistroVersion, Version
 from .surface_file import Packed, read_packages, write
 
 Versions = Literal["newest", "all"]
@@ -75,16 +75,16 @@ def plan(
     return _make_jobs(found), tuple(missing)
 
 
-def _list_newest(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+def _list_newest(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, DistroVersion]]:
     """What a distro has of each package."""
     for package in sorted(target.list_released()):
         home, version = target.find_repository(package), target.find_version(package)
         if home is not None and version is not None:
             _, url, branch = home
-            yield package, Release(target.distro, version, (url,) if url else (), branch)
+            yield package, DistroVersion(target.distro, version, (url,) if url else (), branch)
 
 
-def _list_released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+def _list_released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, DistroVersion]]:
     """What a distro ever had of each package."""
     urls: dict[int, dict[str, None]] = {}
     branches: dict[int, str] = {}
@@ -105,7 +105,9 @@ def _list_released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, 
         for package in names.split(" "):
             if (package, plain) not in told:
                 told.add((package, plain))
-                release = Release(target.distro, plain, tuple(urls.get(repository, ())), branches.get(repository, ""),
+                release = DistroVersion(target.distro, plain, tuple(
+                    urls.get(repository, ())
+                ), branches.get(repository, ""),
                                   target.find_version(package) != plain)  # fmt: skip
                 yield package, release
 

@@ -32,7 +32,7 @@ from .findings import (
     suppress,
     verify_settings,
 )
-from .report import Checked, Coverage, Report, ReportedPackage, ReportedTarget, SourceLines, report_target
+from .report import AnalysisCoverage, Checked, Report, ReportedPackage, ReportedTarget, SourceLines, report_target
 from .run_rules import Crashes, run_rules
 from .session import (
     OpenedWorkspace,
@@ -260,7 +260,7 @@ def _has_header(view: TargetView, path: str) -> bool:
 
 def measure_coverage(
     workspace: Workspace, gathered: ExtractedFacts, views: Sequence[TargetView], installed: InstallSpace | None = None
-) -> Coverage:
+) -> AnalysisCoverage:
     """How much was read and resolved."""
     broken = {path for package in workspace for path, _, _ in package.digest.problems}
     unresolved: dict[str, set[str]] = {}
@@ -283,4 +283,4 @@ def measure_coverage(
     if installed is not None:
         sound = sum(not binary.elf.problem for binary in installed.binaries)
         files, parsed = files + sound, parsed + sound
-    return Coverage(len(workspace.packages), files, parsed, counts)
+    return AnalysisCoverage(len(workspace.packages), files, parsed, counts)

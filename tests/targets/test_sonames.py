@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from rosimpact.databuild.sonames import Suite, build_table, parse_libraries, parse_symbols
+from rosimpact.databuild.sonames import SuiteLibraries, build_table, parse_libraries, parse_symbols
 from rosimpact.impact.facts.elf import AskedSymbolVersions, Elf
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.machine.loader import Loader
@@ -235,7 +235,9 @@ def test_how_far_symbols_reach_is_told_by_the_package_and_the_file():
 
 def test_a_table_says_which_platforms_have_a_library():
     table = build_table(
-        [Suite("one", {"a.so.1": "a1"}, {}), Suite("two", {"a.so.1": "a1x", "b.so.2": "b2"}, {"GLIBC": "2"})]
+        [SuiteLibraries(
+            "one", {"a.so.1": "a1"}, {}
+        ), SuiteLibraries("two", {"a.so.1": "a1x", "b.so.2": "b2"}, {"GLIBC": "2"})]
     )
     assert table.names.splitlines() == ["a.so.1 3 a1x", "b.so.2 2 b2"]
     assert (table.platforms, table.symbols) == (("one", "two"), ({}, {"GLIBC": "2"}))

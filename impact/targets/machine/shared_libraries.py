@@ -27,7 +27,7 @@ class Lack(NamedTuple):
     there: str
 
 
-class Lost(NamedTuple):
+class MissingSymbol(NamedTuple):
     """A C++ symbol without a version that none of the libraries which are loaded with a file has. name: as code writes
     it; library: which of them has others of the same class, empty where none has; more: how many others
     of it are lost."""
@@ -67,7 +67,7 @@ class Shelf:
         """The versions of symbols that are asked of a library and not there; None when it is not known."""
         raise NotImplementedError
 
-    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[MissingSymbol, ...] | None:
         """Symbols without a version that a file asks for and that are not there, one for each library; None when it is
         not known. own: the files that are installed with it, by name."""
         return None
@@ -107,7 +107,7 @@ class MachineShelf(Shelf):
             return None  # the loader only warns of a library without versions
         return tuple(Lack(version, _find_max(offers, version)) for version in asked.versions if version not in offers)
 
-    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[MissingSymbol, ...] | None:
         wanted = {u.name for u in asker.undefined if not u.version and not u.weak and u.name.startswith("_Z")}
         paths = self._loader.list_loaded(asker, folder, own) if wanted else ()
         if paths is None:
@@ -124,7 +124,7 @@ class MachineShelf(Shelf):
             # What is loaded as a plugin may find in its host what its own libraries never had.
             if owner or asker.program:
                 found.setdefault(owner, []).append(member.name)
-        return tuple(Lost(names[0], owner, len(names) - 1) for owner, names in found.items())
+        return tuple(MissingSymbol(names[0], owner, len(names) - 1) for owner, names in found.items())
 
 
 class DescribedShelf(Shelf):

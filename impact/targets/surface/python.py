@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ....edges.groups import group_pairs
-from ...facts.python.surface import LATE, Bound, PythonParameter, Taken, is_private
+from ...facts.python.surface import LATE, Bound, ImportedName, PythonParameter, is_private
 from .surface import InstalledModule, PythonSurface
 
 
@@ -39,7 +39,7 @@ class SurfaceNames:
         self.surface = surface
         self.modules: dict[str, InstalledModule] = {module.name: module for module in surface.modules}
         self._bound: dict[str, dict[str, list[Bound]]] = {}
-        self._taken: dict[str, dict[str, list[Taken]]] = {}
+        self._taken: dict[str, dict[str, list[ImportedName]]] = {}
 
     def find(self, dotted: str) -> PythonName | None:
         """What a dotted name (`rclpy.node.Node.create_timer`) stands for; None where it is surely not there, UNKNOWN
@@ -82,7 +82,7 @@ class SurfaceNames:
             known = self._bound[module.name] = group_pairs((bound.name, bound) for bound in module.surface.names)
         return known
 
-    def index_imports(self, module: InstalledModule) -> dict[str, list[Taken]]:
+    def index_imports(self, module: InstalledModule) -> dict[str, list[ImportedName]]:
         """The imports of a module by the name they bind."""
         known = self._taken.get(module.name)
         if known is None:
@@ -113,7 +113,7 @@ class SurfaceNames:
                 return found
         return UNKNOWN if unsure else None
 
-    def resolve_target(self, module: InstalledModule, taken: Taken) -> str:
+    def resolve_target(self, module: InstalledModule, taken: ImportedName) -> str:
         """The dotted name of the module that an import is about."""
         if not taken.level:
             return taken.module
@@ -122,7 +122,7 @@ class SurfaceNames:
         parts = parts[: len(parts) - up] if up else parts
         return ".".join([*parts, *([taken.module] if taken.module else [])])
 
-    def _resolve_import(self, module: InstalledModule, taken: Taken, depth: int) -> PythonName:
+    def _resolve_import(self, module: InstalledModule, taken: ImportedName, depth: int) -> PythonName:
         """What an import binds. It binds something, whatever becomes of it."""
         target = self.resolve_target(module, taken)
         if not taken.original:
@@ -140,7 +140,9 @@ class SurfaceNames:
             return PythonName(f"{target}.{taken.original}", "external")
         return found._replace(conditional=True) if taken.conditions else found
 
-    def _find_through_star(self, module: InstalledModule, taken: Taken, name: str, depth: int) -> PythonName | None:
+    def _find_through_star(
+        self, module: InstalledModule, taken: ImportedName, name: str, depth: int
+    ) -> PythonName | None:
         of = self.modules.get(self.resolve_target(module, taken))
         if of is None or depth > _DEPTH:
             return UNKNOWN
