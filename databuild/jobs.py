@@ -17,7 +17,7 @@ from .surface_changes import Lines
 from .surface_file import IncludesPacker, Packed, Packer, Stored
 
 
-class Wanted(NamedTuple):
+class CloneState(NamedTuple):
     """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it there."""
 
     version: str
@@ -34,7 +34,7 @@ class Job(NamedTuple):
     in it can be sent to another machine that sees the same clones. name: of the clone that most of them are in."""
 
     name: str
-    states: tuple[Wanted, ...]
+    states: tuple[CloneState, ...]
     trees: tuple[str, ...]
 
     def compute_key(self) -> str:

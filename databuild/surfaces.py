@@ -21,7 +21,7 @@ from ..impact.targets.distro.known import list_known_distros
 from ..impact.targets.snapshot import Snapshot, load_snapshot
 from ..impact.targets.surface.store import SurfaceHistory
 from ..impact.targets.version import parse
-from .jobs import Job, Result, Wanted, run
+from .jobs import CloneState, Job, Result, run
 from .surface.clones import Clone, Clones, DistroVersion, Version
 from .surface_file import Packed, read_packages, write
 
@@ -118,7 +118,7 @@ def _make_jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
     import networkx as nx
 
     clones: dict[str, Clone] = {}
-    states: dict[Wanted, list[str]] = {}
+    states: dict[CloneState, list[str]] = {}
     together = nx.Graph()
     sharing: dict[tuple[str, str, str, str], list[int]] = {}
     for (package, version, ros), (clone, revision, *_) in found.items():
@@ -128,7 +128,7 @@ def _make_jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
         whose = tuple(sorted(sharing[package, version, clone.name, revision]))
         if ros != whose[0]:
             continue  # the same state for both, which is read once
-        state = Wanted(version, os.path.abspath(clone.place), clone.name, revision, approximate, (), whose)
+        state = CloneState(version, os.path.abspath(clone.place), clone.name, revision, approximate, (), whose)
         states.setdefault(state, []).append(package)
         together.add_edge((clone.name, revision), package)
     number_of = {
@@ -136,7 +136,7 @@ def _make_jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
         for number, nodes in enumerate(nx.connected_components(together))
         for node in sorted(nodes, key=str)
     }
-    grouped: dict[int, list[Wanted]] = {}
+    grouped: dict[int, list[CloneState]] = {}
     for state, packages in states.items():
         grouped.setdefault(number_of[state.clone, state.revision], []).append(
             state._replace(packages=tuple(sorted(packages)))

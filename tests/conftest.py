@@ -226,7 +226,7 @@ def commands_built_once() -> Iterator[None]:
 
 _IN_ONE_PROCESS = {
     "rules", "model", "report", "targets", "facts", "flow", "test_bad_input.py", "test_base.py", "test_check.py",
-    "test_cli.py", "test_env_diff.py", "test_findings.py", "test_fix.py", "test_graph.py", "test_guarded.py",
+    "test_cli.py", "test_env_diff.py", "test_findings.py", "test_fix.py", "test_graph.py", "test_cross_target_fix.py",
     "test_impact_command.py", "test_installed.py", "test_new_rule.py", "test_one_change.py", "test_report_cache.py",
     "test_surface_command.py", "test_upgrade.py", "test_why.py",
 }  # fmt: skip

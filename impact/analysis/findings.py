@@ -519,7 +519,7 @@ def split_by_baseline(findings: Iterable[Finding], known: Counter[str]) -> tuple
 
 
 def prune_baseline(known: Counter[str], findings: Iterable[Finding]) -> tuple[str, int]:
-    """(the baseline's text without what is cured, how many entries went). Findings it does not know are not added."""
+    """(the baseline's text without what is fixed, how many entries went). Findings it does not know are not added."""
     _, old = split_by_baseline(findings, known)
     return format_baseline(old), sum(known.values()) - len(old)
 

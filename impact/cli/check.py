@@ -121,7 +121,7 @@ def _write_new_baseline(file: Path, report: Report, path: Path) -> int:
 
 
 def _prune(file: Path, known: str, report: Report, path: Path) -> None:
-    """Takes what is cured out of a baseline file."""
+    """Takes what is fixed out of a baseline file."""
     from ..analysis.findings import prune_baseline, read_baseline
 
     text, gone = prune_baseline(read_baseline(known), [*report.findings, *report.known])
