@@ -36,6 +36,7 @@ A rule gets a `TargetView`: the workspace (`view.workspace`) as one target (`vie
 | to know | ask |
 |---|---|
 | which packages to report on, and all of them | `for package in view`, `for package in view.list_built()` |
+| a package of the workspace by its name | `view.workspace.packages` |
 | what package.xml says | `package.manifest` |
 | what builds it: `ament_python`, `catkin` ... | `package.build_type` |
 | what CMakeLists.txt builds, installs and exports | `package.build` |
