@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
-from ..corpus.report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, group_of, read_labels
+from ..corpus.report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, find_group, read_labels
 from ..edges.console import run_command, say
 from ..edges.documents import load_json
 from ..edges.files import read_file, write_file
@@ -47,7 +47,7 @@ class Prediction(msgspec.Struct, frozen=True):
     @property
     def group(self) -> str:
         """What must not stand on both sides of a split, as Report has it."""
-        return group_of(self.id)
+        return find_group(self.id)
 
     @property
     def twice(self) -> bool:

@@ -33,7 +33,7 @@ def _label(
     for source in sources:
         if source not in SOURCES:
             raise CorpusError(f"--source {source}: unknown; choose one of {', '.join(SOURCES)}")
-    file = labels or _own_labels()
+    file = labels or _find_own_labels()
     name = annotator.strip() or _find_login()
     from .labelling import Session, find_journal, read_current_labels, read_journal, select_offered, select_reports
 
@@ -83,7 +83,7 @@ def _need_repositories(names: Sequence[str], reports: list[BugReport]) -> None:
             )
 
 
-def _own_labels() -> Path:
+def _find_own_labels() -> Path:
     """The labels of the corpus, where this is a checkout; an installed copy would be lost at the next upgrade."""
     if (LABELS_FILE.parents[1] / "pyproject.toml").exists():
         return LABELS_FILE

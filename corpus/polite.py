@@ -220,11 +220,11 @@ class Client:
 
     def _get(self, url, params, headers, lane, accept, whole, target=None) -> ServiceAnswer:
         sent = _add_query(url, params)
-        at = _place(url)
+        at = _shorten_url(url)
         limited = attempt = 0
         fault = ""
         for attempt in range(self._tries):
-            self._pace(lane)
+            self._wait_for_turn(lane)
             try:
                 answer = self._send_request(sent, dict(headers or {}), target)
             except _Fault as error:
@@ -274,7 +274,7 @@ class Client:
                 raise _Fault("cannot be reached") from None
             except (requests.RequestException, HTTPError, ValueError) as error:
                 raise CorpusError(
-                    f"{self.service}: {_place(url)}: cannot be asked ({type(error).__name__}); check the address"
+                    f"{self.service}: {_shorten_url(url)}: cannot be asked ({type(error).__name__}); check the address"
                 ) from None
             with response:
                 place = response.headers.get("location", "")
@@ -307,7 +307,7 @@ class Client:
                 size += len(chunk)
                 if size > largest:
                     raise CorpusError(
-                        f"{self.service}: {_place(response.url or '')} sends more than {format_size(largest)}; "
+                        f"{self.service}: {_shorten_url(response.url or '')} sends more than {format_size(largest)}; "
                         "check the address"
                     )
                 if time.monotonic() > until:
@@ -327,7 +327,7 @@ class Client:
             raise _Fault("ended its answer early")
         return b"".join(parts)
 
-    def _pace(self, lane: str) -> None:
+    def _wait_for_turn(self, lane: str) -> None:
         now = self.clock.get_time()
         until, why = self._not_before.get(lane, (0.0, ""))
         if until > now:
@@ -440,7 +440,7 @@ def _resolve_redirect(service: str, url: str, place: str) -> str:
     encrypted = (here.scheme, there.scheme) == ("http", "https") and ports == (None, None)
     if here.hostname != there.hostname or there.username or not (_get_origin(url) == _get_origin(onward) or encrypted):
         raise CorpusError(
-            f"{service}: {_place(url)} redirects to {there.scheme}://{there.hostname}, which is not asked; "
+            f"{service}: {_shorten_url(url)} redirects to {there.scheme}://{there.hostname}, which is not asked; "
             "check the address"
         )
     return onward
@@ -504,7 +504,7 @@ def _add_query(url: str, params: Mapping[str, object] | None) -> str:
     return f"{url}{'&' if '?' in url else '?'}{urlencode({name: str(value) for name, value in params.items()})}"
 
 
-def _place(url: str) -> str:
+def _shorten_url(url: str) -> str:
     try:
         parts = urlsplit(url)
     except ValueError:

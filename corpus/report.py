@@ -62,8 +62,8 @@ class BugReport(msgspec.Struct, frozen=True, omit_defaults=True):
 
     @property
     def group(self) -> str:
-        """Its group_of()."""
-        return group_of(self.id)
+        """Its find_group()."""
+        return find_group(self.id)
 
 
 class Label(msgspec.Struct, frozen=True):
@@ -97,7 +97,7 @@ def find_repository(id: str) -> str:
     return found.group(1).lower() if found else ""
 
 
-def group_of(id: str) -> str:
+def find_group(id: str) -> str:
     """What must not stand on both sides of a split: the repository, or the report itself where there is none."""
     return find_repository(id) or id
 

@@ -12,7 +12,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from .report import group_of
+from .report import find_group
 
 FOLDS = 5
 SEED = 20260822
@@ -35,7 +35,7 @@ def make_grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = F
         raise ValueError(f"{len(ids)} ids and {len(labels)} labels; give one label for each id")
     content: dict[str, Counter[str]] = defaultdict(Counter)
     for id, label in zip(ids, labels, strict=True):
-        content[group_of(id)][label] += 1
+        content[find_group(id)][label] += 1
     if folds < 2 or len(content) < folds:
         raise ValueError(f"{folds} folds of {len(content)} groups; give 2 to {len(content)}")
     total = Counter(labels)
@@ -54,7 +54,7 @@ def make_grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = F
         fold = min(range(folds), key=compute_unevenness)
         filled[fold].update(content[group])
         fold_of[group] = fold
-    return [fold_of[group_of(id)] for id in ids]
+    return [fold_of[find_group(id)] for id in ids]
 
 
 def make_grouped_splits(
@@ -97,5 +97,5 @@ def parse_day(date: str | None) -> str:
 
 def select_unseen(ids: Sequence[str], split: TrainTestSplit) -> list[int]:
     """The rows of a split's test side whose group is not on its train side."""
-    seen = {group_of(ids[i]) for i in split.train}
-    return [i for i in split.test if group_of(ids[i]) not in seen]
+    seen = {find_group(ids[i]) for i in split.train}
+    return [i for i in split.test if find_group(ids[i]) not in seen]

@@ -336,7 +336,7 @@ class CorpusStore:
     def _put(self, gathered: GatheredReport, now: float) -> ReportCounts:
         report = gathered.report
         key = report.id.lower()
-        self._own(key)
+        self._drop_alias(key)
         if gathered.asked and gathered.asked.lower() != key:
             self._move(gathered.asked.lower(), key)
         if report.same_as:
@@ -367,7 +367,7 @@ class CorpusStore:
         )
         return ReportCounts(changed=1) if rows and not rows[0][1] else ReportCounts(new=1)
 
-    def _own(self, key: str) -> None:
+    def _drop_alias(self, key: str) -> None:
         """A source says that a report has this id: it is no former name of another one, though it may have been."""
         if self._fetch_all("SELECT 1 FROM alias WHERE old = ?", (key,)):
             self._db.execute("DELETE FROM alias WHERE old = ?", (key,))
@@ -398,7 +398,7 @@ class CorpusStore:
                 url = report.url.replace(f"/{old}/", f"/{new}/")
                 packed = zlib.compress(msgspec.json.encode(msgspec.structs.replace(report, id=now_id, url=url)), _LEVEL)
             self._db.execute("UPDATE report SET id = ?, report = ? WHERE key = ?", (now_id, packed, key))
-            self._own(now_id.lower())
+            self._drop_alias(now_id.lower())
             self._move(key, now_id.lower())
 
     def _forget(self, id: str, source: str, now: float) -> int:

@@ -415,7 +415,7 @@ next version has where what it lacks is told; how many such names there have to 
 library, since each row costs all checks a little."""
 
 
-def start_of(name: str) -> str:
+def find_start(name: str) -> str:
     """The outermost namespace or class of a name: `cv::` of `cv::Mat`; empty for bare names, which macros often make of
     several words."""
     head, colons, _ = name.partition("::")
@@ -434,7 +434,7 @@ def find_other_libraries(suites: Suites, texts: Texts) -> list[DebianLibrary]:
             read |= fresh
             for _, sha in fresh:
                 for one in texts.get(sha).surface.entities:
-                    counts[start_of(one.name) if one.kind in _KINDS else ""][name] += 1
+                    counts[find_start(one.name) if one.kind in _KINDS else ""][name] += 1
     del counts[""]
     own: dict[str, list[str]] = defaultdict(list)
     for start, each in counts.items():

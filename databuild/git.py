@@ -138,7 +138,7 @@ def _read_side(repository: Any, merge: Any, choices: Sequence[tuple[str, ...]], 
     return [version for part in reversed(parts) for version in part]
 
 
-def place_on_line(repository: Any, oid: str, cuts: Mapping[str, int]) -> int | None:
+def find_on_line(repository: Any, oid: str, cuts: Mapping[str, int]) -> int | None:
     """When a commit stood on the line; beside it: the second after its nearest ancestor there, None without one."""
     beside = 0
     commit = repository[oid]

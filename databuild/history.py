@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from ..impact.targets.snapshot import Snapshot, load_snapshot
 from ..impact.targets.version import parse
-from .surface.releases import Release, find_git_directory, list_releases, tag_of
+from .surface.releases import Release, find_git_directory, find_tag, list_releases
 
 
 class RosFacts(NamedTuple):
@@ -176,7 +176,7 @@ def read_repositories(folder: Path, snapshot: Snapshot | None = None) -> RosFact
         releases = list_releases(data, clone.name.replace("+", "/"))
         surfaces = list(_read_tips(repository, reader, releases))
         for release in releases:
-            ref = tag_of(tags, release.version, clone.name.rpartition("+")[2])
+            ref = find_tag(tags, release.version, clone.name.rpartition("+")[2])
             tree = ref and _find_tree(repository, ref)
             if not tree:
                 continue

@@ -17,7 +17,7 @@ from ...impact.targets.version import parse
 from ...impact.tree import GitTree, TreeError
 from .compare import RepositorySurfaces
 from .package import build_tree_surfaces
-from .releases import find_git_directory, list_releases, normalize_url, tag_of
+from .releases import find_git_directory, find_tag, list_releases, normalize_url
 
 if TYPE_CHECKING:
     from ...impact.facts.store import Store
@@ -78,7 +78,7 @@ class Clone:
     def tag(self, version: str, package: str = "", distro: str = "") -> str | None:
         """The ref of the tag of a version: as developers name them, else as bloom does in release repositories. Of the
         latter one that holds the whole repository counts more than one that holds the package alone."""
-        found = tag_of(self.tags, version, self.name.rpartition("/")[2])
+        found = find_tag(self.tags, version, self.name.rpartition("/")[2])
         if found is not None:
             return found
         released = self.released.get((package, version), {})
@@ -132,7 +132,7 @@ class Clone:
             raise TreeError(f"{self.name}: there is no revision `{revision}`; `git tag` lists what there is") from None
 
 
-def release_of(package: str, asked: str, data: Snapshot) -> DistroVersion:
+def find_release(package: str, asked: str, data: Snapshot) -> DistroVersion:
     """What a distro (`jazzy`, `jazzy@2024-08-01`) has of a package. Raises VersionError when it does not have it."""
     name, _, date = asked.partition("@")
     try:
@@ -237,7 +237,7 @@ class Clones:
         if not asked or asked[0].isdigit():
             yield from _find_tagged_versions(clones, package, asked)
             return
-        release = release_of(package, asked, self._data)
+        release = find_release(package, asked, self._data)
         if not self._find_release_clones(package, release):
             url = release.urls[0]
             raise VersionError(

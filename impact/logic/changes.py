@@ -178,7 +178,7 @@ def _compare_statements(
     kinds: list[guards.Kind] = []
     whys: list[str] = []
     starts: list[str] = []
-    for was, is_now in _starts_of(first, second, names):
+    for was, is_now in _pair_starts(first, second, names):
         old_ways = [way for way in first.ways if way.start in was]
         new_ways = [way for way in second.ways if way.start in is_now]
         if not old_ways or not new_ways:
@@ -296,7 +296,7 @@ def _collect_condition_names(ways: Ways, names: Renames) -> set[tuple[str, ...]]
 # What makes it run
 
 
-def _starts_of(
+def _pair_starts(
     first: PublishStatement, second: PublishStatement, names: Renames
 ) -> Iterator[tuple[frozenset[StatementStart], frozenset[StatementStart]]]:
     """What makes a statement run, before and after, as far as one took the other's place; empty where nothing did."""

@@ -49,10 +49,10 @@ from .python_values import (
     YamlContent,
     add_conditions,
     calculate_result,
+    find_index,
     get_source,
     join_conditions,
     make_parent_path,
-    place_in,
 )
 
 MOST_STEPS = 200_000
@@ -188,7 +188,7 @@ class Walker:
             key = self.evaluate(target.slice)
             if isinstance(holder, Pairs):
                 holder.set(key, self.add_conditions(value, holder.depth))
-            elif isinstance(holder, Items) and (place := place_in(holder, key)) is not None:
+            elif isinstance(holder, Items) and (place := find_index(holder, key)) is not None:
                 holder.items[place] = value
         elif isinstance(target, ast.Attribute):
             holder = self.evaluate(target.value)
@@ -423,7 +423,7 @@ class Walker:
             found = holder.get(key)
             if found is not None and not isinstance(found, ConditionalValue):
                 return found
-        if isinstance(holder, Items) and (place := place_in(holder, key)) is not None:
+        if isinstance(holder, Items) and (place := find_index(holder, key)) is not None:
             return holder.items[place]
         return Unknown(get_source(node))
 

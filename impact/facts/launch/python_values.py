@@ -168,7 +168,7 @@ def add_conditions(value: Any, conditions: tuple[ActionCondition, ...]) -> Any:
     return ConditionalValue(value, conditions)
 
 
-def place_in(holder: Items, key: Any) -> int | None:
+def find_index(holder: Items, key: Any) -> int | None:
     """The place in a list that an index means, None when it is not known to be there."""
     if not isinstance(key, LaunchConstant) or not isinstance(key.value, int):
         return None

@@ -75,7 +75,7 @@ class SurfaceNames:
     def _is_hidden(self, dotted: str) -> bool:
         return any(dotted == name or dotted.startswith(f"{name}.") for name in self.surface.unknown)
 
-    def bound(self, module: InstalledModule) -> dict[str, list[Bound]]:
+    def list_bound(self, module: InstalledModule) -> dict[str, list[Bound]]:
         """The names of a module in order of the source, those of classes dotted."""
         known = self._bound.get(module.name)
         if known is None:
@@ -93,7 +93,7 @@ class SurfaceNames:
     def _find_in_module(self, module: InstalledModule | None, where: str, name: str, depth: int) -> PythonName | None:
         dotted = f"{where}.{name}"
         if module is not None:
-            written = self.bound(module).get(name)
+            written = self.list_bound(module).get(name)
             if written:
                 return _make_entry(dotted, written)
             for taken in reversed(self.index_imports(module).get(name, ())):
@@ -162,7 +162,7 @@ class SurfaceNames:
         if split is None or entry.bound is None or depth > _DEPTH:
             return UNKNOWN
         module, inside = split
-        written = self.bound(module).get(f"{inside}.{name}")
+        written = self.list_bound(module).get(f"{inside}.{name}")
         if written:
             return _make_entry(f"{entry.where}.{name}", written)
         if any(t.scope == inside and t.name == name for t in module.surface.imports):
@@ -217,9 +217,9 @@ class SurfaceNames:
         for module in self.surface.modules:
             if any(is_private(part) for part in module.name.split(".")):
                 continue
-            for name in self.bound(module):
+            for name in self.list_bound(module):
                 if "." not in name and not is_private(name) and not name.startswith("__"):
-                    found[f"{module.name}.{name}"] = _make_entry(f"{module.name}.{name}", self.bound(module)[name])
+                    found[f"{module.name}.{name}"] = _make_entry(f"{module.name}.{name}", self.list_bound(module)[name])
             for name in self.iterate_reexported(module):
                 dotted = f"{module.name}.{name}"
                 entry = self._find_in_module(module, module.name, name, 0)
@@ -246,7 +246,7 @@ class SurfaceNames:
         if module.surface.all is not None:
             yield from (name for name in module.surface.all if not name.startswith("+"))
             return
-        yield from (name for name in self.bound(module) if "." not in name and not name.startswith("_"))
+        yield from (name for name in self.list_bound(module) if "." not in name and not name.startswith("_"))
         if module.package and module.name not in seen:
             yield from self.iterate_reexported(module, seen)
 
@@ -257,7 +257,7 @@ class SurfaceNames:
             return {}
         module, inside = split
         found = {}
-        for name, written in self.bound(module).items():
+        for name, written in self.list_bound(module).items():
             head, _, last = name.rpartition(".")
             if head == inside and (last == "__init__" or not (is_private(last) or last in _OBJECT)):
                 found[last] = _make_entry(f"{entry.where}.{last}", written)
