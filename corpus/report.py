@@ -104,13 +104,13 @@ def find_group(id: str) -> str:
 
 def read_reports(path: Path) -> Iterator[BugReport]:
     """The reports of a JSON Lines file, one at a time. Raises CorpusError."""
-    return _read(path, BugReport)
+    return _read(path, BugReport, "report")
 
 
 def read_labels(path: Path = LABELS_FILE) -> list[Label]:
     """The labels of a file, by default those of the corpus. Raises CorpusError when one breaks the guide's rules."""
     found: dict[str, Label] = {}
-    for number, label in enumerate(_read(path, Label), 1):
+    for number, label in enumerate(_read(path, Label, "label"), 1):
         fault = find_faults(label)
         if label.id in found:
             fault = "is there twice"
@@ -148,7 +148,7 @@ def write_rows(path: Path, rows: Iterable[msgspec.Struct | msgspec.Raw]) -> int:
     return count
 
 
-def _read(path: Path, kind: type[_Row]) -> Iterator[_Row]:
+def _read(path: Path, kind: type[_Row], name: str) -> Iterator[_Row]:
     decoder = msgspec.json.Decoder(kind)
     longest = get_limits().text
     try:
@@ -165,8 +165,6 @@ def _read(path: Path, kind: type[_Row]) -> Iterator[_Row]:
                 try:
                     yield decoder.decode(line)
                 except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-                    raise CorpusError(
-                        f"{path}:{number}: is no {kind.__name__.lower()} ({error}); mend the line"
-                    ) from None
+                    raise CorpusError(f"{path}:{number}: is no {name} ({error}); mend the line") from None
     except OSError as error:
         raise CorpusError(f"{path}: cannot be read: {error.strerror}; give a JSON Lines file") from None

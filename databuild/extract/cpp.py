@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ...impact.facts.cpp.lexical import Scan, find_words, collect_includes, scan
+from ...impact.facts.cpp.lexical import Scan, collect_includes, find_words, scan
 from ...impact.facts.surface import Entity, HeaderSurface
 from .cpp_declarations import (
     ClassHead,

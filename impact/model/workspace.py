@@ -573,7 +573,7 @@ class _Linker:
                 except msgspec.MsgspecError:
                     continue  # of another version: made anew
                 headers = {path: described for path, described in read.items() if " " in described}
-                if not all(self.offered.still_says(path, described) for path, described in headers.items()):
+                if not all(self.offered.is_unchanged(path, described) for path, described in headers.items()):
                     continue
                 if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items() if path not in headers):
                     found[place.path] = _Joined(before, packed, None)
