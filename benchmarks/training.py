@@ -49,7 +49,7 @@ def one(count: int, train: bool) -> None:
     """Measures one size in this process and prints its line."""
     from rosimpact.classifier import features, training
     from rosimpact.classifier.reading import read
-    from rosimpact.corpus.report import Report
+    from rosimpact.corpus.report import BugReport
 
     groups = [f"o/r{number % HOMES}" for number in range(count)]
     start = time.perf_counter()
@@ -62,7 +62,7 @@ def one(count: int, train: bool) -> None:
     if train:
         start = time.perf_counter()
         rows = [
-            training.Example(Report(f"{group}#{n}", "https://x", "github", None, "", ""), LABELS[n % 5], False)
+            training.Example(BugReport(f"{group}#{n}", "https://x", "github", None, "", ""), LABELS[n % 5], False)
             for n, group in enumerate(groups)
         ]
         training.fit(training.Examples(rows, counts))

@@ -46,8 +46,8 @@ _KEYWORDS = (
 )
 
 
-class Judged(NamedTuple):
-    """What was said of each report by a model that had not seen its repository. chances: reports by LABELS."""
+class Predictions(NamedTuple):
+    """What a model predicts for each report that had not seen its repository. chances: reports by LABELS."""
 
     chances: np.ndarray
     abstained: np.ndarray
@@ -61,10 +61,10 @@ class Score(NamedTuple):
     high: float
 
 
-def judge_out_of_fold(
+def predict_out_of_fold(
     found: Examples, settings: Settings = EVERYTHING, *, calibrated: bool, seed: int = SEED,
     progress: Progress | None = None, name: str = "",
-) -> Judged:  # fmt: skip
+) -> Predictions:  # fmt: skip
     """Judges every report by a model trained on other repositories. calibrated: in each fold, which takes longer."""
     chances = np.zeros((len(found.rows), len(LABELS)))
     abstained = np.zeros(len(found.rows), bool)
@@ -80,7 +80,7 @@ def judge_out_of_fold(
             abstained[judge] = part.max(axis=1) < calibration.threshold
         if progress:
             progress(name or "cross-validation", number, len(parts))
-    return Judged(chances, abstained)
+    return Predictions(chances, abstained)
 
 
 def judge_by_rivals(found: Examples, seed: int = SEED, progress: Progress | None = None) -> dict[str, np.ndarray]:
@@ -160,10 +160,10 @@ def evaluate(
     progress: Progress | None = None,
 ) -> dict:  # fmt: skip
     """All the numbers, as JSON takes them. progress: called with what is done, how many of how many."""
-    judged = judge_out_of_fold(found, calibrated=True, seed=seed, progress=progress)
-    truth, said = list_truths(found), judged.chances.argmax(axis=1)
+    predicted = predict_out_of_fold(found, calibrated=True, seed=seed, progress=progress)
+    truth, said = list_truths(found), predicted.chances.argmax(axis=1)
     groups, reports = found.groups, [example.report for example in found.rows]
-    sure, right = judged.chances.max(axis=1), said == truth
+    sure, right = predicted.chances.max(axis=1), said == truth
 
     def score_rows(rows: np.ndarray) -> dict:
         return {
@@ -191,7 +191,7 @@ def evaluate(
     for source in sorted({report.source for report in reports}):
         subsets[f"source {source}"] = np.array([report.source == source for report in reports])
     order = np.argsort(-sure, kind="stable")
-    answered = ~judged.abstained
+    answered = ~predicted.abstained
     result = {
         "reports": len(reports),
         "repositories": len(set(groups)),
@@ -209,24 +209,24 @@ def evaluate(
         "abstaining": {"answered": float(answered.mean()), "right": _share(right, answered)},
     }
     result["beside"] = score_rivals(
-        found, judged, seed=seed, resamples=resamples, ablations=ablations, progress=progress
+        found, predicted, seed=seed, resamples=resamples, ablations=ablations, progress=progress
     )
     return result
 
 
 def score_rivals(
-    found: Examples, judged: Judged, *, seed: int = SEED, resamples: int = RESAMPLES, ablations: bool = True,
+    found: Examples, predicted: Predictions, *, seed: int = SEED, resamples: int = RESAMPLES, ablations: bool = True,
     progress: Progress | None = None,
 ) -> dict[str, dict]:  # fmt: skip
     """Scores of simpler means and of the classifier with parts left out, by name, as JSON takes them.
 
-    judged: what the whole classifier says of the same reports; its own scores stand among the ablations.
+    predicted: what the whole classifier says of the same reports; its own scores stand among the ablations.
     """
     said = judge_by_rivals(found, seed, progress)
     if ablations:
-        said[WHOLE] = judged.chances.argmax(axis=1)
+        said[WHOLE] = predicted.chances.argmax(axis=1)
         for name, settings in ABLATIONS.items():
-            part = judge_out_of_fold(found, settings, calibrated=False, seed=seed, progress=progress, name=name)
+            part = predict_out_of_fold(found, settings, calibrated=False, seed=seed, progress=progress, name=name)
             said[name] = part.chances.argmax(axis=1)
     truth, groups, twice = list_truths(found), found.groups, _select_twice_original(found)
     return {

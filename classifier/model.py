@@ -59,16 +59,16 @@ class Model:
     """A trained classifier. arrays: as in the file. Raises ClassifierError for one made for other signs or formats."""
 
     def __init__(self, arrays: dict[str, np.ndarray], name: str = "the model"):
-        cure = "train it again with `rosimpact classifier train`, or install the rosimpact it came with"
+        remedy = "train it again with `rosimpact classifier train`, or install the rosimpact it came with"
         try:
             self.about: dict = json.loads(arrays["about"].tobytes())
             format, digest = self.about["format"], self.about["signs"]
         except (KeyError, ValueError, TypeError, RecursionError):
-            raise ClassifierError(f"{name}: is no model of rosimpact; {cure}") from None
+            raise ClassifierError(f"{name}: is no model of rosimpact; {remedy}") from None
         if format != FORMAT or digest != DIGEST:
             raise ClassifierError(
                 f"{name}: was trained by rosimpact {self.about.get('rosimpact', '?')} for other features than this "
-                f"version reads; {cure}"
+                f"version reads; {remedy}"
             )
         try:
             self.arrays = arrays
@@ -100,7 +100,7 @@ class Model:
             if not all(len(known) == 3 and all(isinstance(text, str) for text in known) for known in self.seen):
                 raise ValueError("known")
         except (KeyError, ValueError, TypeError, IndexError, RecursionError):
-            raise ClassifierError(f"{name}: is incomplete; {cure}") from None
+            raise ClassifierError(f"{name}: is incomplete; {remedy}") from None
 
     def compute_scores(self, reading: ReportReading) -> np.ndarray:
         """The score of each label, before calibration."""

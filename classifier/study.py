@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 
-from ..corpus.report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, group_of, read_labels
+from ..corpus.report import LABELS, LABELS_FILE, SOURCES, WORDINGS, CorpusError, find_group, read_labels
 from ..edges.console import run_command, say
 from ..edges.documents import load_json
 from ..edges.files import read_file, write_file
 from ..edges.limits import get_limits
 
 if TYPE_CHECKING:
-    from .evaluate import Judged
+    from .evaluate import Predictions
     from .training import Example
 
 PREDICTIONS, BESIDE = "triage_predictions.jsonl", "triage_beside.json"
@@ -47,7 +47,7 @@ class Prediction(msgspec.Struct, frozen=True):
     @property
     def group(self) -> str:
         """What must not stand on both sides of a split, as Report has it."""
-        return group_of(self.id)
+        return find_group(self.id)
 
     @property
     def twice(self) -> bool:
@@ -87,14 +87,14 @@ def measure(reports: Path, progress: Callable[[str, int, int], None] | None = No
 
     try:
         found = read_examples(LABELS_FILE, reports, progress)
-        judged = e.judge_out_of_fold(found, calibrated=True, progress=progress)
-        others = e.score_rivals(found, judged, progress=progress)
+        predicted = e.predict_out_of_fold(found, calibrated=True, progress=progress)
+        others = e.score_rivals(found, predicted, progress=progress)
     except ClassifierError as error:
         raise CorpusError(str(error)) from None
-    return Measured(make_predictions(found.rows, judged), others, compute_digests(found.rows))
+    return Measured(make_predictions(found.rows, predicted), others, compute_digests(found.rows))
 
 
-def make_predictions(found: Sequence[Example], judged: Judged) -> list[Prediction]:
+def make_predictions(found: Sequence[Example], predicted: Predictions) -> list[Prediction]:
     """The facts of labelled reports and of what was said of them."""
     decided = {label.id: label.decided for label in read_labels()}
     return [
@@ -103,7 +103,7 @@ def make_predictions(found: Sequence[Example], judged: Judged) -> list[Predictio
             len(example.report.title) + len(example.report.body), example.report.source, example.report.wording,
             decided.get(example.report.id, "single"),
         )
-        for example, chances, silent in zip(found, judged.chances, judged.abstained, strict=True)
+        for example, chances, silent in zip(found, predicted.chances, predicted.abstained, strict=True)
     ]  # fmt: skip
 
 

@@ -21,7 +21,7 @@ from sklearn.decomposition import TruncatedSVD
 from sklearn.linear_model import LogisticRegression
 from sklearn.model_selection import StratifiedGroupKFold
 
-from ..corpus.report import LABELS, CorpusError, Report, read_labels
+from ..corpus.report import LABELS, BugReport, CorpusError, read_labels
 from ..corpus.store import open_reports
 from .features import Counts, Signs, Words, count
 from .model import FORMAT, ClassifierError, Model, compute_softmax, pack_json, pack_lines
@@ -45,7 +45,7 @@ _DAY = re.compile(r"\d{4}-\d\d-\d\d\Z")
 class Example(NamedTuple):
     """A report and its label. twice: whether two annotators read it."""
 
-    report: Report
+    report: BugReport
     label: str
     twice: bool
 

@@ -195,7 +195,7 @@ def fetch(url: str) -> Post:
     from ..corpus.sources import github, stack_exchange
     from ..corpus.tokens import find_github_token, find_stack_exchange_key
 
-    host, path, shown = _place(url)
+    host, path, shown = _split_url(url)
     issue = _ISSUE.match(path)
     question = _QUESTION.match(path)
     site = _SITE.match(host)
@@ -242,7 +242,7 @@ def fetch(url: str) -> Post:
     return Post(report.id, report.title, report.body)
 
 
-def _place(url: str) -> tuple[str, str, str]:
+def _split_url(url: str) -> tuple[str, str, str]:
     """(host, path, the address without what may be secret) of a page. Raises ClassifierError for one that is none."""
     try:
         parts = urlsplit(url)

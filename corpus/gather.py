@@ -6,8 +6,8 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple, Protocol
 
-from .report import Report, find_repository
-from .store import AskedReport, GatheredReport, Page, Store, Taken
+from .report import BugReport, find_repository
+from .store import AskedReport, CorpusStore, GatheredPage, GatheredReport, ReportCounts
 
 _NUMBER = re.compile("[0-9]{1,12}")
 _REFRESH = "refresh"
@@ -20,7 +20,7 @@ class ReportSource(Protocol):
     @property
     def name(self) -> str: ...
 
-    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[GatheredPage]:
         """The pages that follow a state; from the first one for None."""
         ...
 
@@ -38,12 +38,14 @@ class Progress(NamedTuple):
 
     done: int
     of: int | None
-    taken: Taken
+    taken: ReportCounts
 
 
-def gather(source: ReportSource, store: Store, tell: Callable[[Progress], None] = lambda progress: None) -> Taken:
+def gather(
+    source: ReportSource, store: CorpusStore, tell: Callable[[Progress], None] = lambda progress: None
+) -> ReportCounts:
     """Reads a source to its end, from where it was left. Whatever is raised on the way, the pages told are stored."""
-    taken = Taken()
+    taken = ReportCounts()
     for page in source.read_pages(store.read_state(source.name)):
         taken = taken.add(store.take(source.name, page))
         tell(Progress(page.done, page.of, taken))
@@ -58,7 +60,7 @@ def find_service(id: str) -> str:
     return name if name in ("ros-answers", "robotics-se") and _NUMBER.fullmatch(number) else ""
 
 
-def find_missing(store: Store, ids: Iterable[str]) -> dict[str, list[str]]:
+def find_missing(store: CorpusStore, ids: Iterable[str]) -> dict[str, list[str]]:
     """Those ids, by service, that the store knows nothing of; what is known to be gone is not missing."""
     found: dict[str, list[str]] = {}
     for id in ids:
@@ -71,28 +73,28 @@ def hydrate(
     service: Service,
     source: str,
     ids: list[str],
-    store: Store,
+    store: CorpusStore,
     tell: Callable[[Progress], None] = lambda progress: None,
-) -> Taken:
+) -> ReportCounts:
     """Asks a service for ids and stores each answer as it comes. source: one of report.SOURCES."""
-    taken = Taken()
+    taken = ReportCounts()
     for done, asked in enumerate(service.ask((id, "") for id in ids), 1):
         taken = taken.add(_settle(asked, source, store))
         tell(Progress(done, len(ids), taken))
     return taken
 
 
-def import_reports(reports: Iterable[Report], store: Store, ids: frozenset[str]) -> tuple[Taken, int]:
+def import_reports(reports: Iterable[BugReport], store: CorpusStore, ids: frozenset[str]) -> tuple[ReportCounts, int]:
     """Stores the texts of ids that are at hand already; those that the store has are left as they are. Returns what
     became of them, and how many reports were of no such id."""
-    taken, others = Taken(), 0
+    taken, others = ReportCounts(), 0
     part: list[GatheredReport] = []
     for report in reports:
         kept = store.find_kept(report.id)
         if report.id not in ids:
             others += 1
         elif kept is not None and not kept.gone:
-            taken = taken.add(Taken(same=1))
+            taken = taken.add(ReportCounts(same=1))
         else:
             part.append(GatheredReport(report, origin="import"))
             if len(part) == _AT_ONCE:
@@ -102,11 +104,11 @@ def import_reports(reports: Iterable[Report], store: Store, ids: frozenset[str])
 
 def refresh(
     services: Callable[[str, int], Service],
-    store: Store,
+    store: CorpusStore,
     sources: Iterable[str],
     limit: int | None = None,
     tell: Callable[[Progress], None] = lambda progress: None,
-) -> Taken:
+) -> ReportCounts:
     """Asks for every report again, longest ago first: edits are taken over, what is deleted loses its text here.
 
     services: gives the service for a source and a number of reports. limit: of reports to ask for. An earlier refresh
@@ -114,11 +116,11 @@ def refresh(
     """
     state = store.read_state(_REFRESH) or {}
     started = float(state.get("started") or store.now())
-    store.take(_REFRESH, Page([], {"started": started}))
+    store.take(_REFRESH, GatheredPage([], {"started": started}))
     sources = list(sources)
     counts = {source: store.count_to_check(source, started) for source in sources}
     total = min(sum(counts.values()), limit if limit is not None else sum(counts.values()))
-    taken, done = Taken(), 0
+    taken, done = ReportCounts(), 0
     for source in sources:
         if not counts[source] or done >= total:
             continue
@@ -137,15 +139,15 @@ def refresh(
             if done >= total:
                 break
     if all(store.count_to_check(source, started) == 0 for source in sources):
-        store.take(_REFRESH, Page([], {}, finished=True))
+        store.take(_REFRESH, GatheredPage([], {}, finished=True))
     return taken
 
 
-def _settle(asked: AskedReport, source: str, store: Store) -> Taken:
+def _settle(asked: AskedReport, source: str, store: CorpusStore) -> ReportCounts:
     if asked.gathered is not None:
         return store.put([asked.gathered])
     if asked.what == "gone":
         store.forget([(asked.id, source)])
-        return Taken(gone=1)
+        return ReportCounts(gone=1)
     store.mark_seen([asked.id])
-    return Taken(same=1)
+    return ReportCounts(same=1)

@@ -17,7 +17,7 @@ from ..edges.console import escape, format_count, run_command, say, write
 from .polite import Client, Later, normalize_address
 from .progress import Reporter, describe_outcome, format_span
 from .report import LABELS_FILE, SOURCES, CorpusError, read_labels, read_reports, write_rows
-from .store import Store, open_reports, store_path
+from .store import CorpusStore, open_reports, store_path
 
 if TYPE_CHECKING:
     from .gather import ReportSource, Service
@@ -51,7 +51,7 @@ def gather(
 
     def work() -> int:
         day = _parse_day(since)
-        with Store(store_path(manner.store)) as store:
+        with CorpusStore(store_path(manner.store)) as store:
             for source, client in _make_sources(what, day, pulls, search, tags, archive, pages, manner, store):
                 _gather_source(source, client, store, manner)
         return 0
@@ -66,7 +66,7 @@ def hydrate(labels: Path | None, texts: Path | None, *, archive: Path | None, ma
         from . import gather as jobs
 
         ids = [label.id for label in read_labels(labels or LABELS_FILE)]
-        with Store(store_path(manner.store)) as store:
+        with CorpusStore(store_path(manner.store)) as store:
             store.want(ids)
             if texts:
                 taken, others = jobs.import_reports(read_reports(texts), store, frozenset(ids))
@@ -91,7 +91,7 @@ def refresh(sources: Sequence[str], limit: int | None, *, archive: Path | None, 
         for source in sources:
             if source not in SOURCES:
                 raise CorpusError(f"--source {source}: unknown; choose one of {', '.join(SOURCES)}")
-        with Store(_find_store(manner.store)) as store, Reporter(
+        with CorpusStore(_find_store(manner.store)) as store, Reporter(
             "refresh", verbose=manner.verbose, quiet=manner.quiet
         ) as reporter:  # fmt: skip
             services = _make_service_finder(store, archive, manner, reporter)
@@ -127,7 +127,7 @@ def print_status(*, store: Path | None) -> int:
     """Prints what is in the store. Returns the exit status."""
 
     def work() -> int:
-        with Store(_find_store(store)) as opened:
+        with CorpusStore(_find_store(store)) as opened:
             write(f"{opened.path}: {opened.path.stat().st_size / 1e6:.1f} MB")
             for source, here, labelled, gone in opened.count_reports():
                 write(f"  {source}: {format_count(here, 'report')}, {labelled:,} of them labelled; {gone:,} gone")
@@ -155,7 +155,7 @@ def _run_until_later(work: Callable[[], int]) -> int:
 
 def _make_sources(
     what: str, since: str, pulls: bool, search: str, tags: Sequence[str], archive: Path | None, pages: Path | None,
-    manner: Manner, store: Store,
+    manner: Manner, store: CorpusStore,
 ) -> list[tuple[ReportSource, Client | None]]:  # fmt: skip
     """The sources that a command names, each with the client it speaks through."""
     from .sources import ros_answers
@@ -178,10 +178,10 @@ def _make_sources(
             raise CorpusError("github: names no repository; write github:owner/name, or give --search")
         return [(Listed(server, repository, since=since, kinds=kinds), server.client)]
     if service == "stack-exchange":
-        from .sources.stack_exchange import Tagged
+        from .sources.stack_exchange import TaggedQuestions
 
         exchange = _make_stack_exchange(manner)
-        return [(Tagged(exchange, tag, since=since), exchange.client) for tag in tags or ("ros", "ros2")]
+        return [(TaggedQuestions(exchange, tag, since=since), exchange.client) for tag in tags or ("ros", "ros2")]
     if service == "ros-answers":
         if pages:
             return [(ros_answers.SavedPages(pages, since=since), None)]
@@ -202,7 +202,7 @@ def _refuse_stray_options(name: str, **given: object) -> None:
             raise CorpusError(f"--{flag}: says nothing to {name}; leave it out")
 
 
-def _gather_source(source: ReportSource, client: Client | None, store: Store, manner: Manner) -> None:
+def _gather_source(source: ReportSource, client: Client | None, store: CorpusStore, manner: Manner) -> None:
     from . import gather as jobs
 
     with Reporter(source.name, verbose=manner.verbose, quiet=manner.quiet) as reporter:
@@ -214,7 +214,7 @@ def _gather_source(source: ReportSource, client: Client | None, store: Store, ma
     write(f"{source.name}: {describe_outcome(taken)}")
 
 
-def _ask_for_missing(todo: dict[str, list[str]], store: Store, archive: Path | None, manner: Manner) -> None:
+def _ask_for_missing(todo: dict[str, list[str]], store: CorpusStore, archive: Path | None, manner: Manner) -> None:
     from . import gather as jobs
 
     for id in todo.get("", ()):
@@ -228,7 +228,7 @@ def _ask_for_missing(todo: dict[str, list[str]], store: Store, archive: Path | N
             jobs.hydrate(service, source, ids, store, reporter.report_page)
 
 
-def _tell_hydrated(store: Store, ids: list[str]) -> None:
+def _tell_hydrated(store: CorpusStore, ids: list[str]) -> None:
     kept = {id: store.find_kept(id) for id in ids}
     gone = [id for id, known in kept.items() if known is not None and known.gone]
     here = sum(known is not None and not known.gone for known in kept.values())
@@ -239,7 +239,7 @@ def _tell_hydrated(store: Store, ids: list[str]) -> None:
 
 
 def _make_service_finder(
-    store: Store, archive: Path | None, manner: Manner, reporter: Reporter
+    store: CorpusStore, archive: Path | None, manner: Manner, reporter: Reporter
 ) -> Callable[[str, int], Service]:
     """Who is asked for reports of a source, by its name and how many they are."""
 
@@ -298,7 +298,7 @@ def _make_stack_exchange(manner: Manner) -> StackExchange:
     return stack_exchange.StackExchange(_make_client("Stack Exchange", manner, spacing=0.1, secrets=[key]), api, key)
 
 
-def _fetch_tarball(store: Store, manner: Manner, tell: Callable[[str], None]) -> Path:
+def _fetch_tarball(store: CorpusStore, manner: Manner, tell: Callable[[str], None]) -> Path:
     """The archive as a file beside the store, fetched anew once a day. tell: called with a line for each wait, too."""
     from .sources import ros_answers
 

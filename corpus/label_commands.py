@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..edges.console import escape, escape_json, format_count, format_json, run_command, say, write, write_json
-from .report import LABELS_FILE, SOURCES, CorpusError, Report, find_repository
+from .report import LABELS_FILE, SOURCES, BugReport, CorpusError, find_repository
 
 if TYPE_CHECKING:
     from .labelling import Suggest
@@ -33,7 +33,7 @@ def _label(
     for source in sources:
         if source not in SOURCES:
             raise CorpusError(f"--source {source}: unknown; choose one of {', '.join(SOURCES)}")
-    file = labels or _own_labels()
+    file = labels or _find_own_labels()
     name = annotator.strip() or _find_login()
     from .labelling import Session, find_journal, read_current_labels, read_journal, select_offered, select_reports
 
@@ -65,14 +65,14 @@ def _label(
     return 0
 
 
-def _explain_empty(mode: str, texts: list[Report]) -> str:
+def _explain_empty(mode: str, texts: list[BugReport]) -> str:
     if not texts:
         return "no report is left by --source and --repository; leave one of them out"
     kind = {"first": "unlabelled", "second": "read by one annotator other than you", "disagreements": "disputed"}[mode]
     return f"none of {format_count(len(texts), 'report')} is {kind}"
 
 
-def _need_repositories(names: Sequence[str], reports: list[Report]) -> None:
+def _need_repositories(names: Sequence[str], reports: list[BugReport]) -> None:
     """Raises CorpusError for a repository of which there is no report: its name is misspelt, or it is not gathered."""
     there = {find_repository(report.id) for report in reports} if names else set()
     for name in names:
@@ -83,14 +83,14 @@ def _need_repositories(names: Sequence[str], reports: list[Report]) -> None:
             )
 
 
-def _own_labels() -> Path:
+def _find_own_labels() -> Path:
     """The labels of the corpus, where this is a checkout; an installed copy would be lost at the next upgrade."""
     if (LABELS_FILE.parents[1] / "pyproject.toml").exists():
         return LABELS_FILE
     raise CorpusError("label: no file for the labels; give one with --labels, it is made when it is not there")
 
 
-def _load_reports(chosen: Path | None) -> list[Report]:
+def _load_reports(chosen: Path | None) -> list[BugReport]:
     from .store import open_reports, store_path
 
     path = store_path(chosen)

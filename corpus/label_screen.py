@@ -20,7 +20,7 @@ from rich.text import Text
 
 from ..edges.console import escape_lines
 from .labelling import WHY_LIMIT, GivenLabel, Session, Suggest
-from .report import KINDS, LABELS, PHASES, CorpusError, Report
+from .report import KINDS, LABELS, PHASES, BugReport, CorpusError
 
 GUIDE_FILE = Path(__file__).parent / "GUIDE.md"
 _TITLES = {"first": "first reading", "second": "second reading, blind", "disagreements": "deciding disagreements"}
@@ -249,7 +249,7 @@ class Screen:
         more = f"{below:,} more lines" if below else "end"
         return Panel(_Lines(shown), title=Text(clean(report.id)), subtitle=more, border_style="green")
 
-    def _lay_out(self, report: Report, console: Console, width: int) -> list[list[Segment]]:
+    def _lay_out(self, report: BugReport, console: Console, width: int) -> list[list[Segment]]:
         key = (report.id, width, self._raw)
         if key not in self._lines:
             self._lines.clear()

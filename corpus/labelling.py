@@ -20,7 +20,7 @@ import msgspec
 
 from ..edges.files import check_writable_path, read_file
 from ..edges.limits import get_limits
-from .report import CorpusError, Label, Report, find_faults, find_repository, read_labels, write_rows
+from .report import BugReport, CorpusError, Label, find_faults, find_repository, read_labels, write_rows
 
 Suggest = Callable[[str, str], tuple[str, dict[str, float]]]
 """Title and body to the likeliest label and the probability of each. Raises UserError."""
@@ -102,10 +102,12 @@ def list_valid(events: Iterable[JournalEvent]) -> list[JournalEvent]:
     return found
 
 
-def select_reports(reports: Iterable[Report], sources: Sequence[str], repositories: Sequence[str]) -> list[Report]:
+def select_reports(
+    reports: Iterable[BugReport], sources: Sequence[str], repositories: Sequence[str]
+) -> list[BugReport]:
     """The reports of these sources and repositories (empty: of all), each once, without migrated copies of another."""
     wanted = {name.lower() for name in repositories}
-    found: dict[str, Report] = {}
+    found: dict[str, BugReport] = {}
     for report in reports:
         if report.same_as or (sources and report.source not in sources):
             continue
@@ -115,8 +117,8 @@ def select_reports(reports: Iterable[Report], sources: Sequence[str], repositori
 
 
 def select_offered(
-    reports: Iterable[Report], labels: dict[str, Label], events: Sequence[JournalEvent], mode: str, annotator: str
-) -> list[Report]:
+    reports: Iterable[BugReport], labels: dict[str, Label], events: Sequence[JournalEvent], mode: str, annotator: str
+) -> list[BugReport]:
     """The reports that a session in this mode would show to this annotator, in the order of the reports.
 
     Nobody reads second what they read first, as far as the journal knows.
@@ -176,7 +178,7 @@ class Session:
     the answers. Raises CorpusError when the files cannot be read or written, or another session has them.
     """
 
-    def __init__(self, labels_file: Path, annotator: str, mode: str, reports: Sequence[Report]) -> None:
+    def __init__(self, labels_file: Path, annotator: str, mode: str, reports: Sequence[BugReport]) -> None:
         # Through a link, so that the file it leads to is written and the link stays.
         self.labels_file = labels_file.resolve()
         self.annotator = annotator
@@ -204,7 +206,7 @@ class Session:
             self._journal.close()
 
     @property
-    def current(self) -> Report | None:
+    def current(self) -> BugReport | None:
         """The report to judge now; None when all are done."""
         return self.queue[0] if self.queue else None
 

@@ -9,20 +9,20 @@ from pathlib import Path
 import msgspec
 
 from ..edges.files import open_for_replacing
-from .report import CorpusError, Report
+from .report import BugReport, CorpusError
 
 _AT_ONCE = 5_000
 
 
-def write_parquet(path: Path, reports: Iterable[Report]) -> int:
-    """Writes reports, whole or not at all: a column for each field of Report, `tags` a list. Returns how many. Raises
-    CorpusError."""
+def write_parquet(path: Path, reports: Iterable[BugReport]) -> int:
+    """Writes reports, whole or not at all: a column for each field of BugReport, `tags` a list. Returns how many.
+    Raises CorpusError."""
     try:
         import pyarrow
         from pyarrow import parquet
     except ImportError:
         raise CorpusError(f"{path}: Parquet needs pyarrow; install it with `pip install rosimpact[study]`") from None
-    texts = [(field.name, pyarrow.string()) for field in msgspec.structs.fields(Report) if field.name != "tags"]
+    texts = [(field.name, pyarrow.string()) for field in msgspec.structs.fields(BugReport) if field.name != "tags"]
     schema = pyarrow.schema([*texts, ("tags", pyarrow.list_(pyarrow.string()))])
     count = 0
     try:

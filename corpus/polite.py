@@ -64,7 +64,7 @@ class Later(CorpusError):
         self.until = until
 
 
-class Refused(CorpusError):
+class StatusError(CorpusError):
     """The service answered with a status that no second try mends."""
 
     def __init__(self, message: str, status: int):
@@ -155,7 +155,7 @@ class Client:
 
         accept: statuses besides 200 that are an answer and no fault (304, 404, 410). Waits and tries again on rate
         limits, on 5xx, and on connections that fail, stall or end early. Raises Later when that would take longer than
-        the patience that is left, Refused when the service means no, CorpusError when it cannot be reached.
+        the patience that is left, StatusError when the service means no, CorpusError when it cannot be reached.
         """
         return self._get(url, params, headers, lane, frozenset(accept), None)
 
@@ -220,11 +220,11 @@ class Client:
 
     def _get(self, url, params, headers, lane, accept, whole, target=None) -> ServiceAnswer:
         sent = _add_query(url, params)
-        at = _place(url)
+        at = _shorten_url(url)
         limited = attempt = 0
         fault = ""
         for attempt in range(self._tries):
-            self._pace(lane)
+            self._wait_for_turn(lane)
             try:
                 answer = self._send_request(sent, dict(headers or {}), target)
             except _Fault as error:
@@ -274,7 +274,7 @@ class Client:
                 raise _Fault("cannot be reached") from None
             except (requests.RequestException, HTTPError, ValueError) as error:
                 raise CorpusError(
-                    f"{self.service}: {_place(url)}: cannot be asked ({type(error).__name__}); check the address"
+                    f"{self.service}: {_shorten_url(url)}: cannot be asked ({type(error).__name__}); check the address"
                 ) from None
             with response:
                 place = response.headers.get("location", "")
@@ -307,7 +307,7 @@ class Client:
                 size += len(chunk)
                 if size > largest:
                     raise CorpusError(
-                        f"{self.service}: {_place(response.url or '')} sends more than {format_size(largest)}; "
+                        f"{self.service}: {_shorten_url(response.url or '')} sends more than {format_size(largest)}; "
                         "check the address"
                     )
                 if time.monotonic() > until:
@@ -327,7 +327,7 @@ class Client:
             raise _Fault("ended its answer early")
         return b"".join(parts)
 
-    def _pace(self, lane: str) -> None:
+    def _wait_for_turn(self, lane: str) -> None:
         now = self.clock.get_time()
         until, why = self._not_before.get(lane, (0.0, ""))
         if until > now:
@@ -440,7 +440,7 @@ def _resolve_redirect(service: str, url: str, place: str) -> str:
     encrypted = (here.scheme, there.scheme) == ("http", "https") and ports == (None, None)
     if here.hostname != there.hostname or there.username or not (_get_origin(url) == _get_origin(onward) or encrypted):
         raise CorpusError(
-            f"{service}: {_place(url)} redirects to {there.scheme}://{there.hostname}, which is not asked; "
+            f"{service}: {_shorten_url(url)} redirects to {there.scheme}://{there.hostname}, which is not asked; "
             "check the address"
         )
     return onward
@@ -465,7 +465,7 @@ class _Fault(Exception):
     """What went wrong with one request, as a clause whose subject is the address."""
 
 
-def _make_refusal(service: str, at: str, answer: ServiceAnswer) -> Refused:
+def _make_refusal(service: str, at: str, answer: ServiceAnswer) -> StatusError:
     said = ""
     with contextlib.suppress(ValueError, AttributeError):
         said = _clean(str(answer.parse_json().get("message") or answer.parse_json().get("error_message") or ""))[:200]
@@ -477,7 +477,7 @@ def _make_refusal(service: str, at: str, answer: ServiceAnswer) -> Refused:
         422: "check what is asked for",
     }.get(answer.status, "check what is asked for")
     says = f" ({said})" if said else ""
-    return Refused(f"{service}: {at} answered with status {answer.status}{says}; {help}", answer.status)
+    return StatusError(f"{service}: {at} answered with status {answer.status}{says}; {help}", answer.status)
 
 
 def _retry_after(answer: ServiceAnswer, now: float) -> float | None:
@@ -504,7 +504,7 @@ def _add_query(url: str, params: Mapping[str, object] | None) -> str:
     return f"{url}{'&' if '?' in url else '?'}{urlencode({name: str(value) for name, value in params.items()})}"
 
 
-def _place(url: str) -> str:
+def _shorten_url(url: str) -> str:
     try:
         parts = urlsplit(url)
     except ValueError:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from ..edges.console import UserError, escape, write
 from .gather import Progress
-from .store import Taken
+from .store import ReportCounts
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
@@ -105,7 +105,7 @@ def describe_progress(progress: Progress, left: float | None) -> str:
     return f"{progress.done:,}{of} read; {describe_outcome(progress.taken)}{time_left}"
 
 
-def describe_outcome(taken: Taken) -> str:
+def describe_outcome(taken: ReportCounts) -> str:
     """What became of reports, in words."""
     named = [(taken.new, "new"), (taken.changed, "changed"), (taken.same, "unchanged"), (taken.gone, "gone")]
     return ", ".join(f"{count:,} {word}" for count, word in named if count) or "nothing new"

@@ -1,4 +1,4 @@
-"""Report and Label: what was reported, and what it was judged to be; their files, one JSON object a line.
+"""BugReport and Label: what was reported, and what it was judged to be; their files, one JSON object a line.
 
 The labels and what each means are in GUIDE.md; those of the corpus are in labels.jsonl beside this file.
 Texts of reports belong to those who wrote them and are in no file of the project: they are gathered again by id.
@@ -36,7 +36,7 @@ class CorpusError(UserError):
     """What was asked for cannot be done; the text names the file or place and what to do."""
 
 
-class Report(msgspec.Struct, frozen=True, omit_defaults=True):
+class BugReport(msgspec.Struct, frozen=True, omit_defaults=True):
     """One GitHub issue or pull request, ROS Answers question or Robotics Stack Exchange question.
 
     id: `owner/name#12`, `ros-answers:10010` or `robotics-se:98659`; unique. url: where it can be read. source: one of
@@ -62,8 +62,8 @@ class Report(msgspec.Struct, frozen=True, omit_defaults=True):
 
     @property
     def group(self) -> str:
-        """Its group_of()."""
-        return group_of(self.id)
+        """Its find_group()."""
+        return find_group(self.id)
 
 
 class Label(msgspec.Struct, frozen=True):
@@ -97,20 +97,20 @@ def find_repository(id: str) -> str:
     return found.group(1).lower() if found else ""
 
 
-def group_of(id: str) -> str:
+def find_group(id: str) -> str:
     """What must not stand on both sides of a split: the repository, or the report itself where there is none."""
     return find_repository(id) or id
 
 
-def read_reports(path: Path) -> Iterator[Report]:
+def read_reports(path: Path) -> Iterator[BugReport]:
     """The reports of a JSON Lines file, one at a time. Raises CorpusError."""
-    return _read(path, Report)
+    return _read(path, BugReport, "report")
 
 
 def read_labels(path: Path = LABELS_FILE) -> list[Label]:
     """The labels of a file, by default those of the corpus. Raises CorpusError when one breaks the guide's rules."""
     found: dict[str, Label] = {}
-    for number, label in enumerate(_read(path, Label), 1):
+    for number, label in enumerate(_read(path, Label, "label"), 1):
         fault = find_faults(label)
         if label.id in found:
             fault = "is there twice"
@@ -148,7 +148,7 @@ def write_rows(path: Path, rows: Iterable[msgspec.Struct | msgspec.Raw]) -> int:
     return count
 
 
-def _read(path: Path, kind: type[_Row]) -> Iterator[_Row]:
+def _read(path: Path, kind: type[_Row], name: str) -> Iterator[_Row]:
     decoder = msgspec.json.Decoder(kind)
     longest = get_limits().text
     try:
@@ -165,8 +165,6 @@ def _read(path: Path, kind: type[_Row]) -> Iterator[_Row]:
                 try:
                     yield decoder.decode(line)
                 except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-                    raise CorpusError(
-                        f"{path}:{number}: is no {kind.__name__.lower()} ({error}); mend the line"
-                    ) from None
+                    raise CorpusError(f"{path}:{number}: is no {name} ({error}); mend the line") from None
     except OSError as error:
         raise CorpusError(f"{path}: cannot be read: {error.strerror}; give a JSON Lines file") from None

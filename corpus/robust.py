@@ -114,7 +114,7 @@ def map_record(record: Mapping[str, Any], stem: str) -> Mapped:
     if phase and found.label and "SOFTWARE:NONE" in failures and severity != "error":
         phase = "none"  # nothing is shown failing
     # The issue, else the pull request that mended it.
-    id = report_of(_clean_text(bug.get("issue"))) or _pull_of(record) or f"robust:{stem}"
+    id = find_report(_clean_text(bug.get("issue"))) or _find_pull(record) or f"robust:{stem}"
     return Mapped(
         id, stem, found.label, found.kind, phase if found.label else None, found.confidence, tuple(codes), found.why
     )
@@ -195,7 +195,7 @@ def summarize(mapped: Sequence[Mapped]) -> dict[str, dict[str, int]]:
     return {name: {level: counts[name, level] for level in CONFIDENCES} for name in names}
 
 
-def report_of(text: str) -> str:
+def find_report(text: str) -> str:
     """The first report that a text links to, as the corpus writes its id; empty when there is none."""
     places = [(match.start(), f"{match[1]}#{match[2]}") for match in _GITHUB.finditer(text)]
     places += [(match.start(), f"ros-answers:{match[1]}") for match in _ANSWERS.finditer(text)]
@@ -241,9 +241,9 @@ def _strip_marks(classification: str) -> str:
     return re.sub(r"\s*(?:\(no CWE\)|#\w+|internal classification.*).*", "", classification).strip()
 
 
-def _pull_of(record: Mapping[str, Any]) -> str:
+def _find_pull(record: Mapping[str, Any]) -> str:
     fix = record.get("fix")
-    return report_of(_clean_text(fix.get("pull-request"))) if isinstance(fix, Mapping) else ""
+    return find_report(_clean_text(fix.get("pull-request"))) if isinstance(fix, Mapping) else ""
 
 
 def _parse_record(path: Path) -> Mapping[str, Any]:

@@ -12,13 +12,13 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from .report import group_of
+from .report import find_group
 
 FOLDS = 5
 SEED = 20260822
 
 
-class Split(NamedTuple):
+class TrainTestSplit(NamedTuple):
     """Places of the rows to train on and to test on, each rising."""
 
     train: list[int]
@@ -35,7 +35,7 @@ def make_grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = F
         raise ValueError(f"{len(ids)} ids and {len(labels)} labels; give one label for each id")
     content: dict[str, Counter[str]] = defaultdict(Counter)
     for id, label in zip(ids, labels, strict=True):
-        content[group_of(id)][label] += 1
+        content[find_group(id)][label] += 1
     if folds < 2 or len(content) < folds:
         raise ValueError(f"{folds} folds of {len(content)} groups; give 2 to {len(content)}")
     total = Counter(labels)
@@ -54,19 +54,21 @@ def make_grouped_folds(ids: Sequence[str], labels: Sequence[str], folds: int = F
         fold = min(range(folds), key=compute_unevenness)
         filled[fold].update(content[group])
         fold_of[group] = fold
-    return [fold_of[group_of(id)] for id in ids]
+    return [fold_of[find_group(id)] for id in ids]
 
 
-def make_grouped_splits(ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED) -> list[Split]:
+def make_grouped_splits(
+    ids: Sequence[str], labels: Sequence[str], folds: int = FOLDS, seed: int = SEED
+) -> list[TrainTestSplit]:
     """The splits of grouped_folds: each fold once as the test side."""
     fold_of = make_grouped_folds(ids, labels, folds, seed)
     return [
-        Split([i for i, f in enumerate(fold_of) if f != fold], [i for i, f in enumerate(fold_of) if f == fold])
+        TrainTestSplit([i for i, f in enumerate(fold_of) if f != fold], [i for i, f in enumerate(fold_of) if f == fold])
         for fold in range(folds)
     ]
 
 
-def make_time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_day: str) -> Split:
+def make_time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_day: str) -> TrainTestSplit:
     """Rows before a day to train on, rows from that day on to test on.
 
     dates: as day_of reads them; rows without one are on neither side. first_test_day: an ISO day. The test side keeps
@@ -76,7 +78,9 @@ def make_time_split(ids: Sequence[str], dates: Sequence[str | None], first_test_
     if len(ids) != len(dates):
         raise ValueError(f"{len(ids)} ids and {len(dates)} dates; give one date, or None, for each id")
     dated = [(i, day) for i, date in enumerate(dates) if (day := parse_day(date))]
-    return Split([i for i, day in dated if day < first_test_day], [i for i, day in dated if day >= first_test_day])
+    return TrainTestSplit(
+        [i for i, day in dated if day < first_test_day], [i for i, day in dated if day >= first_test_day]
+    )
 
 
 def parse_day(date: str | None) -> str:
@@ -91,7 +95,7 @@ def parse_day(date: str | None) -> str:
     return ""
 
 
-def select_unseen(ids: Sequence[str], split: Split) -> list[int]:
+def select_unseen(ids: Sequence[str], split: TrainTestSplit) -> list[int]:
     """The rows of a split's test side whose group is not on its train side."""
-    seen = {group_of(ids[i]) for i in split.train}
-    return [i for i in split.test if group_of(ids[i]) not in seen]
+    seen = {find_group(ids[i]) for i in split.train}
+    return [i for i in split.test if find_group(ids[i]) not in seen]

@@ -12,7 +12,7 @@ import msgspec
 from ..edges.console import escape, format_count, write
 from .agreement import Agreement, Interval, compute_agreement
 from .distros import DISTROS, find_distros
-from .report import KINDS, LABELS, PHASES, Label, Report, find_repository
+from .report import KINDS, LABELS, PHASES, BugReport, Label, find_repository
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -49,7 +49,7 @@ class Stats(msgspec.Struct, frozen=True):
     notes: tuple[str, ...]
 
 
-def compute_stats(labels: Sequence[Label], reports: Iterable[Report] | None = None) -> Stats:
+def compute_stats(labels: Sequence[Label], reports: Iterable[BugReport] | None = None) -> Stats:
     """Counts labels. reports: the texts, for years and distros; those without a label are passed over."""
     by_id = {label.id: label for label in labels}
     years: dict[str, Counter[str]] = defaultdict(Counter)

@@ -21,7 +21,7 @@ import msgspec
 
 from ..edges.files import open_regular, read_start
 from .outputs import explain_unwritable
-from .report import CorpusError, Report, find_repository, read_reports
+from .report import BugReport, CorpusError, find_repository, read_reports
 
 STORE_VARIABLE = "ROSIMPACT_CORPUS"
 _SCHEMA_VERSION = 1
@@ -65,7 +65,7 @@ class GatheredReport(NamedTuple):
     origin: how it came here.
     """
 
-    report: Report
+    report: BugReport
     raw: bytes = b""
     digest: bytes = b""
     etag: str = ""
@@ -73,7 +73,7 @@ class GatheredReport(NamedTuple):
     origin: str = ""
 
 
-class Page(NamedTuple):
+class GatheredPage(NamedTuple):
     """A piece of a gathering: what it brought, and the state from which the next piece follows.
 
     done, of: how many reports were read so far in this run and will be in all, where that is known. gone: (id, source)
@@ -99,7 +99,7 @@ class AskedReport(NamedTuple):
     gathered: GatheredReport | None = None
 
 
-class Taken(NamedTuple):
+class ReportCounts(NamedTuple):
     """What became of the reports of a page."""
 
     new: int = 0
@@ -107,11 +107,11 @@ class Taken(NamedTuple):
     same: int = 0
     gone: int = 0
 
-    def add(self, other: Taken) -> Taken:
-        return Taken(*(mine + theirs for mine, theirs in zip(self, other, strict=True)))
+    def add(self, other: ReportCounts) -> ReportCounts:
+        return ReportCounts(*(mine + theirs for mine, theirs in zip(self, other, strict=True)))
 
 
-class Kept(NamedTuple):
+class StoredRow(NamedTuple):
     """A row as refresh and hydrate need it."""
 
     id: str
@@ -139,7 +139,7 @@ def hash_bytes(data: bytes) -> bytes:
     return hashlib.blake2b(data, digest_size=16).digest()
 
 
-def open_reports(path: Path) -> Iterator[Report]:
+def open_reports(path: Path) -> Iterator[BugReport]:
     """The reports of a store or of a JSON Lines file, one at a time. Raises CorpusError.
 
     Of a store: one for each thing reported. A migrated question and its original count once; the one that was asked for
@@ -155,15 +155,15 @@ def open_reports(path: Path) -> Iterator[Report]:
     if not is_store:
         yield from read_reports(path)
         return
-    with Store(path) as store:
+    with CorpusStore(path) as store:
         yield from store.iterate_reports()
 
 
-class Store:
+class CorpusStore:
     """An open store; a context manager. Raises CorpusError when the file is none, or cannot be read or written.
 
-    Any number of processes may have the same file open; one Store belongs to one thread. A file that is not there is
-    made when there is a report to keep: a gathering that fails before, or finds nothing, leaves none behind.
+    Any number of processes may have the same file open; one CorpusStore belongs to one thread. A file that is not there
+    is made when there is a report to keep: a gathering that fails before, or finds nothing, leaves none behind.
     """
 
     def __init__(self, path: Path, clock: Callable[[], float] = time.time):
@@ -184,7 +184,7 @@ class Store:
             self._db.close()
             raise
 
-    def __enter__(self) -> Store:
+    def __enter__(self) -> CorpusStore:
         return self
 
     def __exit__(self, *exception: object) -> None:
@@ -197,19 +197,19 @@ class Store:
                 self._db.execute("PRAGMA wal_checkpoint(TRUNCATE)")
         self._db.close()
 
-    def take(self, name: str, page: Page) -> Taken:
+    def take(self, name: str, page: GatheredPage) -> ReportCounts:
         """Writes a page of the gathering `name` and its state, all or nothing."""
         now = self.now()
         if page.reports or page.gone or page.copies:
             self._make()
         with self._begin_transaction():
-            taken = Taken()
+            taken = ReportCounts()
             if page.moved is not None:
                 self._move_all(*page.moved)
             for gathered in page.reports:
                 taken = taken.add(self._put(gathered, now))
             for id, source in page.gone:
-                taken = taken.add(Taken(gone=self._forget(id, source, now)))
+                taken = taken.add(ReportCounts(gone=self._forget(id, source, now)))
             self._db.executemany("INSERT OR REPLACE INTO copy VALUES (?, ?)", _lower(page.copies))
             self._db.execute(
                 "INSERT OR REPLACE INTO gathering VALUES (?, ?, ?, ?)",
@@ -217,10 +217,10 @@ class Store:
             )
         return taken
 
-    def put(self, reports: Iterable[GatheredReport]) -> Taken:
+    def put(self, reports: Iterable[GatheredReport]) -> ReportCounts:
         """Writes reports outside any gathering, all or nothing."""
         now = self.now()
-        taken = Taken()
+        taken = ReportCounts()
         given = list(reports)
         if given:
             self._make()
@@ -275,12 +275,12 @@ class Store:
         rows = self._fetch_all("SELECT raw FROM report WHERE key = ?", (self._find_key(id),))
         return self._unpack_report(rows[0][0]) if rows and rows[0][0] else b""
 
-    def report(self, id: str) -> Report | None:
+    def report(self, id: str) -> BugReport | None:
         """One report by its id or by one it had before; None when it is not here or has no text any more."""
         rows = self._fetch_all(f"{_REPORTS} AND r.key = ?", (self._find_key(id),))
         return self._decode_report(*rows[0][1:]) if rows else None
 
-    def iterate_reports(self) -> Iterator[Report]:
+    def iterate_reports(self) -> Iterator[BugReport]:
         """All reports with a text in the order of their keys, each thing reported once (see open_reports)."""
         left_out = self._find_left_out()
         try:
@@ -290,18 +290,18 @@ class Store:
         except sqlite3.Error as error:
             raise self._make_error(error) from None
 
-    def find_kept(self, id: str) -> Kept | None:
+    def find_kept(self, id: str) -> StoredRow | None:
         """What is known of an id; None when nothing is."""
         rows = self._fetch_all(f"SELECT {_KEPT} FROM report WHERE key = ?", (self._find_key(id),))
-        return Kept(*rows[0]) if rows else None
+        return StoredRow(*rows[0]) if rows else None
 
-    def list_to_check(self, source: str, before: float, limit: int) -> list[Kept]:
+    def list_to_check(self, source: str, before: float, limit: int) -> list[StoredRow]:
         """Reports of a source that were last asked for before a time (seconds since 1970), longest ago first; without
         those that came from where nobody can be asked."""
         rows = self._fetch_all(
             f"SELECT {_KEPT} FROM report WHERE {_CHECKABLE} ORDER BY checked, key LIMIT ?", (source, before, limit)
         )
-        return [Kept(*row) for row in rows]
+        return [StoredRow(*row) for row in rows]
 
     def count_to_check(self, source: str, before: float) -> int:
         """How many reports list_to_check() would give without a limit."""
@@ -333,10 +333,10 @@ class Store:
             posts.setdefault(original, []).append((not wanted, key != original, key))
         return {key for group in posts.values() for _, _, key in sorted(group)[1:]}
 
-    def _put(self, gathered: GatheredReport, now: float) -> Taken:
+    def _put(self, gathered: GatheredReport, now: float) -> ReportCounts:
         report = gathered.report
         key = report.id.lower()
-        self._own(key)
+        self._drop_alias(key)
         if gathered.asked and gathered.asked.lower() != key:
             self._move(gathered.asked.lower(), key)
         if report.same_as:
@@ -345,7 +345,7 @@ class Store:
         rows = self._fetch_all("SELECT digest, gone FROM report WHERE key = ?", (key,))
         if rows and rows[0] == (digest, 0):
             self._db.execute("UPDATE report SET checked = ?, etag = ? WHERE key = ?", (now, gathered.etag, key))
-            return Taken(same=1)
+            return ReportCounts(same=1)
         # which post is a copy of which is in the table `copy`, whichever came first
         text = msgspec.json.encode(msgspec.structs.replace(report, same_as=""))
         self._db.execute(
@@ -365,9 +365,9 @@ class Store:
                 now,
             ),
         )
-        return Taken(changed=1) if rows and not rows[0][1] else Taken(new=1)
+        return ReportCounts(changed=1) if rows and not rows[0][1] else ReportCounts(new=1)
 
-    def _own(self, key: str) -> None:
+    def _drop_alias(self, key: str) -> None:
         """A source says that a report has this id: it is no former name of another one, though it may have been."""
         if self._fetch_all("SELECT 1 FROM alias WHERE old = ?", (key,)):
             self._db.execute("DELETE FROM alias WHERE old = ?", (key,))
@@ -398,7 +398,7 @@ class Store:
                 url = report.url.replace(f"/{old}/", f"/{new}/")
                 packed = zlib.compress(msgspec.json.encode(msgspec.structs.replace(report, id=now_id, url=url)), _LEVEL)
             self._db.execute("UPDATE report SET id = ?, report = ? WHERE key = ?", (now_id, packed, key))
-            self._own(now_id.lower())
+            self._drop_alias(now_id.lower())
             self._move(key, now_id.lower())
 
     def _forget(self, id: str, source: str, now: float) -> int:
@@ -498,7 +498,7 @@ class Store:
         except sqlite3.Error as error:
             raise self._make_error(error) from None
 
-    def _decode_report(self, packed: bytes, wanted: str | None, original: str | None) -> Report:
+    def _decode_report(self, packed: bytes, wanted: str | None, original: str | None) -> BugReport:
         try:
             report = _decode(self._unpack_report(packed))
         except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
@@ -540,7 +540,7 @@ _REPORTS = (
     "SELECT r.key, r.report, (SELECT min(w.id) FROM wanted w WHERE w.key = r.key), c.original "
     "FROM report r LEFT JOIN copy c ON c.copy = r.key WHERE r.report IS NOT NULL"
 )
-_decode = msgspec.json.Decoder(Report).decode
+_decode = msgspec.json.Decoder(BugReport).decode
 
 
 def _lower(pairs: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:

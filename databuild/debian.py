@@ -35,7 +35,7 @@ from .includes import list_platform_versions
 from .libraries import INNER, INNER_NAME, LibraryFacts, Run, Texts, count_uses, extract_upstream_version
 
 
-class Library(NamedTuple):
+class DebianLibrary(NamedTuple):
     """A library as Debian packages it. name: as in platform_versions.yaml. packages: whole names of its development
     packages. headers: paths below the include folder, whose group `path` is how they are included. names: how names of
     its own look, as a whole; bare ones only where nobody else would call anything so."""
@@ -46,8 +46,8 @@ class Library(NamedTuple):
     names: re.Pattern[str]
 
 
-def _make_library(name: str, packages: str, headers: str, names: str) -> Library:
-    return Library(
+def _make_library(name: str, packages: str, headers: str, names: str) -> DebianLibrary:
+    return DebianLibrary(
         name,
         re.compile(rf"(?:{packages})\Z"),
         re.compile(rf"(?:x86_64-linux-gnu/)?(?:{headers})\Z"),
@@ -121,7 +121,7 @@ _SHORTEST = 6
 """Letters of the last part of a name. A shorter one is a word of everyday use, and may be anybody's."""
 
 
-class Version(NamedTuple):
+class LibraryVersion(NamedTuple):
     """A library in one Debian release, or at its tags (release empty). number: as upstream has it. headers: by the path
     that is included. words: in any of them, comments left out."""
 
@@ -131,7 +131,7 @@ class Version(NamedTuple):
     words: frozenset[str]
 
 
-def read_library(library: Library, facts: LibraryFacts, release: str, texts: Texts) -> Version | None:
+def read_library(library: DebianLibrary, facts: LibraryFacts, release: str, texts: Texts) -> LibraryVersion | None:
     """A library in one release, of what was read of the source package; None when that has none of its headers."""
     headers: dict[str, HeaderSurface] = {}
     words: set[str] = set()
@@ -143,15 +143,17 @@ def read_library(library: Library, facts: LibraryFacts, release: str, texts: Tex
             path = told["path"]
             headers[path] = HeaderSurface(()) if INNER.search(path) else text.surface
             words.update(text.words)
-    return Version(release, extract_upstream_version(facts.version), headers, frozenset(words)) if headers else None
+    if not headers:
+        return None
+    return LibraryVersion(release, extract_upstream_version(facts.version), headers, frozenset(words))
 
 
-class Lost(NamedTuple):
+class LibraryRemovals(NamedTuple):
     """What one version lacks and the one before it had. headers and names: to what stands for them, empty for nothing
     known; calls: a function to the numbers of arguments that it no longer takes."""
 
-    before: Version
-    now: Version
+    before: LibraryVersion
+    now: LibraryVersion
     headers: Mapping[str, str]
     names: Mapping[str, str]
     calls: Mapping[str, tuple[int, ...]]
@@ -168,7 +170,7 @@ class _Rest(NamedTuple):
     simple: frozenset[str] = frozenset()
 
 
-def _collect_rests(versions: Sequence[Version]) -> list[_Rest]:
+def _collect_rests(versions: Sequence[LibraryVersion]) -> list[_Rest]:
     found: list[_Rest] = []
     last = _Rest()
     for version in reversed(versions):
@@ -184,7 +186,9 @@ def _collect_rests(versions: Sequence[Version]) -> list[_Rest]:
     return found[::-1]
 
 
-def find_lost(library: Library, versions: Sequence[Version], steps: int | None = None) -> Iterator[Lost]:
+def find_lost(
+    library: DebianLibrary, versions: Sequence[LibraryVersion], steps: int | None = None
+) -> Iterator[LibraryRemovals]:
     """What went from each version to the next one for good. versions: oldest first. steps: to how many of them that is
     told, by default to all; the others say what came back."""
     rests = _collect_rests(versions)
@@ -209,10 +213,12 @@ def find_lost(library: Library, versions: Sequence[Version], steps: int | None =
         }
         # Members of what went as a whole are no more than it.
         names = {name: new for name, new in names.items() if name.rpartition("::")[0] not in names}
-        yield Lost(before, now, headers, names, _find_rejected_calls(functions[place], functions[place + 1 :], rest))
+        yield LibraryRemovals(
+            before, now, headers, names, _find_rejected_calls(functions[place], functions[place + 1 :], rest)
+        )
 
 
-def _is_named_by_users(library: Library, one: Entity) -> bool:
+def _is_named_by_users(library: DebianLibrary, one: Entity) -> bool:
     """Whether an entity is one that users name, of a name that is its own."""
     last = one.name.rpartition("::")[2]
     return (
@@ -230,7 +236,7 @@ def _is_named_by_users(library: Library, one: Entity) -> bool:
     )
 
 
-def _find_new_header(before: Version, now: Version, path: str) -> str:
+def _find_new_header(before: LibraryVersion, now: LibraryVersion, path: str) -> str:
     """The header that has most of what a lost one had, or that it took in; empty where there is none."""
     surface = before.headers[path]
     if surface.instead in now.headers:
@@ -282,7 +288,7 @@ def _find_rejected_calls(
     return found
 
 
-def _group_functions(library: Library, version: Version) -> dict[str, list[Entity]]:
+def _group_functions(library: DebianLibrary, version: LibraryVersion) -> dict[str, list[Entity]]:
     """Functions outside classes by name."""
     found: dict[str, list[Entity]] = defaultdict(list)
     classes = {e.name for e in list_offered(version.headers.values()) if e.kind in CLASSES}
@@ -303,8 +309,8 @@ def _list_suffixes(name: str) -> Iterator[str]:
 
 
 def group_rows(
-    library: Library,
-    versions: Sequence[Version],
+    library: DebianLibrary,
+    versions: Sequence[LibraryVersion],
     known: Callable[[str, str], bool],
     steps: int | None = None,
     elsewhere: Callable[[str, str, str], bool] = lambda kind, name, release: False,
@@ -375,11 +381,13 @@ def _collect_ros_names() -> frozenset[str]:
     return frozenset(found)
 
 
-def _list_tagged_versions(clones: Path, library: Library, packaged: Sequence[Version]) -> tuple[list[Version], int]:
+def _list_tagged_versions(
+    clones: Path, library: DebianLibrary, packaged: Sequence[LibraryVersion]
+) -> tuple[list[LibraryVersion], int]:
     """The versions at release tags, then the packaged ones; and how many steps lead to the first packaged one, or where
     there is none, to the last one that a platform has."""
     platforms = list_platform_versions(library.name)
-    tagged = [Version("", *one) for one in library_tags.read(clones, library.name, platforms, INNER)]
+    tagged = [LibraryVersion("", *one) for one in library_tags.read(clones, library.name, platforms, INNER)]
     if not tagged:
         return [], 0
     last = packaged[0].number if packaged else max(platforms, key=parse)
@@ -387,7 +395,7 @@ def _list_tagged_versions(clones: Path, library: Library, packaged: Sequence[Ver
     return [*tagged, *packaged], steps
 
 
-def list_packaged_versions(library: Library, suites: Suites, texts: Texts) -> list[Version]:
+def list_packaged_versions(library: DebianLibrary, suites: Suites, texts: Texts) -> list[LibraryVersion]:
     """The versions of a library that releases have, oldest first."""
     found = []
     for suite, libraries in suites.items():
@@ -407,14 +415,14 @@ next version has where what it lacks is told; how many such names there have to 
 library, since each row costs all checks a little."""
 
 
-def start_of(name: str) -> str:
+def find_start(name: str) -> str:
     """The outermost namespace or class of a name: `cv::` of `cv::Mat`; empty for bare names, which macros often make of
     several words."""
     head, colons, _ = name.partition("::")
     return f"{head}::" if colons else ""
 
 
-def find_other_libraries(suites: Suites, texts: Texts) -> list[Library]:
+def find_other_libraries(suites: Suites, texts: Texts) -> list[DebianLibrary]:
     """The libraries besides LIBRARIES, with the names that are theirs alone among all that were read."""
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     packages: dict[str, set[str]] = defaultdict(set)
@@ -426,7 +434,7 @@ def find_other_libraries(suites: Suites, texts: Texts) -> list[Library]:
             read |= fresh
             for _, sha in fresh:
                 for one in texts.get(sha).surface.entities:
-                    counts[start_of(one.name) if one.kind in _KINDS else ""][name] += 1
+                    counts[find_start(one.name) if one.kind in _KINDS else ""][name] += 1
     del counts[""]
     own: dict[str, list[str]] = defaultdict(list)
     for start, each in counts.items():
@@ -435,7 +443,7 @@ def find_other_libraries(suites: Suites, texts: Texts) -> list[Library]:
             own[library].append(re.escape(start))
     by_hand = [one.packages for one in LIBRARIES]
     return [
-        Library(
+        DebianLibrary(
             name,
             re.compile(rf"(?:{'|'.join(map(re.escape, sorted(packages[name])))})\Z"),
             re.compile(r"(?P<path>.+/.+)\Z"),
@@ -471,7 +479,7 @@ class Elsewhere:
         return name.rpartition("::")[2] in self._words.get(release, ())
 
 
-def _has_shrunk(versions: Sequence[Version]) -> bool:
+def _has_shrunk(versions: Sequence[LibraryVersion]) -> bool:
     """Whether some version has far fewer headers than the one before: they may be in a package that was not read."""
     return any(
         sum(path in now.headers for path in before.headers) < _KEPT * len(before.headers)

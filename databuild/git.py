@@ -22,7 +22,7 @@ class FileVersion(NamedTuple):
     blob: str
 
 
-class Line(NamedTuple):
+class FirstParents(NamedTuple):
     """First parents of a commit, oldest first: (commit id, ts) with ts always rising."""
 
     commits: tuple[tuple[str, int], ...]
@@ -38,7 +38,7 @@ def open_repository(path: Path) -> Any:
         raise BuildError(f"{path} is no git repository") from None
 
 
-def read_first_parents(repository: Any, start: Any) -> Line:
+def read_first_parents(repository: Any, start: Any) -> FirstParents:
     """The first-parent line that ends in a commit.
 
     Some commits of rosdistro go back in time or share a second; each then counts one second after the one before it, so
@@ -57,11 +57,11 @@ def read_first_parents(repository: Any, start: Any) -> Line:
     for oid, ts in line:
         latest = max(latest + 1, ts)
         steady.append((oid, latest))
-    return Line(tuple(steady))
+    return FirstParents(tuple(steady))
 
 
 def read_file_versions(
-    repository: Any, line: Line, wanted: Mapping[str, Sequence[str]], report: Report | None = None
+    repository: Any, line: FirstParents, wanted: Mapping[str, Sequence[str]], report: Report | None = None
 ) -> dict[str, list[FileVersion]]:
     """For each name the versions of its file: of the paths given, the first that exists at a commit counts.
 
@@ -138,7 +138,7 @@ def _read_side(repository: Any, merge: Any, choices: Sequence[tuple[str, ...]], 
     return [version for part in reversed(parts) for version in part]
 
 
-def place_on_line(repository: Any, oid: str, cuts: Mapping[str, int]) -> int | None:
+def find_on_line(repository: Any, oid: str, cuts: Mapping[str, int]) -> int | None:
     """When a commit stood on the line; beside it: the second after its nearest ancestor there, None without one."""
     beside = 0
     commit = repository[oid]

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from ..impact.targets.snapshot import Snapshot, load_snapshot
 from ..impact.targets.version import parse
-from .surface.releases import Release, find_git_directory, list_releases, tag_of
+from .surface.releases import Release, find_git_directory, find_tag, list_releases
 
 
 class RosFacts(NamedTuple):
@@ -26,7 +26,7 @@ class RosFacts(NamedTuple):
     cmake: dict[str, str]
 
 
-class Surface(NamedTuple):
+class FolderOffers(NamedTuple):
     """What one package folder offers: header include paths, Python modules, find_package names."""
 
     name: str
@@ -65,16 +65,16 @@ class SurfaceReader:
 
     def __init__(self, repository):
         self._repository = repository
-        self._folders: dict[bytes, tuple[Surface, ...]] = {}
+        self._folders: dict[bytes, tuple[FolderOffers, ...]] = {}
 
-    def read_packages(self, tree) -> tuple[Surface, ...]:
+    def read_packages(self, tree) -> tuple[FolderOffers, ...]:
         """All packages in a tree, as colcon finds them: the first package.xml on the way down."""
         known = self._folders.get(tree.id.raw)
         if known is None:
             known = self._folders[tree.id.raw] = tuple(self._find_packages(tree))
         return known
 
-    def _find_packages(self, tree) -> Iterator[Surface]:
+    def _find_packages(self, tree) -> Iterator[FolderOffers]:
         entries = {entry.name: entry for entry in tree}
         manifest = entries.get("package.xml")
         if manifest is not None and manifest.type_str == "blob":
@@ -86,7 +86,7 @@ class SurfaceReader:
             if entry.type_str == _TREE and name not in _ASIDE and not name.startswith("."):
                 yield from self.read_packages(entry)
 
-    def _read_surface(self, name: str, tree) -> Surface:
+    def _read_surface(self, name: str, tree) -> FolderOffers:
         headers: set[str] = set()
         modules: set[str] = set()
         cmake: set[str] = set()
@@ -120,7 +120,7 @@ class SurfaceReader:
                         headers.update(self._list_installed_headers(name, tree, where, folder))
         for folder in beside:
             headers.update([h.removeprefix(f"{folder}/") for h in headers if h.startswith(f"{folder}/")])
-        return Surface(name, frozenset(headers), frozenset(modules - {name}), frozenset(cmake - {name, ""}))
+        return FolderOffers(name, frozenset(headers), frozenset(modules - {name}), frozenset(cmake - {name, ""}))
 
     def _list_installed_headers(self, name: str, tree, where: str, folder: str) -> Iterator[str]:
         plain = "/".join(part for part in f"{where}/{folder}".split("/") if part not in ("", "."))
@@ -176,7 +176,7 @@ def read_repositories(folder: Path, snapshot: Snapshot | None = None) -> RosFact
         releases = list_releases(data, clone.name.replace("+", "/"))
         surfaces = list(_read_tips(repository, reader, releases))
         for release in releases:
-            ref = tag_of(tags, release.version, clone.name.rpartition("+")[2])
+            ref = find_tag(tags, release.version, clone.name.rpartition("+")[2])
             tree = ref and _find_tree(repository, ref)
             if not tree:
                 continue
@@ -211,7 +211,7 @@ def _find_tree(repository, ref: str):
         return None
 
 
-def _read_tips(repository, reader: SurfaceReader, releases: list[Release]) -> Iterator[Surface]:
+def _read_tips(repository, reader: SurfaceReader, releases: list[Release]) -> Iterator[FolderOffers]:
     """Packages at the branches' ends that any distro released: who has a header, not since when."""
     released = frozenset().union(*(release.packages for release in releases)) if releases else frozenset()
     for ref in repository.references:
@@ -221,7 +221,7 @@ def _read_tips(repository, reader: SurfaceReader, releases: list[Release]) -> It
                 yield from (s for s in reader.read_packages(tree) if s.name in released)
 
 
-def _record(known: _Known, release: Release, surface: Surface) -> None:
+def _record(known: _Known, release: Release, surface: FolderOffers) -> None:
     versions = known.versions.setdefault(release.distro, [])
     if release.version not in versions:
         versions.append(release.version)

@@ -190,7 +190,7 @@ _PRIVATE = re.compile(
 )
 
 
-class Header(msgspec.Struct, frozen=True):
+class HeaderContent(msgspec.Struct, frozen=True):
     """What one state of a header includes, defines and announces."""
 
     includes: tuple[str, ...]
@@ -198,17 +198,17 @@ class Header(msgspec.Struct, frozen=True):
     announced: frozenset[str]
 
 
-def _read(data: bytes) -> Header:
+def _read(data: bytes) -> HeaderContent:
     text = data.decode("utf-8", "replace")
-    return Header(list_includes(text), *find_types(text))
+    return HeaderContent(list_includes(text), *find_types(text))
 
 
-class Clone:
+class ClonePackages:
     """The packages of a git clone at any tag: package to include path to header."""
 
     def __init__(self, repository, library: str):
         self.repository, self.library = repository, library
-        self.blobs: dict[bytes, Header] = {}
+        self.blobs: dict[bytes, HeaderContent] = {}
         self.trees: dict[bytes, dict[str, dict[str, bytes]]] = {}
 
     def read_packages(self, tree) -> dict[str, dict[str, bytes]]:
@@ -218,7 +218,7 @@ class Clone:
             for path, entry in _walk(tree, ""):
                 self._add(headers, path, entry, "")
             for path in _MADE.get(self.library, ()) if headers else ():
-                self.blobs.setdefault(b"", Header((), frozenset(), frozenset()))
+                self.blobs.setdefault(b"", HeaderContent((), frozenset(), frozenset()))
                 headers.setdefault(path, b"")
             return {self.library: headers}
         known = self.trees.get(tree.id.raw)
@@ -278,7 +278,7 @@ def _walk(tree, prefix: str):
             yield prefix + entry.name, entry
 
 
-State = dict[str, Header]
+State = dict[str, HeaderContent]
 """Include path to header, of one version of one owner."""
 
 
@@ -307,7 +307,7 @@ def _read_clone(folder: Path, library: str, wanted: Container[str] | None = None
     if where is None:
         raise FileNotFoundError(f"{folder}: no git directory")
     repository = pygit2.Repository(str(where))
-    clone = Clone(repository, library)
+    clone = ClonePackages(repository, library)
     for ref in sorted(repository.references):
         match = _VERSION.match(ref.removeprefix("refs/tags/")) if ref.startswith("refs/tags/") else None
         version = match.group(1).replace("_", ".") if match else ""
@@ -351,7 +351,7 @@ def read_generators(folder: Path) -> Iterator[tuple[str, str, State]]:
                     )
                     found.update(dict.fromkeys(re.findall(r"^\s*'((?:rosidl|\w+/)[\w./]+\.hpp)',?$", text, re.M)))
             if found:
-                yield package, match.group(1), {f"<{package}>": Header(tuple(found), frozenset(), frozenset())}
+                yield package, match.group(1), {f"<{package}>": HeaderContent(tuple(found), frozenset(), frozenset())}
 
 
 def read_folder(folder: Path) -> State:

@@ -14,10 +14,10 @@ from .surface.clones import Clone
 from .surface.compare import RepositorySurfaces
 from .surface.package import build_surfaces
 from .surface_changes import Lines
-from .surface_file import Including, Packed, Packer, Stored
+from .surface_file import IncludesPacker, Packed, Packer, Stored
 
 
-class Wanted(NamedTuple):
+class CloneState(NamedTuple):
     """A state of a clone. packages: those whose version it stands for. generations: of ROS that have it there."""
 
     version: str
@@ -34,7 +34,7 @@ class Job(NamedTuple):
     in it can be sent to another machine that sees the same clones. name: of the clone that most of them are in."""
 
     name: str
-    states: tuple[Wanted, ...]
+    states: tuple[CloneState, ...]
     trees: tuple[str, ...]
 
     def compute_key(self) -> str:
@@ -58,7 +58,7 @@ class Packing:
 
     def __init__(self) -> None:
         self._packers: dict[tuple[str, int], Packer] = {}
-        self._including: dict[tuple[str, int], Including] = {}
+        self._including: dict[tuple[str, int], IncludesPacker] = {}
         self._lines = Lines()
 
     def add(
@@ -75,7 +75,7 @@ class Packing:
         for ros in generations:
             key = package, ros
             self._packers.setdefault(key, Packer()).add(Stored(version, approximate, surface))
-            self._including.setdefault(key, Including()).add(version, surface.headers, approximate)
+            self._including.setdefault(key, IncludesPacker()).add(version, surface.headers, approximate)
         self._lines.add(package, version, generations, state, approximate)
 
     def pack_packages(self) -> dict[tuple[str, int], Packed]:

@@ -74,7 +74,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
 
-class Tagged(NamedTuple):
+class TaggedLibrary(NamedTuple):
     """A library at one version's tags: headers by the path that is included, and the words in any of them."""
 
     number: str
@@ -82,7 +82,7 @@ class Tagged(NamedTuple):
     words: frozenset[str]
 
 
-def read(folder: Path, library: str, platforms: Collection[str], inner: re.Pattern[str]) -> Iterator[Tagged]:
+def read(folder: Path, library: str, platforms: Collection[str], inner: re.Pattern[str]) -> Iterator[TaggedLibrary]:
     """The versions of a library from the oldest one that some platform has on, oldest first, none twice; of a library
     of many clones only those that platforms have. folder: of the clones. platforms: the versions of platforms. inner:
     paths of headers that nobody includes. Nothing where no clone is there."""
@@ -107,7 +107,7 @@ def read(folder: Path, library: str, platforms: Collection[str], inner: re.Patte
     for number in sorted(versions, key=parse):
         found = versions[number]
         words = frozenset().union(*(known[blob][1] for blob in found.values()))
-        yield Tagged(number, {path: known[blob][0] for path, blob in sorted(found.items())}, words)
+        yield TaggedLibrary(number, {path: known[blob][0] for path, blob in sorted(found.items())}, words)
 
 
 def _find_versions(repository: pygit2.Repository, oldest: str) -> dict[str, pygit2.Tree]:

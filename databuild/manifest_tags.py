@@ -23,7 +23,7 @@ from ..impact.targets.distro.distro import make_version_key
 from ..impact.targets.snapshot import DATA, Snapshot, read_shipped
 from .git import open_repository
 from .manifests import DeclaredVersion, changes_only, parse_manifest
-from .surface.releases import Release, find_git_directory, list_releases, tag_of
+from .surface.releases import Release, find_git_directory, find_tag, list_releases
 from .write import write_snapshot
 
 _TREE = "tree"
@@ -68,7 +68,7 @@ def read_clone(place: Path, name: str, releases: list[Release]) -> Iterator[Decl
     reader = ManifestReader(repository)
     tags = {ref.removeprefix("refs/tags/"): ref for ref in repository.references if ref.startswith("refs/tags/")}
     for release in releases:
-        ref = tag_of(tags, release.version, name.rpartition("/")[2])
+        ref = find_tag(tags, release.version, name.rpartition("/")[2])
         if ref is None:
             continue
         try:

@@ -67,7 +67,7 @@ _APT_MANAGERS = frozenset({"apt"})
 _OTHER_MANAGERS = frozenset({"pip", "gem", "source", "npm", "snap", "dnf", "yum", "packages"})
 
 
-class Suite(NamedTuple):
+class SuiteContents(NamedTuple):
     """What the indices of one suite say. contents: its Contents files. depends: package to what it pulls in.
 
     essential: packages of every machine. ros: packages that Debian builds of ROS itself, told better by ROS's releases.
@@ -114,7 +114,7 @@ def unpack(path: Path) -> Iterator[bytes]:
         yield from process.stdout
 
 
-def read_suite(platform: str, lists: Path) -> Suite:
+def read_suite(platform: str, lists: Path) -> SuiteContents:
     """Reads one suite's Contents and Packages indices from an apt lists folder.
 
     Raises FileNotFoundError without them.
@@ -134,7 +134,7 @@ def read_suite(platform: str, lists: Path) -> Suite:
         if is_ros_source(origin):
             ros.add(name)
     real = read_dependencies(lists)
-    return Suite(platform, tuple(contents), real, frozenset(essential), frozenset(ros), source)
+    return SuiteContents(platform, tuple(contents), real, frozenset(essential), frozenset(ros), source)
 
 
 def read_dependencies(lists: Path) -> dict[str, tuple[str, ...]]:
@@ -344,7 +344,7 @@ class _Reach(NamedTuple):
     package: str
 
 
-def reach(keys: Keys, suites: Iterable[Suite]) -> tuple[dict[str, dict[str, _Reach]], list[set[str]]]:
+def reach(keys: Keys, suites: Iterable[SuiteContents]) -> tuple[dict[str, dict[str, _Reach]], list[set[str]]]:
     """Debian package to the keys that bring it on some suite; for each suite the packages that any key brings there."""
     found: dict[str, dict[str, _Reach]] = defaultdict(dict)
     by_suite = []
@@ -416,7 +416,7 @@ class Tables(NamedTuple):
     program: dict[str, tuple[tuple[tuple[str, str], ...], int]]
 
 
-def join(suites: list[Suite], keys: Keys) -> Tables:
+def join(suites: list[SuiteContents], keys: Keys) -> Tables:
     """Names of all suites with the rosdep keys that bring them, best key first."""
     reached, by_suite = reach(keys, suites)
     named = frozenset(package for packages in keys.debian.values() for package in packages)

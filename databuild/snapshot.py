@@ -189,7 +189,7 @@ def _find_syncs(repository, line, versions: dict, wanted: dict) -> list[Sync]:
         distro, _, day = name.partition("/")
         if distro not in wanted or not day:
             continue
-        cut = git.place_on_line(repository, oid, cuts)
+        cut = git.find_on_line(repository, oid, cuts)
         if cut is not None and oid not in cuts:
             versions[distro] = git.insert_side_version(repository, versions[distro], oid, cut, wanted[distro])
         # `noetic/final` names no day.

@@ -28,7 +28,7 @@ _LIBRARY = re.compile(rb"(?:usr/)?lib(?:32|64|x32)?/(?!debug/)(?:[^ \t]*/)?([^/ 
 _NO_LIBRARY = (b".py", b".gz", b".hmac", b".txt")
 
 
-class Suite(NamedTuple):
+class SuiteLibraries(NamedTuple):
     """What the indices of one suite say. libraries: file name to a package that has it. symbols: how far the versions
     of symbols reach, by their kind (`GLIBC`, `GLIBCXX`)."""
 
@@ -37,14 +37,16 @@ class Suite(NamedTuple):
     symbols: dict[str, str]
 
 
-def read_suite(platform: str, lists: Path) -> Suite:
+def read_suite(platform: str, lists: Path) -> SuiteLibraries:
     """Reads one suite's indices from an apt lists folder. Raises FileNotFoundError without them."""
     contents = sorted(lists.glob("*Contents-*"))
     packages = sorted(lists.glob("*_Packages*"))
     if not contents or not packages:
         raise FileNotFoundError(f"{lists}: no Contents or no Packages index; enable apt's Contents targets and update")
     libraries = parse_libraries(line for index in contents for line in unpack(index))
-    return Suite(platform, libraries, parse_symbols(libraries, (line for index in packages for line in unpack(index))))
+    return SuiteLibraries(
+        platform, libraries, parse_symbols(libraries, (line for index in packages for line in unpack(index)))
+    )
 
 
 def parse_libraries(lines: Iterable[bytes]) -> dict[str, str]:
@@ -82,7 +84,7 @@ def parse_symbols(libraries: Mapping[str, str], lines: Iterable[bytes]) -> dict[
     return found
 
 
-def build_table(suites: Iterable[Suite]) -> SonamesTable:
+def build_table(suites: Iterable[SuiteLibraries]) -> SonamesTable:
     """The table of all suites, a later suite's package standing for a library that several have."""
     suites = list(suites)
     bits: dict[str, int] = {}

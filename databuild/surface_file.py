@@ -305,7 +305,7 @@ def find_spans(places: Sequence[int], count: int) -> list[int]:
     return runs
 
 
-class Including:
+class IncludesPacker:
     """Packs what the headers of a package include, version by version, oldest first."""
 
     def __init__(self) -> None:

@@ -21,8 +21,8 @@ from ..impact.targets.distro.known import list_known_distros
 from ..impact.targets.snapshot import Snapshot, load_snapshot
 from ..impact.targets.surface.store import SurfaceHistory
 from ..impact.targets.version import parse
-from .jobs import Job, Result, Wanted, run
-from .surface.clones import Clone, Clones, Release, Version
+from .jobs import CloneState, Job, Result, run
+from .surface.clones import Clone, Clones, DistroVersion, Version
 from .surface_file import Packed, read_packages, write
 
 Versions = Literal["newest", "all"]
@@ -75,16 +75,16 @@ def plan(
     return _make_jobs(found), tuple(missing)
 
 
-def _list_newest(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+def _list_newest(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, DistroVersion]]:
     """What a distro has of each package."""
     for package in sorted(target.list_released()):
         home, version = target.find_repository(package), target.find_version(package)
         if home is not None and version is not None:
             _, url, branch = home
-            yield package, Release(target.distro, version, (url,) if url else (), branch)
+            yield package, DistroVersion(target.distro, version, (url,) if url else (), branch)
 
 
-def _list_released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, Release]]:
+def _list_released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, DistroVersion]]:
     """What a distro ever had of each package."""
     urls: dict[int, dict[str, None]] = {}
     branches: dict[int, str] = {}
@@ -105,7 +105,9 @@ def _list_released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, 
         for package in names.split(" "):
             if (package, plain) not in told:
                 told.add((package, plain))
-                release = Release(target.distro, plain, tuple(urls.get(repository, ())), branches.get(repository, ""),
+                release = DistroVersion(target.distro, plain, tuple(
+                    urls.get(repository, ())
+                ), branches.get(repository, ""),
                                   target.find_version(package) != plain)  # fmt: skip
                 yield package, release
 
@@ -116,7 +118,7 @@ def _make_jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
     import networkx as nx
 
     clones: dict[str, Clone] = {}
-    states: dict[Wanted, list[str]] = {}
+    states: dict[CloneState, list[str]] = {}
     together = nx.Graph()
     sharing: dict[tuple[str, str, str, str], list[int]] = {}
     for (package, version, ros), (clone, revision, *_) in found.items():
@@ -126,7 +128,7 @@ def _make_jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
         whose = tuple(sorted(sharing[package, version, clone.name, revision]))
         if ros != whose[0]:
             continue  # the same state for both, which is read once
-        state = Wanted(version, os.path.abspath(clone.place), clone.name, revision, approximate, (), whose)
+        state = CloneState(version, os.path.abspath(clone.place), clone.name, revision, approximate, (), whose)
         states.setdefault(state, []).append(package)
         together.add_edge((clone.name, revision), package)
     number_of = {
@@ -134,7 +136,7 @@ def _make_jobs(found: Mapping[tuple[str, str, int], Version]) -> list[Job]:
         for number, nodes in enumerate(nx.connected_components(together))
         for node in sorted(nodes, key=str)
     }
-    grouped: dict[int, list[Wanted]] = {}
+    grouped: dict[int, list[CloneState]] = {}
     for state, packages in states.items():
         grouped.setdefault(number_of[state.clone, state.revision], []).append(
             state._replace(packages=tuple(sorted(packages)))

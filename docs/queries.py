@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
-from rosimpact.edges.memory import Kept
+from rosimpact.edges.memory import CachedMethod
 from rosimpact.impact.facts.manifest import Manifest
 from rosimpact.impact.facts.setup import SetupFile
 from rosimpact.impact.model.cmake.build import Build
@@ -36,6 +36,7 @@ A rule gets a `TargetView`: the workspace (`view.workspace`) as one target (`vie
 | to know | ask |
 |---|---|
 | which packages to report on, and all of them | `for package in view`, `for package in view.list_built()` |
+| a package of the workspace by its name | `view.workspace.packages` |
 | what package.xml says | `package.manifest` |
 | what builds it: `ament_python`, `catkin` ... | `package.build_type` |
 | what CMakeLists.txt builds, installs and exports | `package.build` |
@@ -101,7 +102,7 @@ def find_rows(kind: type) -> Iterator[tuple[type, Row]]:
             if isinstance(value, (property, cached_property)):
                 function = value.fget if isinstance(value, property) else value.func
                 yield owner, Row(name, returned(function), first_sentence(function))
-            elif isinstance(value, (staticmethod, classmethod, Kept)) or inspect.isfunction(value):
+            elif isinstance(value, (staticmethod, classmethod, CachedMethod)) or inspect.isfunction(value):
                 function = getattr(value, "__func__", value)
                 parameters = [each for each in inspect.signature(function).parameters if each not in ("self", "cls")]
                 yield owner, Row(f"{name}({', '.join(parameters)})", returned(function), first_sentence(function))

@@ -319,7 +319,7 @@ def _describe_shortage(error: BaseException) -> str:
     if number == errno.EAGAIN or (isinstance(error, RuntimeError) and "start new thread" in str(error)):
         return "the system allows no more processes or threads; use fewer with --jobs 1, or allow more with `ulimit -u`"
     if isinstance(error, RecursionError):
-        return f"something is nested too deeply to be read{_place(error)}; leave it out, or nest it less"
+        return f"something is nested too deeply to be read{_find_place(error)}; leave it out, or nest it less"
     if any(kind.__name__ == "BrokenExecutor" for kind in type(error).__mro__):
         return "a process that worked for this one died; give it more memory, or use fewer with --jobs 1"
     return ""
@@ -365,11 +365,11 @@ def describe_unforeseen(error: BaseException) -> str:
     if shortage := _describe_shortage(error):
         return shortage
     text = escape(" ".join(str(error).split())[:200])
-    what = f"{type(error).__name__}{_place(error)}{': ' + text if text else ''}"
+    what = f"{type(error).__name__}{_find_place(error)}{': ' + text if text else ''}"
     return f"{what}; this is a fault of rosimpact, please report it"
 
 
-def _place(error: BaseException) -> str:
+def _find_place(error: BaseException) -> str:
     trace = error.__traceback__
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 Method = TypeVar("Method", bound=Callable[..., Any])
 
 
-class Kept:
+class CachedMethod:
     """The descriptor that cache_method() makes of a method."""
 
     def __init__(self, method: Callable[..., Any]):
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
         The arguments have to be hashable. The answers live as long as the object, which cannot be pickled with them."""
         return method
 else:
-    cache_method = Kept
+    cache_method = CachedMethod
 
 
 def cache_in_derived(function: Method) -> Method:

@@ -19,7 +19,7 @@ from rosimpact.impact.conditions import Environment
 from rosimpact.impact.conditions.manifest import evaluate
 from rosimpact.impact.targets import snapshot as snapshots
 from rosimpact.impact.targets.distro.distro import TargetError, make_version_key
-from rosimpact.impact.targets.distro.known import KnownDistro, end_of_day, format_day, list_known_distros
+from rosimpact.impact.targets.distro.known import KnownDistro, compute_end_of_day, format_day, list_known_distros
 from rosimpact.impact.targets.snapshot import Snapshot
 from rosimpact.impact.targets.version import parse
 
@@ -217,7 +217,7 @@ class History:
     def cut(self, day: str) -> int:
         """The moment (seconds since 1970) of the rosdistro commit that stands on a day."""
         place = bisect.bisect_right(self._sync_days, day)
-        return self.syncs[place - 1][1] if place else end_of_day(day)
+        return self.syncs[place - 1][1] if place else compute_end_of_day(day)
 
     def versions(self, day: str) -> dict[str, str]:
         """Package to version, of all that is released on a day."""
@@ -259,7 +259,7 @@ class History:
 
     def _first_commit_by_sync(self) -> int:
         """Commits up to the day before the first known sync were available on their own day, as far as is known."""
-        return end_of_day(self.syncs[0][0]) - 86400
+        return compute_end_of_day(self.syncs[0][0]) - 86400
 
     def first_available(self) -> dict[str, str]:
         """Package to the first day on which it was there."""
@@ -276,7 +276,7 @@ class History:
         By the commit's moment. Versions of before the announced release count from then; those that ended before are
         left out.
         """
-        begin, end = end_of_day(self.begin), end_of_day(self.end)
+        begin, end = compute_end_of_day(self.begin), compute_end_of_day(self.end)
         found = []
         for repository, since, until in self._lives:
             start, stop = max(since, begin), min(until or end, end)

@@ -31,7 +31,8 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 _FIRST = (
     "hostile/test_attacks.py", "debian/", "test_processes.py", "test_damaged_cache.py", "test_report_cache.py",
     "test_signals.py", "test_gather.py", "test_surface_command.py", "corpus/test_study.py", "packaging/",
-    "targets/test_cluster.py", "test_", "rules/test_rules.py", "rules/test_silence.py", "corpus/", "classifier/",
+    "targets/test_cluster.py", "test_", "rules/test_other_rules.py", "rules/test_rules.py",
+    "rules/test_silence.py", "corpus/", "classifier/",
 )  # fmt: skip
 """Beginnings of the paths of tests that come first, in this order: those that start processes, while the process of the
 tests is small and forks fast; then those that take long, so that with -n all processes end with short ones."""
@@ -225,7 +226,7 @@ def commands_built_once() -> Iterator[None]:
 
 _IN_ONE_PROCESS = {
     "rules", "model", "report", "targets", "facts", "flow", "test_bad_input.py", "test_base.py", "test_check.py",
-    "test_cli.py", "test_env_diff.py", "test_findings.py", "test_fix.py", "test_graph.py", "test_guarded.py",
+    "test_cli.py", "test_env_diff.py", "test_findings.py", "test_fix.py", "test_graph.py", "test_cross_target_fix.py",
     "test_impact_command.py", "test_installed.py", "test_new_rule.py", "test_one_change.py", "test_report_cache.py",
     "test_surface_command.py", "test_upgrade.py", "test_why.py",
 }  # fmt: skip

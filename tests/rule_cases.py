@@ -6,7 +6,7 @@ ones. CONTRIBUTING.md describes the format.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,14 +27,16 @@ class CaseError(ValueError):
 class Case(NamedTuple):
     """One section of a case file: a workspace and what a rule reports about it.
 
-    title: the section's heading. targets: as on the command line; none: those that the workspace names. unchanged: the
-    workspace of all sections, files: the same with this section's change; text by path. installed: built files of an
-    install space, a line each. findings: the lines of its block of findings; none: nothing may be reported.
+    title: the section's heading. targets: as on the command line; none: those that the workspace names. others: rules
+    that run along, where the rule reports on what others find. unchanged: the workspace of all sections, files: the
+    same with this section's change; text by path. installed: built files of an install space, a line each. findings:
+    the lines of its block of findings; none: nothing may be reported.
     """
 
     file: Path
     title: str
     targets: tuple[str, ...]
+    others: tuple[str, ...]
     unchanged: Files
     files: Files
     installed: tuple[str, ...]
@@ -45,12 +47,21 @@ class Case(NamedTuple):
         return self.file.stem.partition("__")[0].replace("_", "-")
 
     @property
+    def asked(self) -> tuple[str, ...]:
+        """The rules that the case is checked by."""
+        return self.rule, *self.others
+
+    @property
     def family(self) -> str:
         return self.file.parent.name
 
     @property
     def name(self) -> str:
         return f"{self.family}/{self.file.stem}: {self.title}"
+
+
+CheckCase = Callable[..., Report]
+"""The fixture check_case() of rules/conftest.py: a case and the names of rules to its report."""
 
 
 class Block(NamedTuple):
@@ -69,6 +80,7 @@ class Part(NamedTuple):
     start: int
     end: int
     targets: tuple[str, ...]
+    others: tuple[str, ...]
     blocks: tuple[Block, ...]
 
     def lines_of(self, word: str) -> tuple[str, ...]:
@@ -77,7 +89,7 @@ class Part(NamedTuple):
 
 
 _LISTS = ("findings", "installed", "empty", "removed")
-_TARGETS = "Targets:"
+_TARGETS, _OTHERS = "Targets:", "Other rules:"
 
 
 def find_cases() -> list[Case]:
@@ -111,6 +123,7 @@ def read_cases(file: Path) -> list[Case]:
             file,
             section.title,
             section.targets or common.targets,
+            section.others or common.others,
             unchanged,
             _change_files(file, unchanged, section),
             section.lines_of("installed") or common.lines_of("installed"),
@@ -123,15 +136,17 @@ def read_cases(file: Path) -> list[Case]:
 def split_parts(file: Path, lines: Sequence[str]) -> list[Part]:
     """A file's common part and its sections. Raises CaseError."""
     parts: list[Part] = []
-    title, start, targets, blocks = "", 0, (), []
+    title, start, targets, others, blocks = "", 0, (), (), []
     at = 0
     while at <= len(lines):
         line = lines[at] if at < len(lines) else "## "
         if line.startswith("## "):
-            parts.append(Part(title, start, at, targets, tuple(blocks)))
-            title, start, targets, blocks = line[3:].strip(), at, (), []
+            parts.append(Part(title, start, at, targets, others, tuple(blocks)))
+            title, start, targets, others, blocks = line[3:].strip(), at, (), (), []
         elif line.startswith(_TARGETS):
             targets = tuple(line.removeprefix(_TARGETS).replace(",", " ").split())
+        elif line.startswith(_OTHERS):
+            others = tuple(line.removeprefix(_OTHERS).replace(",", " ").split())
         elif line.startswith("```"):
             fence = line[: len(line) - len(line.lstrip("`"))]
             last = next((i for i in range(at + 1, len(lines)) if lines[i].rstrip() == fence), None)

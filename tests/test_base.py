@@ -85,12 +85,12 @@ def test_uncommitted_committed_and_branched_changes_count_alike(tmp_path):
 
 
 def test_what_happened_on_the_base_since_is_not_ours(tmp_path):
-    """The merge base counts: a fault cured on main after we left is still old here."""
+    """The merge base counts: a fault fixed on main after we left is still old here."""
     package(tmp_path / "a", WRONG)
     commit(tmp_path)
     branch(tmp_path, "feature")
     package(tmp_path / "a")
-    commit(tmp_path, "cured on main")
+    commit(tmp_path, "fixed on main")
     repository = pygit2.Repository(str(tmp_path))
     repository.checkout("refs/heads/feature")
     assert errors(tmp_path, "main") == {"a": False}

@@ -83,7 +83,7 @@ def test_a_target_more_takes_nothing_away():
 
 
 @pytest.mark.parametrize(
-    ("cure", "on_jazzy", "on_humble"),
+    ("fix", "on_jazzy", "on_humble"),
     [
         (Declare("package.xml", "rclcpp"), True, True),
         (Declare("package.xml", "porter_msgs"), True, True),
@@ -99,10 +99,10 @@ def test_a_target_more_takes_nothing_away():
         (Remove("package.xml", "rclcpp"), False, False),
     ],
 )
-def test_a_cure_is_right_elsewhere_only_where_that_is_known(cure, on_jazzy, on_humble):
+def test_a_fix_is_right_elsewhere_only_where_that_is_known(fix, on_jazzy, on_humble):
     with open_workspace(EXAMPLE, Options(targets=("jazzy", "humble"))) as opened:
         jazzy, humble = opened.views
-        assert (is_right_on(cure, jazzy), is_right_on(cure, humble)) == (on_jazzy, on_humble)
+        assert (is_right_on(fix, jazzy), is_right_on(fix, humble)) == (on_jazzy, on_humble)
 
 
 def test_configuration(tmp_path):

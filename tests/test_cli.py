@@ -180,7 +180,7 @@ def test_nothing_analysed_leaves_the_baseline_alone(say, tmp_path):
 
 @pytest.fixture
 def curable(ws, monkeypatch):
-    """A rule whose finding is cured by declaring a dependency."""
+    """A rule whose finding is fixed by declaring a dependency."""
     from rosimpact.impact.model.cmake.build import At
     from rosimpact.impact.rules import rule as registry
     from rosimpact.impact.rules.fix_actions import Declare

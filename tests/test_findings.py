@@ -455,7 +455,7 @@ def test_baseline_knows_by_content_and_count():
     assert len(seen) == 2
     text, gone = prune_baseline(known, now)
     assert gone == 1
-    assert read_baseline(text) == {"1": 2}, "what is cured goes, what is new is not added"
+    assert read_baseline(text) == {"1": 2}, "what is fixed goes, what is new is not added"
 
 
 def test_baseline_is_the_same_for_the_same_findings_in_any_order():

@@ -55,6 +55,8 @@ error deck/rope.txt:2 rope [noetic]
 ```removed
 deck/mark
 ```
+
+Other rules: long-rope, wet-rope
 """
 ROPE = "one\ntwo\n\ntwo\n## three\n"
 
@@ -73,6 +75,7 @@ def test_a_file_is_read(file):
     assert plain.unchanged == plain.files == {"deck/rope.txt": ROPE, "deck/mark": ""}
     assert (plain.targets, plain.findings) == (("humble", "jazzy"), ())
     assert (cut.targets, cut.unchanged) == (("noetic",), plain.files)
+    assert (plain.asked, deck.asked) == (("lost-rope",), ("lost-rope", "long-rope", "wet-rope"))
     assert cut.files == {"deck/rope.txt": "two\nnew\n\ntwo\n## four\n", "deck/mark": ""}
     assert cut.findings == ("error deck/rope.txt:2 rope [noetic]", "  `rope` is short", "  help: take another")
     assert deck.files == {"deck/rope.txt": ROPE, "deck/deck.cpp": "```\n"}

@@ -61,7 +61,7 @@ def sources():
     return {name: open(path, "rb").read() for name, path, _ in source_keys._list_sources()}
 
 
-PARAMETERS = set(map(parameters.kind_of, parameters.LIMITS))
+PARAMETERS = set(map(parameters.make_kind, parameters.LIMITS))
 # A module of each extractor that no other extractor imports, and the kinds that it makes.
 EXTRACTORS = [
     ("impact.facts.interface", {"msg", "srv", "action", "idl"}),

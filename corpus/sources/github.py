@@ -17,10 +17,10 @@ from email.utils import parsedate_to_datetime
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlencode, urlsplit
 
-from ..polite import Client, Refused, ServiceAnswer, normalize_address
-from ..report import CorpusError, Report
-from ..store import AskedReport, GatheredReport, Page, hash_bytes
-from .in_order import Part, read_in_order
+from ..polite import Client, ServiceAnswer, StatusError, normalize_address
+from ..report import BugReport, CorpusError
+from ..store import AskedReport, GatheredPage, GatheredReport, hash_bytes
+from .in_order import AnswerPage, read_in_order
 
 if TYPE_CHECKING:
     from github import Github
@@ -142,7 +142,7 @@ class Listed:
         where = "" if server.api == API else f" at {urlsplit(server.api).netloc}"
         self.name = f"github:{repository.lower()}{where} {'+'.join(kinds)}{f' since {since}' if since else ''}"
 
-    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[GatheredPage]:
         """From a state (None: from the start) to the end of the list. State: the time from which to ask, and the ETag
         of the last answer, so that asking when nothing is new costs nothing."""
         state = state or {}
@@ -161,7 +161,7 @@ class Listed:
         for step in steps:
             answer: ServiceAnswer = step.part.about
             if answer.status == 304:
-                yield Page([], {"since": start, "etag": etag}, finished=True, done=done, of=total)
+                yield GatheredPage([], {"since": start, "etag": etag}, finished=True, done=done, of=total)
                 return
             done += len(step.fresh)
             total = done if step.finished else done + _count_left(answer.links, len(step.part.rows))
@@ -169,11 +169,11 @@ class Listed:
             kept = answer.headers.get("etag", "") if step.whole and len(step.part.rows) < PER_PAGE else ""
             state = {"since": step.since, "etag": kept} if kept else {"since": step.since}
             reports = list(self._parse_reports(step.fresh))
-            yield Page(
+            yield GatheredPage(
                 reports, state, finished=step.finished, done=done, of=total, moved=self._find_move(step.part.rows)
             )
 
-    def _fetch(self, since: str, place: str | None, etag: str) -> Part:
+    def _fetch(self, since: str, place: str | None, etag: str) -> AnswerPage:
         """A page of what was updated since a time; place: the address of a further one. Raises CorpusError."""
         client = self._server.client
         answer, rows = client.get_json(
@@ -181,11 +181,11 @@ class Listed:
             accept=(304,) if etag else (),
         )  # fmt: skip
         if answer.status == 304:
-            return Part([], about=answer)
+            return AnswerPage([], about=answer)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
             raise CorpusError(f"{client.service}: answered with no list; check --api")
         onward = answer.links.get("next")
-        return Part(rows, self._check_address(onward) if onward else None, _is_over(since, answer), answer)
+        return AnswerPage(rows, self._check_address(onward) if onward else None, _is_over(since, answer), answer)
 
     def _find_move(self, rows: list[dict[str, Any]]) -> tuple[str, str] | None:
         """(old, new) name of the repository, where it is no longer the one that was asked for."""
@@ -228,7 +228,7 @@ class Searched:
         where = "" if server.api == API else f" at {urlsplit(server.api).netloc}"
         self.name = f"github search{where} {self._query}{f' since {since}' if since else ''}"
 
-    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[GatheredPage]:
         """From a state (None: from the start) to the end. State: the moment of creation from which to search."""
         since = str((state or {}).get("created") or self._since)
         total, done = None, 0
@@ -242,9 +242,9 @@ class Searched:
             newest = max([step.since, *(str(row.get("created_at") or "") for row in step.part.rows)])
             state = {"created": newest if step.finished else step.since}
             reports = [self._server.parse_report(row) for row in step.fresh]
-            yield Page(reports, state, finished=step.finished, done=done, of=max(total, done))
+            yield GatheredPage(reports, state, finished=step.finished, done=done, of=max(total, done))
 
-    def _fetch(self, since: str, place: int | None) -> Part:
+    def _fetch(self, since: str, place: int | None) -> AnswerPage:
         """A page of what was posted since a moment; place: the number of a further one. Raises CorpusError."""
         number = place or 1
         if number > SEARCH_LIMIT // PER_PAGE:
@@ -253,7 +253,7 @@ class Searched:
                 "narrow the search"
             )
         count, rows = self._fetch_page(f"{self._query} created:>={since}" if since else self._query, number)
-        return Part(rows, number + 1 if rows and number * PER_PAGE < count else None, about=count)
+        return AnswerPage(rows, number + 1 if rows and number * PER_PAGE < count else None, about=count)
 
     def _fetch_page(self, query: str, number: int) -> tuple[int, list[dict[str, Any]]]:
         """(how many there are in all, those of one page). Asks again while the server says that it ran out of time."""
@@ -267,7 +267,7 @@ class Searched:
             except GithubException as error:
                 said = str(error.data.get("message", ""))[:200] if isinstance(error.data, dict) else ""
                 says = f" ({said})" if said else ""
-                raise Refused(
+                raise StatusError(
                     f"{client.service}: the search answered with status {error.status}{says}; check the query",
                     error.status,
                 ) from None
@@ -286,7 +286,7 @@ def _make_report(issue: Issue, raw: dict[str, Any], etag: str, asked: str) -> Ga
         raise CorpusError(f"{issue.html_url}: is no address of an issue; check that --api leads to a GitHub server")
     created = issue.created_at
     kept = _reduce_issue(raw)
-    report = Report(
+    report = BugReport(
         id=f"{place[1]}#{place[2]}",
         url=issue.html_url,
         source="github",

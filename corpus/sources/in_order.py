@@ -23,7 +23,7 @@ _LATER = 5
 """How often a moment is waited for to end."""
 
 
-class Part(NamedTuple):
+class AnswerPage(NamedTuple):
     """One answer. onward: the place of the next page, None at the end. over: whether the moment that was asked for has
     passed, so that nothing new can be of it. about: the answer itself, for whoever asks."""
 
@@ -33,11 +33,11 @@ class Part(NamedTuple):
     about: Any = None
 
 
-class Step(NamedTuple):
+class ReadStep(NamedTuple):
     """What a request brought. fresh: rows that are not as they were on the pages just before. since: where to go on
     when this is the last step of a run. whole: whether this was the only request of a list, from `since` to the end."""
 
-    part: Part
+    part: AnswerPage
     fresh: list[Row]
     since: Any
     finished: bool = False
@@ -45,13 +45,13 @@ class Step(NamedTuple):
 
 
 def read_in_order(
-    ask: Callable[[Any, Any], Part],
+    ask: Callable[[Any, Any], AnswerPage],
     since: Moment,
     moment_of: Callable[[Row], Moment],
     name_of: Callable[[Row], Hashable],
     wait: Callable[[], None],
     service: str,
-) -> Iterator[Step]:
+) -> Iterator[ReadStep]:
     """Reads a list from a moment to its end, each row at least once.
 
     ask: gives a page of the rows that are not older than its first argument; the second is the place of a further
@@ -60,16 +60,16 @@ def read_in_order(
     """
     known: dict[Hashable, Row] = {}
 
-    def make_step(part: Part, before: Part | None, finished: bool = False, whole: bool = False) -> Step:
+    def make_step(part: AnswerPage, before: AnswerPage | None, finished: bool = False, whole: bool = False) -> ReadStep:
         nonlocal known
         fresh = [row for row in part.rows if known.get(name_of(row)) != row]
         known = {name_of(row): row for each in (before, part) if each is not None for row in each.rows}
-        return Step(part, fresh, since, finished, whole)
+        return ReadStep(part, fresh, since, finished, whole)
 
-    def find_newest(part: Part) -> Moment:
+    def find_newest(part: AnswerPage) -> Moment:
         return max((moment_of(row) for row in part.rows), default=since)
 
-    def order(part: Part) -> list[tuple[Hashable, Moment]]:
+    def order(part: AnswerPage) -> list[tuple[Hashable, Moment]]:
         return [(name_of(row), moment_of(row)) for row in part.rows]
 
     while True:
@@ -106,6 +106,6 @@ def read_in_order(
                 place, here = None, ask(since, None)
                 yield make_step(here, None)
         if find_newest(here) <= since:
-            yield Step(Part([], about=here.about), [], since, finished=True)
+            yield ReadStep(AnswerPage([], about=here.about), [], since, finished=True)
             return
         since = find_newest(here)

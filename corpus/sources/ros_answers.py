@@ -26,9 +26,9 @@ import msgspec
 from ...edges.documents import DocumentError, load_json, load_yaml_as_text
 from ...edges.files import open_regular, read_file
 from ...edges.limits import get_limits
-from ..polite import Client, Refused, normalize_address
-from ..report import CorpusError, Report
-from ..store import AskedReport, GatheredReport, Page, hash_bytes
+from ..polite import Client, StatusError, normalize_address
+from ..report import BugReport, CorpusError
+from ..store import AskedReport, GatheredPage, GatheredReport, hash_bytes
 from .markup import convert_to_markdown, parse_html
 from .person import make_public_name
 
@@ -88,7 +88,7 @@ class Archive:
         if not place.is_file() and not (place / _FOLDER).is_dir():
             raise CorpusError(f"{place}: holds no `{_FOLDER}`; give a clone of {ARCHIVE}, on its newest commit")
 
-    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[GatheredPage]:
         """State: the number of the last file of a folder that was read. At the end it is forgotten: next time all files
         are looked at, and those that did not change are passed over."""
         entries: Iterable[tuple[int, Callable[[], bytes]]] = self._list_entries(int((state or {}).get("after", 0)))
@@ -148,7 +148,7 @@ class Archive:
                 pairs.append((copy, gathered.report.id))
             if not self._since or (gathered.report.date or "9999") >= self._since:
                 reports.append(gathered)
-        return Page(reports, {"after": part[-1][0]} if part else {}, done=count, of=total, copies=tuple(pairs))
+        return GatheredPage(reports, {"after": part[-1][0]} if part else {}, done=count, of=total, copies=tuple(pairs))
 
     def _list_entries(self, after: int) -> Iterator[tuple[int, Callable[[], bytes]]]:
         """(number, what reads it) of the files beyond a number; those of a folder in the order of their numbers."""
@@ -248,7 +248,7 @@ class SavedPages:
         if not folder.is_dir():
             raise CorpusError(f"{folder}: is no folder; give one with saved question pages (*.html)")
 
-    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[GatheredPage]:
         """All of them, the first of several pages of a question alone. State: the last file that was read."""
         after = (state or {}).get("after", "")
         named = sorted(
@@ -275,8 +275,8 @@ class SavedPages:
                     self.unread.append(f"{name}: holds no question")
                 elif not self._since or (found.report.date or "9999") >= self._since:
                     reports.append(found)
-            yield Page(reports, {"after": part[-1][0]}, done=min(len(rest), start + _AT_ONCE), of=len(rest))
-        yield Page([], {}, finished=True, done=len(rest), of=len(rest))
+            yield GatheredPage(reports, {"after": part[-1][0]}, done=min(len(rest), start + _AT_ONCE), of=len(rest))
+        yield GatheredPage([], {}, finished=True, done=len(rest), of=len(rest))
 
 
 class Askbot:
@@ -290,7 +290,7 @@ class Askbot:
         self._since = since
         self.name = f"ros-answers api {self._api}{f' since {since}' if since else ''}"
 
-    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[GatheredPage]:
         """All questions, oldest first. State: the page to go on with, and how many questions there were. A page beyond
         the end would be the first one again; a question that was deleted moves the others up by one, so the page before
         is read once more."""
@@ -315,7 +315,7 @@ class Askbot:
             finished = number >= last
             # the last page fills up later
             state = {"page": number if finished else number + 1, "count": count}
-            yield Page(reports, state, finished=finished, done=done, of=max(done, count))
+            yield GatheredPage(reports, state, finished=finished, done=done, of=max(done, count))
             if finished:
                 return
             number += 1
@@ -347,7 +347,7 @@ def parse_archived(data: bytes, name: str) -> tuple[GatheredReport, str] | None:
         return None
     copy = _MIGRATED.match(str(head.get("migrated_url") or ""))
     body = found[2].replace("\r\n", "\n").strip("\n")
-    report = Report(
+    report = BugReport(
         id=f"ros-answers:{number}",
         url=url or f"https://answers.ros.org/question/{number}/",
         source="ros-answers",
@@ -385,7 +385,7 @@ def parse_item(item: dict[str, Any]) -> GatheredReport:
         if name in item
     }  # fmt: skip
     kept["author"] = {"username": make_public_name(author.get("username"))}
-    report = Report(
+    report = BugReport(
         id=f"ros-answers:{number}",
         url=str(item.get("url") or ""),
         source="ros-answers",
@@ -420,7 +420,7 @@ def parse_page(html: str) -> GatheredReport | None:
     author = next((name for link in links if link is not None and (name := _extract_words(link))), "")
     link = page.select_one("link[rel=canonical]")
     url = str(link.get("href") or "") if link is not None else ""
-    report = Report(
+    report = BugReport(
         id=f"ros-answers:{number}",
         url=url if _QUESTION.search(url) else f"https://answers.ros.org/question/{number}/",
         source="ros-answers",
@@ -448,7 +448,7 @@ def fetch_archive(client: Client, file: Path, address: str = TARBALL) -> Path:
     """Downloads the archive as one file. Raises CorpusError."""
     try:
         client.download(address, file)
-    except Refused as error:
+    except StatusError as error:
         raise CorpusError(f"{error}; or clone {ARCHIVE} and give it with --archive DIR") from None
     return file
 

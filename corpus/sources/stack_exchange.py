@@ -16,10 +16,10 @@ from datetime import datetime, timedelta, timezone
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import urlsplit
 
-from ..polite import Client, Refused, normalize_address
-from ..report import CorpusError, Report
-from ..store import AskedReport, GatheredReport, Page, hash_bytes
-from .in_order import Part, read_in_order
+from ..polite import Client, StatusError, normalize_address
+from ..report import BugReport, CorpusError
+from ..store import AskedReport, GatheredPage, GatheredReport, hash_bytes
+from .in_order import AnswerPage, read_in_order
 from .markup import convert_to_markdown, parse_html
 from .person import make_public_name
 
@@ -89,7 +89,7 @@ class StackExchange:
                 return found
             said = str(found.get("error_message") or "")[:200]
             if found.get("error_name") != "throttle_violation":
-                raise Refused(
+                raise StatusError(
                     f"{self.client.service}: refused ({found.get('error_name')}: {said}); check what is asked for",
                     found["error_id"],
                 )
@@ -129,7 +129,7 @@ def _is_wrapper(found: object) -> bool:
     return listed or isinstance(found.get("error_id"), int)
 
 
-class Tagged:
+class TaggedQuestions:
     """The questions with a tag, posted since a day (`2024-01-01`) or ever, in the order of their posting."""
 
     def __init__(self, server: StackExchange, tag: str, *, since: str = ""):
@@ -139,7 +139,7 @@ class Tagged:
         where = "" if server.api == API else f" at {urlsplit(server.api).netloc}"
         self.name = f"stack-exchange:{server.site} {tag}{where}{f' since {since}' if since else ''}"
 
-    def read_pages(self, state: dict[str, Any] | None) -> Iterator[Page]:
+    def read_pages(self, state: dict[str, Any] | None) -> Iterator[GatheredPage]:
         """From a state (None: from the start) to the end. State: the second of the last question's posting."""
         since = (state or {}).get("since")
         if since is None:
@@ -154,11 +154,11 @@ class Tagged:
             newest = max((_read_date(item) for item in step.part.rows), default=step.since)
             reports = [convert(item) for item in step.fresh]
             state = {"since": max(newest, step.since) if step.finished else step.since}
-            yield Page(reports, state, finished=step.finished, done=done)
+            yield GatheredPage(reports, state, finished=step.finished, done=done)
             if step.finished:
                 return
 
-    def _fetch(self, since: int, place: int | None) -> Part:
+    def _fetch(self, since: int, place: int | None) -> AnswerPage:
         """A page of what was posted since a second; place: the number of a further one. Raises CorpusError."""
         page = place or 1
         if page > _LAST_PAGE:
@@ -173,7 +173,7 @@ class Tagged:
             "questions", "questions", **asked, sort="creation", order="asc", page=page, pagesize=PAGE_SIZE,
             filter="withbody",
         )  # fmt: skip
-        return Part(found["items"], page + 1 if found.get("has_more") and found["items"] else None)
+        return AnswerPage(found["items"], page + 1 if found.get("has_more") and found["items"] else None)
 
 
 def _read_date(item: dict[str, Any]) -> int:
@@ -195,7 +195,7 @@ def convert(item: dict[str, Any]) -> GatheredReport:
     given, listed = item.get("owner"), item.get("tags")
     owner = given if isinstance(given, dict) else {}
     tags = listed if isinstance(listed, list) else []
-    report = Report(
+    report = BugReport(
         id=f"robotics-se:{number}",
         url=str(item.get("link") or "") or f"https://robotics.stackexchange.com/questions/{number}",
         source="robotics-se",

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ...impact.facts.cpp.lexical import Scan, find_words, includes_of, scan
+from ...impact.facts.cpp.lexical import Scan, collect_includes, find_words, scan
 from ...impact.facts.surface import Entity, HeaderSurface
 from .cpp_declarations import (
     ClassHead,
@@ -100,7 +100,7 @@ class _Reader:
     def read(self) -> HeaderSurface:
         self._walk()
         scanned = self.scanned
-        includes = includes_of(scanned)
+        includes = collect_includes(scanned)
         instead = ""
         if self.deprecated is None:
             self.deprecated = find_warning(self.text)
@@ -440,7 +440,7 @@ class _Reader:
         prefix = "" if whole else scope.around if friend else scope.prefix
         self.entities.append(
             Entity(
-                kind, prefix + name, self.scanned.place(offset)[0], traits=_sort_traits(traits), access=access,
+                kind, prefix + name, self.scanned.locate(offset)[0], traits=_sort_traits(traits), access=access,
                 deprecated=deprecated, internal=scope.internal, conditions=self.scanned.find_segment(offset)[2], **more,
             )
         )  # fmt: skip
@@ -540,7 +540,7 @@ class _Reader:
             position = offset + len(word)
             self.entities.append(
                 Entity(
-                    "enumerator", prefix + word, self.scanned.place(offset)[0], scope.prefix + name if name else "",
+                    "enumerator", prefix + word, self.scanned.locate(offset)[0], scope.prefix + name if name else "",
                     access=self.access if scope.class_name else "", value=value, deprecated=deprecated,
                     internal=scope.internal, conditions=self.scanned.find_segment(offset)[2],
                 )

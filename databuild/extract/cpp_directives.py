@@ -74,7 +74,7 @@ def _list_macros(scanned: Scan, defines: list[tuple[int, int, str]], undefined: 
             plain = tuple(CppParameter(parameter.type) for parameter in parameters[0])
             if parameters[1] or "..." in match[2]:
                 plain = (*(one for one in plain if one.type), CppParameter("..."))
-        line = scanned.place(start)[0]
+        line = scanned.locate(start)[0]
         yield Entity("macro", name, line, parameters=plain, value=value, conditions=conditions)
 
 

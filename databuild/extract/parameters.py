@@ -48,7 +48,7 @@ LIMITS = {"cpp": "cpp", "python": "python", "cfg": "script", "yaml": "parameters
 """What facts/kinds.py asks a module that makes facts for: their type, and which limit the size of files has."""
 
 
-def kind_of(language: str) -> str:
+def make_kind(language: str) -> str:
     """The kind of these facts of files in one of the languages of LIMITS."""
     return f"{__name__}:{language}"
 

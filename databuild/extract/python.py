@@ -11,7 +11,7 @@ from ...impact.facts.condition import Condition
 from ...impact.facts.place import Problem
 from ...impact.facts.python.reader import EXCEPT, IMPORT_ERRORS, TRY
 from ...impact.facts.python.source import read
-from ...impact.facts.python.surface import LATE, Bound, ModuleSurface, Taken, make_parameters, unparse_even
+from ...impact.facts.python.surface import LATE, Bound, ImportedName, ModuleSurface, make_parameters, unparse_even
 from ...impact.facts.python.text import format_dotted, list_caught_exceptions
 
 LONGEST = 80
@@ -58,7 +58,7 @@ class _Module:
 
     def __init__(self) -> None:
         self.names: list[Bound] = []
-        self.imports: list[Taken] = []
+        self.imports: list[ImportedName] = []
         self.all: list[str] | None = None
         self.all_open = False
         self.open: list[tuple[str, str]] = []
@@ -82,11 +82,13 @@ class _Module:
             elif isinstance(node, ast.Import):
                 for alias in node.names:
                     name = alias.asname or alias.name.partition(".")[0]
-                    self.imports.append(Taken(name, alias.name, 0, "", node.lineno, scope, conditions))
+                    self.imports.append(ImportedName(name, alias.name, 0, "", node.lineno, scope, conditions))
             elif isinstance(node, ast.ImportFrom):
                 for alias in node.names:
                     name, module = alias.asname or alias.name, node.module or ""
-                    self.imports.append(Taken(name, module, node.level, alias.name, node.lineno, scope, conditions))
+                    self.imports.append(
+                        ImportedName(name, module, node.level, alias.name, node.lineno, scope, conditions)
+                    )
             elif isinstance(node, ast.Delete):
                 self.remove_deleted(node, scope)
             elif isinstance(node, ast.Expr):

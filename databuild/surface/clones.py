@@ -17,7 +17,7 @@ from ...impact.targets.version import parse
 from ...impact.tree import GitTree, TreeError
 from .compare import RepositorySurfaces
 from .package import build_tree_surfaces
-from .releases import find_git_directory, list_releases, normalize_url, tag_of
+from .releases import find_git_directory, find_tag, list_releases, normalize_url
 
 if TYPE_CHECKING:
     from ...impact.facts.store import Store
@@ -27,7 +27,7 @@ class VersionError(UserError):
     """A version that cannot be read from the clones; the message says why and what to do."""
 
 
-class Release(NamedTuple):
+class DistroVersion(NamedTuple):
     """A version that a distro has or had. urls: of its sources, those known. superseded: it has a newer one now."""
 
     distro: str
@@ -78,7 +78,7 @@ class Clone:
     def tag(self, version: str, package: str = "", distro: str = "") -> str | None:
         """The ref of the tag of a version: as developers name them, else as bloom does in release repositories. Of the
         latter one that holds the whole repository counts more than one that holds the package alone."""
-        found = tag_of(self.tags, version, self.name.rpartition("/")[2])
+        found = find_tag(self.tags, version, self.name.rpartition("/")[2])
         if found is not None:
             return found
         released = self.released.get((package, version), {})
@@ -132,7 +132,7 @@ class Clone:
             raise TreeError(f"{self.name}: there is no revision `{revision}`; `git tag` lists what there is") from None
 
 
-def release_of(package: str, asked: str, data: Snapshot) -> Release:
+def find_release(package: str, asked: str, data: Snapshot) -> DistroVersion:
     """What a distro (`jazzy`, `jazzy@2024-08-01`) has of a package. Raises VersionError when it does not have it."""
     name, _, date = asked.partition("@")
     try:
@@ -145,7 +145,7 @@ def release_of(package: str, asked: str, data: Snapshot) -> Release:
         where = f"; released in {', '.join(having)}" if having else ", and no other distro either"
         raise VersionError(f"{asked} has no `{package}`{where}")
     _, url, branch = target.find_repository(package) or ("", "", "")
-    return Release(name, version, (url,) if url else (), branch)
+    return DistroVersion(name, version, (url,) if url else (), branch)
 
 
 def find_newest_distro(package: str, data: Snapshot) -> str:
@@ -237,7 +237,7 @@ class Clones:
         if not asked or asked[0].isdigit():
             yield from _find_tagged_versions(clones, package, asked)
             return
-        release = release_of(package, asked, self._data)
+        release = find_release(package, asked, self._data)
         if not self._find_release_clones(package, release):
             url = release.urls[0]
             raise VersionError(
@@ -245,7 +245,7 @@ class Clones:
             )
         yield from self.find_candidates(package, release)
 
-    def find_candidates(self, package: str, release: Release) -> Iterator[Version]:
+    def find_candidates(self, package: str, release: DistroVersion) -> Iterator[Version]:
         """States that may stand for a package of a release, best first."""
         clones = self._find_release_clones(package, release)
         yield from _find_tagged_versions(clones, package, release.version, release.distro)
@@ -258,7 +258,7 @@ class Clones:
             if tip is not None:
                 yield Version(clone, tip, release.version, True)
 
-    def _find_release_clones(self, package: str, release: Release) -> list[Clone]:
+    def _find_release_clones(self, package: str, release: DistroVersion) -> list[Clone]:
         """The clones that may have what a distro released."""
         clones = self.find_clones(package)
         own = [clone for clone in clones if clone.is_one_of(release.urls)]

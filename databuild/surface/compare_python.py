@@ -68,8 +68,8 @@ class _Comparison:
         return gone
 
     def are_modules_alike(self, old: str, new: str) -> bool:
-        had = {n for n in self.old.bound(self.old.modules[old]) if "." not in n}
-        has = {n for n in self.new.bound(self.new.modules[new]) if "." not in n}
+        had = {n for n in self.old.list_bound(self.old.modules[old]) if "." not in n}
+        has = {n for n in self.new.list_bound(self.new.modules[new]) if "." not in n}
         return not had or len(had & has) * 2 >= len(had)
 
     def report_missing(self, name: str, entry: PythonName, gone: list[str]) -> None:

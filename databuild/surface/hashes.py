@@ -120,7 +120,7 @@ def _parse_array(text: str) -> tuple[int, int] | None:
     return (_ARRAY if most == inside else _BOUNDED), int(most)
 
 
-def hash_of(name: str, ros: int, definition: Interface, find: Find) -> str | None:
+def compute_hash(name: str, ros: int, definition: Interface, find: Find) -> str | None:
     """The hash of an interface (`package/msg/Name`) in a ROS generation; None where it has none, or it is not known."""
     package, _, rest = name.partition("/")
     if ros == 1:

@@ -59,7 +59,7 @@ _TOLD = (
 )
 
 
-class Part(NamedTuple):
+class InstalledFiles(NamedTuple):
     """Files that were installed together: by one Debian package, or in a prefix without any. paths: from the prefix.
     read: the content of one; start: its first bytes. Both raise OSError."""
 
@@ -100,7 +100,7 @@ def read_surface(package: str, asked: str) -> tuple[Surface, RepositorySurfaces]
 # -- where files are ---------------------------------------------------------------------------------------------------
 
 
-def read_prefix(folder: Path, package: str) -> list[Part]:
+def read_prefix(folder: Path, package: str) -> list[InstalledFiles]:
     """The files of one package in a prefix, and of what its Debian packages have besides."""
     share = folder / "share" / package
     if not share.is_dir():
@@ -118,8 +118,8 @@ def read_prefix(folder: Path, package: str) -> list[Part]:
     return [_make_part(folder, [path.relative_to(folder).as_posix() for path in found], convention=True)]
 
 
-def _make_part(folder: Path, paths: Iterable[str], convention: bool = False) -> Part:
-    return Part(
+def _make_part(folder: Path, paths: Iterable[str], convention: bool = False) -> InstalledFiles:
+    return InstalledFiles(
         frozenset(paths),
         lambda path: read_file(folder / path, get_limits().text),
         lambda path: read_start(folder / path, _START),
@@ -153,7 +153,7 @@ def _get_content(files: Mapping[str, DebFile], path: str) -> bytes:
     return data
 
 
-def load(files: Sequence[Path]) -> list[Part]:
+def load(files: Sequence[Path]) -> list[InstalledFiles]:
     """The files of Debian packages, from the prefix in which their ROS packages lie. Raises DebError and OSError."""
     parts = []
     for file in files:
@@ -162,7 +162,7 @@ def load(files: Sequence[Path]) -> list[Part]:
         for start in sorted(starts):
             inside = {path.removeprefix(start): member for path, member in held.items() if path.startswith(start)}
             parts.append(
-                Part(
+                InstalledFiles(
                     frozenset(inside),
                     partial(_get_content, inside),
                     partial(lambda inside, path: inside[path].data[:_START], inside),
@@ -175,7 +175,7 @@ def load(files: Sequence[Path]) -> list[Part]:
 # -- what they tell ----------------------------------------------------------------------------------------------------
 
 
-def build_surface(package: str, parts: Sequence[Part]) -> Surface:
+def build_surface(package: str, parts: Sequence[InstalledFiles]) -> Surface:
     """The surface of a package by its installed files. One of the parts has its manifest. What cannot be read is left
     out, and listed as unknown."""
     share = f"share/{package}/"
@@ -240,7 +240,7 @@ def _list_unread(files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
         yield "headers" if _HEADER.search(path) else "files", f"{path} cannot be read: {reason}"
 
 
-def _touches(part: Part, package: str) -> bool:
+def _touches(part: InstalledFiles, package: str) -> bool:
     """Whether a Debian package has something of a ROS package whose manifest another one has."""
     starts = (f"share/{package}/", f"include/{package}/", f"lib/{package}/")
     return any(path.startswith(starts) or _get_module_path(path).startswith(f"{package}/") for path in part.paths)
@@ -251,7 +251,7 @@ def _get_module_path(path: str) -> str:
     return found[1] if found else ""
 
 
-def _list_headers(package: str, parts: Sequence[Part]) -> Iterator[tuple[Part, str]]:
+def _list_headers(package: str, parts: Sequence[InstalledFiles]) -> Iterator[tuple[InstalledFiles, str]]:
     for part in parts:
         alone = not part.convention and part.packages == {package}
         for path in sorted(part.paths):
@@ -268,7 +268,7 @@ def _include(path: str) -> str:
     return rest if rest.startswith(f"{first}/") else inside
 
 
-def _read_interfaces(package: str, parts: Sequence[Part]) -> Iterator[tuple[str, Interface]]:
+def _read_interfaces(package: str, parts: Sequence[InstalledFiles]) -> Iterator[tuple[str, Interface]]:
     wanted = re.compile(rf"share/{re.escape(package)}/(msg|srv|action)/([A-Za-z]\w*)\.(msg|srv|action)\Z")
     found: dict[str, Interface] = {}
     for part in parts:
@@ -298,7 +298,7 @@ class _CMake(NamedTuple):
     dependencies: dict[str, None]
 
 
-def _read_cmake(package: str, parts: Sequence[Part]) -> _CMake:
+def _read_cmake(package: str, parts: Sequence[InstalledFiles]) -> _CMake:
     found = _CMake(set(), set(), set(), {}, {})
     # Debian keeps configurations below the folder of the architecture.
     place = re.compile(
@@ -321,7 +321,7 @@ def _read_cmake(package: str, parts: Sequence[Part]) -> _CMake:
     return found
 
 
-def _read_python(package: str, parts: Sequence[Part]) -> tuple[list[InstalledModule], set[str]]:
+def _read_python(package: str, parts: Sequence[InstalledFiles]) -> tuple[list[InstalledModule], set[str]]:
     modules: dict[str, InstalledModule] = {}
     unknown: set[str] = set()
     for part in parts:
@@ -342,7 +342,7 @@ def _read_python(package: str, parts: Sequence[Part]) -> tuple[list[InstalledMod
     return [modules[name] for name in sorted(modules)], unknown
 
 
-def _list_programs(package: str, parts: Sequence[Part]) -> Iterator[InstalledProgram]:
+def _list_programs(package: str, parts: Sequence[InstalledFiles]) -> Iterator[InstalledProgram]:
     found = {}
     for part in parts:
         for path in part.paths:
@@ -353,7 +353,7 @@ def _list_programs(package: str, parts: Sequence[Part]) -> Iterator[InstalledPro
     return iter(sorted(found.values(), key=lambda program: program.name))
 
 
-def _read_launch_files(package: str, parts: Sequence[Part]) -> Iterator[InstalledLaunchFile]:
+def _read_launch_files(package: str, parts: Sequence[InstalledFiles]) -> Iterator[InstalledLaunchFile]:
     share = f"share/{package}/"
     for part in parts:
         for path in sorted(part.paths):

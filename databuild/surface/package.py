@@ -96,11 +96,11 @@ def _list_declaring_files(package: Package) -> Iterator[tuple[str, str]]:
         full = path if path.startswith(base) else f"{base}{path}"
         kind = kinds.find_kind(full)
         if kind in ("cpp", "python") and find_folder_role(full[len(base) :]) is None:
-            yield full, parameters.kind_of(kind)
+            yield full, parameters.make_kind(kind)
     for made in package.build.generated:
         language = {"parameters": "yaml", "reconfigure": "cfg"}.get(made.how)
         if language is not None and made.offered:
-            yield from ((path, parameters.kind_of(language)) for path in made.files if "$" not in path)
+            yield from ((path, parameters.make_kind(language)) for path in made.files if "$" not in path)
 
 
 def _merge_parameters(

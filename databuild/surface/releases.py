@@ -48,7 +48,7 @@ def list_releases(snapshot: Snapshot, name: str) -> list[Release]:
     return sorted(found.values(), key=lambda r: (r.distro, parse(r.version)))
 
 
-def tag_of(tags: dict[str, str], version: str, name: str = "") -> str | None:
+def find_tag(tags: dict[str, str], version: str, name: str = "") -> str | None:
     """The ref of a version's tag, None when the repository (of that name) has none."""
     for spelling in (version, f"v{version}", f"{name}-{version}", f"ros2_{version}", f"release-{version}"):
         if spelling in tags:

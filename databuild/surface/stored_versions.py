@@ -9,7 +9,7 @@ from ...impact.facts.interface import Interface
 from ...impact.targets.distro.distro import DistroTarget
 from ...impact.targets.snapshot import Snapshot, load_snapshot
 from ...impact.targets.surface.store import Surfaces
-from .clones import VersionError, find_newest_distro, release_of
+from .clones import VersionError, find_newest_distro, find_release
 from .compare import RepositorySurfaces
 
 
@@ -44,7 +44,7 @@ class StoredVersions:
             ros = max((ros for ros, line in lines.items() if version in line.versions), default=0)
             stored = version if ros else None
         else:
-            release = release_of(package, asked, self._data)
+            release = find_release(package, asked, self._data)
             version, ros = release.version, DistroTarget(release.distro, data=self._data).ros
             place = lines[ros].find_place(version) if ros in lines else None
             stored = lines[ros].versions[place] if place is not None else None

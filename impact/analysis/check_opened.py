@@ -32,7 +32,7 @@ from .findings import (
     suppress,
     verify_settings,
 )
-from .report import Checked, Coverage, Report, ReportedPackage, ReportedTarget, SourceLines, report_target
+from .report import AnalysisCoverage, Checked, Report, ReportedPackage, ReportedTarget, SourceLines, report_target
 from .run_rules import Crashes, run_rules
 from .session import (
     OpenedWorkspace,
@@ -44,7 +44,7 @@ from .session import (
 
 if TYPE_CHECKING:
     from ..model.install_space import InstallSpace
-    from ..targets.machine.shared_libraries import Shelf
+    from ..targets.machine.shared_libraries import SharedLibraries
     from .downstream import Impact
 
 
@@ -62,7 +62,7 @@ def check_opened(
     """
     started = time.perf_counter() if started is None else started
     rules = load_rules()
-    tree, store, gathered, workspace, targets, views, config, _, installed, shelves = opened
+    tree, store, gathered, workspace, targets, views, config, _, installed, shared_libraries = opened
     chosen = select_rules(options, config)
     settings = _collect_settings(rules, config)
     sources = SourceLines(make_reader(tree))
@@ -105,7 +105,7 @@ def check_opened(
         data=targets[0].target.data_date if targets else "",
         targets=(
             *(report_target(chosen_target, notes if i == 0 else ()) for i, chosen_target in enumerate(targets)),
-            *_list_file_only_targets({chosen_target.target.name for chosen_target in targets}, shelves),
+            *_list_file_only_targets({chosen_target.target.name for chosen_target in targets}, shared_libraries),
         ),
         findings=tuple(found),
         coverage=measure_coverage(workspace, gathered, views, installed),
@@ -158,12 +158,14 @@ def _find_impact(workspace: Workspace, base: Workspace, crashed: Crashes) -> Imp
         return None
 
 
-def _list_file_only_targets(names: Container[str], shelves: Iterable[Shelf]) -> Iterator[ReportedTarget]:
+def _list_file_only_targets(
+    names: Container[str], shared_libraries: Iterable[SharedLibraries]
+) -> Iterator[ReportedTarget]:
     """Machines that only built files are checked on: this one, where no target is it."""
-    for shelf in shelves:
-        if shelf.target not in names:
+    for libraries in shared_libraries:
+        if libraries.target not in names:
             note = "only built files were checked on it"
-            yield ReportedTarget(shelf.target, "", "", shelf.platform, "where --install lies", (note,))
+            yield ReportedTarget(libraries.target, "", "", libraries.platform, "where --install lies", (note,))
 
 
 def _collect_settings(rules: Mapping[str, Rule], config: Config) -> tuple[PathSetting, ...]:
@@ -260,7 +262,7 @@ def _has_header(view: TargetView, path: str) -> bool:
 
 def measure_coverage(
     workspace: Workspace, gathered: ExtractedFacts, views: Sequence[TargetView], installed: InstallSpace | None = None
-) -> Coverage:
+) -> AnalysisCoverage:
     """How much was read and resolved."""
     broken = {path for package in workspace for path, _, _ in package.digest.problems}
     unresolved: dict[str, set[str]] = {}
@@ -283,4 +285,4 @@ def measure_coverage(
     if installed is not None:
         sound = sum(not binary.elf.problem for binary in installed.binaries)
         files, parsed = files + sound, parsed + sound
-    return Coverage(len(workspace.packages), files, parsed, counts)
+    return AnalysisCoverage(len(workspace.packages), files, parsed, counts)

@@ -90,7 +90,7 @@ def merge_diagnostics(
         at = diagnostic.at
         key = (rule_name, severity, getattr(at, "path", ""), getattr(at, "line", 0), diagnostic.subject, ahead)
         names = (target,) if target else tuple(targets) or ("",)
-        _place(groups.setdefault(key, []), names, diagnostic)
+        _add_to_group(groups.setdefault(key, []), names, diagnostic)
     findings = [
         _make_finding(rules[name], severity, path, line, by_target, order, holds)
         for (name, severity, path, line, _, _), facts in groups.items()
@@ -105,7 +105,7 @@ def sort_findings(findings: Iterable[Finding]) -> list[Finding]:
     return sorted(findings, key=_sort_key)
 
 
-def _place(facts: list[dict[str, Diagnostic]], names: tuple[str, ...], diagnostic: Diagnostic) -> None:
+def _add_to_group(facts: list[dict[str, Diagnostic]], names: tuple[str, ...], diagnostic: Diagnostic) -> None:
     """Puts a diagnostic into the first fact of its group that says nothing else about these targets."""
     for by_target in facts:
         if all(name not in by_target or by_target[name].fact == diagnostic.fact for name in names):
@@ -519,7 +519,7 @@ def split_by_baseline(findings: Iterable[Finding], known: Counter[str]) -> tuple
 
 
 def prune_baseline(known: Counter[str], findings: Iterable[Finding]) -> tuple[str, int]:
-    """(the baseline's text without what is cured, how many entries went). Findings it does not know are not added."""
+    """(the baseline's text without what is fixed, how many entries went). Findings it does not know are not added."""
     _, old = split_by_baseline(findings, known)
     return format_baseline(old), sum(known.values()) - len(old)
 

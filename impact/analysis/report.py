@@ -48,7 +48,7 @@ class ReportedPackage(NamedTuple):
     path: str
 
 
-class Coverage(NamedTuple):
+class AnalysisCoverage(NamedTuple):
     """What was analysed: packages, files that concern us, files parsed without trouble, and what stayed open."""
 
     packages: int = 0
@@ -71,7 +71,7 @@ class Report(NamedTuple):
     data: str
     targets: tuple[ReportedTarget, ...]
     findings: tuple[Finding, ...]
-    coverage: Coverage
+    coverage: AnalysisCoverage
     packages: tuple[ReportedPackage, ...] = ()
     suppressed: tuple[Finding, ...] = ()
     known: tuple[Finding, ...] = ()
@@ -212,7 +212,7 @@ def count_by_target(report: Report) -> dict[str, dict[str, dict[str, int]]]:
     return table
 
 
-def format_coverage(coverage: Coverage) -> str:
+def format_coverage(coverage: AnalysisCoverage) -> str:
     """Coverage as one clause: packages, files parsed of files, what stayed unresolved."""
     unresolved = [format_count(number, kind) for kind, number in sorted(coverage.unresolved.items()) if number]
     files = format_count(coverage.files, "file")

@@ -19,7 +19,7 @@ from ..source_keys import compute_code_stamp
 from ..targets.snapshot import compute_data_stamp, find_updated_folder
 from ..tree import WorkingTree
 from ..tree.paths import compute_blob_id
-from .report import Checked, Coverage, Report, ReportedPackage, SourceLines, report_target
+from .report import AnalysisCoverage, Checked, Report, ReportedPackage, SourceLines, report_target
 from .session import Options, Read, make_reader, select_rules
 
 
@@ -30,7 +30,7 @@ class _Kept(msgspec.Struct, frozen=True, array_like=True):
     findings: tuple[Finding, ...]
     suppressed: tuple[Finding, ...]
     known: tuple[Finding, ...]
-    coverage: Coverage
+    coverage: AnalysisCoverage
     packages: tuple[ReportedPackage, ...]
     rules: tuple[str, ...]
     originals: tuple[tuple[str, str], ...]

@@ -108,7 +108,7 @@ def store_yielded(
     store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
 ) -> None:
     """Keeps what rules yielded, and names that were not resolved by their kind, for later runs."""
-    stored = tuple(_Stored(rule, _place_of(one.at), one._replace(at=None)) for rule, one in diagnostics)
+    stored = tuple(_Stored(rule, _make_place(one.at), one._replace(at=None)) for rule, one in diagnostics)
     store.remember("judgement", encode_rows([(key, _Judgement(stored, unresolved))]))
 
 
@@ -141,5 +141,5 @@ def load_changes(store: Store, target: DistroTarget) -> None:
         store.remember("changes", encode_rows([(name, [tuple(change) for change in one.changes()])]))
 
 
-def _place_of(at: object) -> At:
+def _make_place(at: object) -> At:
     return At(getattr(at, "path", ""), getattr(at, "line", 0), getattr(at, "column", 0))

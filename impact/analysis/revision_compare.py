@@ -120,4 +120,6 @@ def open_base(tree: Tree, opened: OpenedWorkspace, *, jobs: int | None = None) -
     ]
     workspace = linked[opened.workspace.ros]
     # What is installed is of no revision.
-    return opened._replace(tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shelves=())
+    return opened._replace(
+        tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shared_libraries=()
+    )

@@ -270,12 +270,12 @@ def _run_on_install(opened: OpenedWorkspace, rule: Rule, crashed: Crashes) -> It
     if installed is None:
         return
     views = {view.target.name: view for view in opened.views}
-    for shelf in opened.shelves:
-        view = views.get(shelf.target, opened.views[0])
+    for libraries in opened.shared_libraries:
+        view = views.get(libraries.target, opened.views[0])
         yielded = _run_safely(
-            rule, shelf.target, crashed, lambda view=view, shelf=shelf: rule.run(view, installed, shelf)
+            rule, libraries.target, crashed, lambda view=view, libraries=libraries: rule.run(view, installed, libraries)
         )
-        yield from ((rule.name, shelf.target, each) for each in yielded)
+        yield from ((rule.name, libraries.target, each) for each in yielded)
 
 
 def _bind(rule: Rule, opened: OpenedWorkspace, before: Workspace | None) -> Callable[[], Iterable[Diagnostic]]:

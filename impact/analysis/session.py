@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ..model.workspace import Workspace
     from ..rules.rule import Rule
     from ..targets.asked_versions import AskedVersions
-    from ..targets.machine.shared_libraries import Shelf
+    from ..targets.machine.shared_libraries import SharedLibraries
 
 
 class CheckError(UserError):
@@ -75,7 +75,7 @@ class OpenedWorkspace(NamedTuple):
     config: Config
     asked: AskedVersions
     installed: InstallSpace | None = None
-    shelves: Sequence[Shelf] = ()
+    shared_libraries: Sequence[SharedLibraries] = ()
 
     def split_by_target(self) -> Iterator[OpenedWorkspace]:
         """The same workspace on each of its targets alone."""
@@ -188,14 +188,16 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
     gathered.problems += [*workspace.discovered.problems, *_list_shadowed_packages(workspace)]
     asked = frozenset(chosen.target.distro for chosen in targets)
     views = [TargetView(linked[each.target.ros], each.target, load_providers(), config, asked) for each in targets]
-    installed, shelves = None, ()
+    installed, shared_libraries = None, ()
     if options.install is not None:
         from ..model import install_space as built
 
         installed = built.read_space(options.install, Path(path), workspace, store, options.jobs)
-        shelves = built.list_shelves(installed, targets, config)
-        gathered.problems += [*installed.problems, *built.list_foreign_files(installed, shelves)]
-    return OpenedWorkspace(tree, store, gathered, workspace, targets, views, config, asked_versions, installed, shelves)
+        shared_libraries = built.list_shared_libraries(installed, targets, config)
+        gathered.problems += [*installed.problems, *built.list_foreign_files(installed, shared_libraries)]
+    return OpenedWorkspace(
+        tree, store, gathered, workspace, targets, views, config, asked_versions, installed, shared_libraries
+    )
 
 
 def _list_shadowed_packages(workspace: Workspace) -> Iterator[PathProblem]:
@@ -283,8 +285,8 @@ def explain_nothing_analysed(path: str | os.PathLike[str], opened: OpenedWorkspa
     if ignored:
         named = "; ".join(f"`{shown(each.path)}`: {each.message}" for each in ignored[:3])
         more = f", and {len(ignored) - 3} more" if len(ignored) > 3 else ""
-        cure = "remove the markers or give another folder"
-        return f"{where}: no package is left to analyse, all are ignored ({named}{more}); {cure}"
+        remedy = "remove the markers or give another folder"
+        return f"{where}: no package is left to analyse, all are ignored ({named}{more}); {remedy}"
     linked = [problem for problem in opened.tree.problems if problem.message == LEAVES]
     if linked:
         named = ", ".join(f"`{shown(problem.path)}`" for problem in linked[:3])

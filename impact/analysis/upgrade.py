@@ -23,7 +23,7 @@ class Upgrade(NamedTuple):
     those that were asked for, in build order. breaks: errors and warnings that the upgrade brings. deprecations: what
     will go next. brought: the findings of both that the old target lacks. both: errors and warnings that the old
     target has too. over: those that hold on the old target alone. fixable: fingerprints of findings that `check --fix`
-    cures. command: which does that. check_old: the command that lists what the old target has already. fail_on: what
+    fixes. command: which does that. check_old: the command that lists what the old target has already. fail_on: what
     the configuration says, empty without.
     """
 
@@ -47,7 +47,7 @@ class Upgrade(NamedTuple):
         return self.report.targets[0]
 
     def count_fixes(self, item: UpgradeItem) -> int:
-        """How many findings of an item `check --fix` cures."""
+        """How many findings of an item `check --fix` fixes."""
         return sum(finding.fingerprint in self.fixable for finding in item.findings)
 
 

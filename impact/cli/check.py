@@ -13,7 +13,7 @@ from ...edges.version import __version__
 from ..analysis.check import Checked
 from ..analysis.check import run as run_check
 from ..analysis.findings import SettingsError, has_failures
-from ..analysis.report import Coverage, Report
+from ..analysis.report import AnalysisCoverage, Report
 from ..analysis.session import Options
 from ..report.style import PLAIN, choose_style
 from ..tree import WorkingTree, shown
@@ -27,7 +27,7 @@ def _fail(message: str, format: str, output: Path | None, path: object) -> int:
     """Says why a check failed, in the format asked for too, so that valid JSON is printed all the same. Returns 2."""
     say(f"rosimpact: {message}")
     if format in FORMATS and format != "text":
-        text = render(Report(__version__, "", (), (), Coverage(), failure=message), format, notes=False)
+        text = render(Report(__version__, "", (), (), AnalysisCoverage(), failure=message), format, notes=False)
         with suppress(UserError):
             try:
                 deliver(text, output, format, path)
@@ -121,7 +121,7 @@ def _write_new_baseline(file: Path, report: Report, path: Path) -> int:
 
 
 def _prune(file: Path, known: str, report: Report, path: Path) -> None:
-    """Takes what is cured out of a baseline file."""
+    """Takes what is fixed out of a baseline file."""
     from ..analysis.findings import prune_baseline, read_baseline
 
     text, gone = prune_baseline(read_baseline(known), [*report.findings, *report.known])

@@ -116,7 +116,7 @@ def _find_surface(package: str, asked: str, repos: Path | None, store, jobs):
 def _list_hashes(package: str, asked: str, state) -> dict[str, str]:
     """The hashes of a package's interfaces, by `msg/Name`, as far as all that is in them is known: in the state of its
     repository, or of other packages of the distro that was asked for."""
-    from ...databuild.surface.hashes import hash_of
+    from ...databuild.surface.hashes import compute_hash
     from ...databuild.surface.installed import is_installed
     from ...databuild.surface.stored_versions import StoredVersions
     from ..targets.surface.store import load_shipped
@@ -131,7 +131,9 @@ def _list_hashes(package: str, asked: str, state) -> dict[str, str]:
 
     surface = state.surfaces[package]
     ros = 2 if surface.build.build_type.startswith("ament") else 1
-    known = ((name, hash_of(f"{package}/{name}", ros, definition, find)) for name, definition in surface.interfaces)
+    known = ((
+        name, compute_hash(f"{package}/{name}", ros, definition, find)
+    ) for name, definition in surface.interfaces)
     return {name: told for name, told in known if told is not None}
 
 

@@ -226,7 +226,7 @@ class _Idl:
 
     def __init__(self, text: str):
         self.text = text
-        self.place = Document(text).place
+        self.locate = Document(text).locate
         self.tokens = [
             _Token(m.lastgroup or "mark", m.group(), m.start())
             for m in IDL_TOKEN.finditer(text)
@@ -267,7 +267,7 @@ class _Idl:
 
     def get_line(self) -> int:
         at = min(self.at, len(self.tokens)) - 1
-        return self.place(self.tokens[at].offset)[0] if self.tokens else 1
+        return self.locate(self.tokens[at].offset)[0] if self.tokens else 1
 
 
 def _parse_idl(text: str) -> Interface:
@@ -313,7 +313,7 @@ def _parse_idl_item(idl: _Idl, annotations: list[str]) -> None:
         value = idl.text[first.offset : last.offset + len(last.text)]
         idl.expect(";")
         owner = idl.modules[-1] if idl.modules else ""
-        idl.constants.setdefault(owner, []).append(Constant(name.text, type_, value, *idl.place(start)))
+        idl.constants.setdefault(owner, []).append(Constant(name.text, type_, value, *idl.locate(start)))
     elif token.text == "typedef":
         type_, array = _parse_type(idl)
         name = idl.take_word().text
@@ -361,7 +361,7 @@ def _parse_struct(idl: _Idl) -> None:
             default = next((_parse_argument(a) for a in annotations if a.startswith("@default")), "")
             comment = next((_parse_argument(a) for a in annotations if a.startswith("@verbatim")), "")
             fields.append(
-                Field(field.text, type_, own or array, default, *idl.place(start), comment, tuple(annotations))
+                Field(field.text, type_, own or array, default, *idl.locate(start), comment, tuple(annotations))
             )
             if idl.peek() != ",":
                 break

@@ -203,7 +203,7 @@ def find_script_kind(data: bytes) -> str:
 
 
 def extract(kind: str, data: bytes) -> FileFacts[Any]:
-    """Facts of a file of a kind as given by kind_of(); never raises: what fails is a Problem of empty facts."""
+    """Facts of a file of a kind as given by find_kind(); never raises: what fails is a Problem of empty facts."""
     if kind == "script":
         kind = find_script_kind(data)
         if kind == "script":
@@ -296,7 +296,7 @@ def encode(facts: FileFacts[Any]) -> bytes:
 
 
 def decode(kind: str, data: bytes) -> FileFacts[Any]:
-    """The facts that encode() wrote, for a kind as given by kind_of().
+    """The facts that encode() wrote, for a kind as given by find_kind().
 
     Raises msgspec.DecodeError (its subclass ValidationError where the shape differs) when the bytes are not such facts.
     """

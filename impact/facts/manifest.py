@@ -121,13 +121,13 @@ def extract(data: bytes) -> Manifest:
         if kinds is None:
             if tag in TEXT_TAGS:
                 continue
-            line = document.place(child.offset)[0]
+            line = document.locate(child.offset)[0]
             unknown.append((tag, child.text, line))
             found.append(Problem(line, _describe_unknown_tag(tag, format_, tags)))
             kinds = ANY_FORMAT.get(tag.replace("-", "_").lower())
             if kinds is None:
                 continue
-        line, column = document.place(child.text_offset)
+        line, column = document.locate(child.text_offset)
         if not child.text:
             empty.append(Problem(line, f"`<{tag}>` names nothing"))
             continue
@@ -142,7 +142,7 @@ def extract(data: bytes) -> Manifest:
             dependencies.append(Dependency(child.text, kind, tag, line, column, condition, bounds))
 
     exports = tuple(
-        Export(e.name, {a.name: a.value for a in e.attributes}, e.text, document.place(e.offset)[0]) for e in exported
+        Export(e.name, {a.name: a.value for a in e.attributes}, e.text, document.locate(e.offset)[0]) for e in exported
     )
     warnings: tuple[Problem, ...] = ()
     if document.problems:
@@ -155,7 +155,9 @@ def extract(data: bytes) -> Manifest:
         name.text if name is not None else "",
         version.text if version is not None else "",
         format_ or 3,
-        document.place(name.text_offset)[0] if name is not None else document.place(document.elements[root].offset)[0],
+        document.locate(name.text_offset)[0] if name is not None else document.locate(
+            document.elements[root].offset
+        )[0],
         tuple(dependencies),
         tuple((e.text, e.attributes.get("condition", "")) for e in exports if e.tag == "build_type" and e.text),
         exports,
@@ -333,9 +335,9 @@ def _find_line(message: str, document: Document, children: list[Element]) -> int
     for quoted in QUOTED.findall(message):
         for child in children:
             if child.name != "name" and (child.text == quoted or child.get("email") == quoted):
-                return document.place(child.text_offset)[0]
+                return document.locate(child.text_offset)[0]
     for quoted in (*QUOTED.findall(message), *message.lower().split()):
         for child in children:
             if child.name == quoted or child.name + "s" == quoted:
-                return document.place(child.text_offset)[0]
-    return document.place(document.elements[0].offset)[0] if document.elements else 1
+                return document.locate(child.text_offset)[0]
+    return document.locate(document.elements[0].offset)[0] if document.elements else 1

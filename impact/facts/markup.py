@@ -73,7 +73,7 @@ class Document:
     def _starts(self) -> list[int]:
         return [0, *(line.end() for line in re.finditer("\n", self.text))]
 
-    def place(self, offset: int) -> tuple[int, int]:
+    def locate(self, offset: int) -> tuple[int, int]:
         """Line and column of an offset, both from 1."""
         line = bisect_right(self._starts, offset)
         return line, offset - self._starts[line - 1] + 1

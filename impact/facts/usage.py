@@ -278,7 +278,7 @@ def find_use_places(data: bytes, *patterns: Pattern) -> Iterator[tuple[int, Plac
             if not checked and not _is_in_such_a_file(pattern, data, text):
                 break
             checked = True
-            line, column = place_in(text, at) if scanned is None else scanned.place(at)
+            line, column = locate_in(text, at) if scanned is None else scanned.locate(at)
             yield number, (line, column, conditions, types)
 
 
@@ -304,7 +304,7 @@ def _stands_in(expression: str, text: str) -> bool:
     return has_needed(expression, text) and _compile(expression).search(text) is not None
 
 
-def place_in(text: str, offset: int) -> tuple[int, int]:
+def locate_in(text: str, offset: int) -> tuple[int, int]:
     """Line and column of an offset, from 1."""
     return text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset)
 

@@ -12,7 +12,7 @@ from . import guards
 from .guards import Ways
 from .history import PackageState
 from .match import SAME, OutletAt, Renames, StatementPlace, collect_conditions, match_outlets, match_statements
-from .statements import Gate, Outlet, PackageStatements, Path, Said, StatementStart
+from .statements import Gate, Outlet, PackageStatements, Path, PublishStatement, StatementStart
 
 Kind = Literal["tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed"]
 KINDS: tuple[Kind, ...] = ("tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed")
@@ -70,7 +70,9 @@ class Side(NamedTuple):
 
     def list_statements(self) -> list[StatementPlace]:
         """All publish statements."""
-        return [StatementPlace(s.name, d, said, s.locate(said.path)) for s, d in self.packages for said in d.statements]
+        return [StatementPlace(
+            s.name, d, statement, s.locate(statement.path)
+        ) for s, d in self.packages for statement in d.statements]
 
     def list_outlets(self) -> list[OutletAt]:
         """All publishers."""
@@ -90,10 +92,12 @@ def is_unchanged(old: Side, new: Side) -> bool:
 def _list_stamps(side: Side) -> tuple[list[str], list[str]]:
     statements, outlets = [], []
     for at in side.list_statements():
-        said = at.said
-        ways = sorted(repr((way.start, [(g.kind, g.text, g.meaning) for g in way.gates])) for way in said.ways)
-        topics, kinds = sorted(at.topics), said.type
-        statements.append(repr((at.path, said.function, said.variable, topics, said.expression, kinds, ways)))
+        statement = at.statement
+        ways = sorted(repr((way.start, [(g.kind, g.text, g.meaning) for g in way.gates])) for way in statement.ways)
+        topics, kinds = sorted(at.topics), statement.type
+        statements.append(
+            repr((at.path, statement.function, statement.variable, topics, statement.expression, kinds, ways))
+        )
     for at in side.list_outlets():
         one = at.outlet
         outlets.append(repr((at.path, one.function, one.variable, one.topic, one.type, one.offers)))
@@ -111,11 +115,13 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
     gone = [at for at in gone if not _has_unclear_call(at, names, new)]
     come = [at for at in come if not _has_unclear_call(at, SAME, old, names)]
     for at in gone:
-        was = _describe_trigger("was published", at.said)
-        yield _make_change("gone", at, at.outlets, _format_ways(at.said.ways, at.said), None, was)
+        was = _describe_trigger("was published", at.statement)
+        yield _make_change("gone", at, at.outlets, _format_ways(at.statement.ways, at.statement), None, was)
     for at in come:
         yield _make_change(
-            "new", at, at.outlets, None, _format_ways(at.said.ways, at.said), _describe_trigger("is published", at.said)
+            "new", at, at.outlets, None, _format_ways(
+                at.statement.ways, at.statement
+            ), _describe_trigger("is published", at.statement)
         )
     published = {id(outlet): at for at in after for outlet in at.outlets}
     for one, other in outlets:
@@ -126,10 +132,10 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
 
 def _has_unclear_call(at: StatementPlace, names: Renames, other: Side, backwards: Renames = SAME) -> bool:
     """Whether the other side has the call where the statement stood, and only does not tell that it publishes."""
-    variable = get_tail(names.map_text(at.said.variable))
+    variable = get_tail(names.map_text(at.statement.variable))
     return any(
         variable == get_tail(backwards.map_text(callee.rpartition(".")[0]))
-        and (backwards.map_path(state.locate(path)) == names.map_path(at.path) or function == at.said.function)
+        and (backwards.map_path(state.locate(path)) == names.map_path(at.path) or function == at.statement.function)
         for state, one in other.packages
         for path, function, callee in one.unclear
     )
@@ -138,12 +144,12 @@ def _has_unclear_call(at: StatementPlace, names: Renames, other: Side, backwards
 def _make_change(
     kind: Kind, at: StatementPlace, outlets: Iterable[Outlet], old: str | None, new: str | None, why: str
 ) -> LogicChange:
-    said = at.said
+    statement = at.statement
     topics = tuple(dict.fromkeys(topic for outlet in outlets for topic in outlet.full))
-    near = ", ".join(sorted(at.topics)) or said.variable
+    near = ", ".join(sorted(at.topics)) or statement.variable
     return LogicChange(
-        kind, at.package, at.path, said.line, said.function, ", ".join(said.nodes), near, topics, said.type, old, new,
-        why,
+        kind, at.package, at.path, statement.line, statement.function, ", ".join(statement.nodes), near, topics,
+        statement.type, old, new, why,
     )  # fmt: skip
 
 
@@ -156,7 +162,7 @@ def _compare_statements(
     if moved and not heirs & {id(outlet) for outlet in other.outlets}:
         was, is_now = ", ".join(sorted(one.topics)), ", ".join(sorted(other.topics))
         yield _make_change("changed", other, outlets, was, is_now, f"published on `{is_now}`, was `{was}`")
-    first, second = one.said, other.said
+    first, second = one.statement, other.statement
     old_shown, new_shown = _format_ways(first.ways, first), _format_ways(second.ways, second)
     if collect_conditions(first, names) != collect_conditions(second):
         why = _explain_never_runs(second)
@@ -172,7 +178,7 @@ def _compare_statements(
     kinds: list[guards.Kind] = []
     whys: list[str] = []
     starts: list[str] = []
-    for was, is_now in _starts_of(first, second, names):
+    for was, is_now in _pair_starts(first, second, names):
         old_ways = [way for way in first.ways if way.start in was]
         new_ways = [way for way in second.ways if way.start in is_now]
         if not old_ways or not new_ways:
@@ -201,11 +207,11 @@ def _compare_statements(
         yield _make_change("equivalent", other, outlets, old_shown, new_shown, "says the same in other words")
 
 
-def _explain_never_runs(said: Said) -> str:
+def _explain_never_runs(statement: PublishStatement) -> str:
     """Why a statement never runs, as far as that is sure; empty where it may."""
-    speech: guards.Language = "python" if said.language == "python" else "cpp"
+    speech: guards.Language = "python" if statement.language == "python" else "cpp"
     whys: list[str] = []
-    for way in said.ways:
+    for way in statement.ways:
         why = next((f"never runs, it stands {gate.text}" for gate in way.gates if gate.kind == "never"), "")
         if not why:
             sides = [[gate] for gate in way.gates if gate.kind in ("if", "unless")]
@@ -220,20 +226,20 @@ def _explain_never_runs(said: Said) -> str:
             texts = " and ".join(dict.fromkeys(f"`{_write_gate(gate, speech == 'python')}`" for gate in at_once))
             why = f"never runs, {texts} cannot hold"
         whys.append(why)
-    return "" if _cut_off(said) else "; ".join(dict.fromkeys(whys))
+    return "" if _cut_off(statement) else "; ".join(dict.fromkeys(whys))
 
 
 def _contradicts(gates: Sequence[Gate], speech: guards.Language) -> bool:
     return guards.is_impossible(_build_guard_ways([Path(StatementStart("unknown"), tuple(gates))])[0], speech)
 
 
-def _cut_off(said: Said) -> bool:
-    return len(said.ways) >= _MOST_WAYS
+def _cut_off(statement: PublishStatement) -> bool:
+    return len(statement.ways) >= _MOST_WAYS
 
 
-def _select_own_way(said: Said) -> list[Path]:
+def _select_own_way(statement: PublishStatement) -> list[Path]:
     """The one way through a statement's own function."""
-    gates = tuple(gate for gate in said.ways[0].gates if gate.of == said.function)
+    gates = tuple(gate for gate in statement.ways[0].gates if gate.of == statement.function)
     return [Path(StatementStart("unknown"), gates)]
 
 
@@ -290,8 +296,8 @@ def _collect_condition_names(ways: Ways, names: Renames) -> set[tuple[str, ...]]
 # What makes it run
 
 
-def _starts_of(
-    first: Said, second: Said, names: Renames
+def _pair_starts(
+    first: PublishStatement, second: PublishStatement, names: Renames
 ) -> Iterator[tuple[frozenset[StatementStart], frozenset[StatementStart]]]:
     """What makes a statement run, before and after, as far as one took the other's place; empty where nothing did."""
     if all(way.start.kind in _UNLED for way in first.ways) != all(way.start.kind in _UNLED for way in second.ways):
@@ -315,9 +321,9 @@ def _starts_of(
         yield frozenset(), frozenset(starts)
 
 
-def _group_starts(said: Said, names: Renames) -> dict[tuple[str, str], set[StatementStart]]:
+def _group_starts(statement: PublishStatement, names: Renames) -> dict[tuple[str, str], set[StatementStart]]:
     found: dict[tuple[str, str], set[StatementStart]] = {}
-    for way in said.ways:
+    for way in statement.ways:
         kind = "unknown" if way.start.kind in _UNSAID else way.start.kind
         found.setdefault((kind, _normalize_detail(names.map_text(way.start.detail))), set()).add(way.start)
     return found
@@ -387,14 +393,14 @@ def _format_offers(outlet: Outlet) -> str:
     return ", ".join(f"{name} {setting}" for name, setting in outlet.offers) or outlet.written
 
 
-def _describe_trigger(verb: str, said: Said) -> str:
-    starts = sorted({_describe_start(way.start) for way in said.ways if way.start.kind not in _UNSAID})
+def _describe_trigger(verb: str, statement: PublishStatement) -> str:
+    starts = sorted({_describe_start(way.start) for way in statement.ways if way.start.kind not in _UNSAID})
     return f"{verb} on {', '.join(starts)}" if starts else verb
 
 
-def _format_ways(ways: Sequence[Path], said: Said) -> str:
+def _format_ways(ways: Sequence[Path], statement: PublishStatement) -> str:
     """The condition that a statement runs under, as one expression; what starts it before that where it is known."""
-    python = said.language == "python"
+    python = statement.language == "python"
     by_start: dict[str, list[str]] = {}
     for way in ways[:_MOST_WAYS]:
         start = _describe_start(way.start) if way.start.kind not in _UNSAID else ""

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 from ..model.flow.code import get_outer, get_tail
-from .statements import Outlet, PackageStatements, Said
+from .statements import Outlet, PackageStatements, PublishStatement
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _ENOUGH = 9
@@ -17,13 +17,13 @@ class StatementPlace(NamedTuple):
 
     package: str
     digest: PackageStatements
-    said: Said
+    statement: PublishStatement
     path: str
 
     @property
     def outlets(self) -> list[Outlet]:
         """The publishers that it may use."""
-        return [self.digest.outlets[place] for place in self.said.outlets]
+        return [self.digest.outlets[place] for place in self.statement.outlets]
 
     @property
     def topics(self) -> frozenset[str]:
@@ -65,7 +65,7 @@ def match_statements(
     """(pairs, gone, come). Statements that stand where they stood, as they did, are matched first; then those that have
     most in common, unless that is too little."""
     keys = _make_exact_key, _make_near_key
-    return _match(old, new, names, keys, _score, lambda one, other: abs(one.said.line - other.said.line))
+    return _match(old, new, names, keys, _score, lambda one, other: abs(one.statement.line - other.statement.line))
 
 
 def match_outlets(old: Sequence[OutletAt], new: Sequence[OutletAt], names: Renames) -> list[tuple[OutletAt, OutletAt]]:
@@ -124,7 +124,7 @@ def _pair_equal(
     return pairs, left, [one for one in new if id(one) in unmatched]
 
 
-def collect_conditions(said: Said, names: Renames = SAME) -> frozenset[tuple]:
+def collect_conditions(statement: PublishStatement, names: Renames = SAME) -> frozenset[tuple]:
     """All that decides when a statement runs, as written, in the words of the new revision."""
     return frozenset(
         (
@@ -132,27 +132,29 @@ def collect_conditions(said: Said, names: Renames = SAME) -> frozenset[tuple]:
             names.map_text(way.start.detail),
             tuple((gate.kind, names.map_text(gate.text)) for gate in way.gates),
         )
-        for way in said.ways
+        for way in statement.ways
     )
 
 
 def _make_place_key(at: StatementPlace, names: Renames) -> tuple:
-    said = at.said
-    return names.map_path(at.path), names.map_text(normalize(said.function)), names.map_text(get_tail(said.variable))
+    statement = at.statement
+    return names.map_path(at.path), names.map_text(
+        normalize(statement.function)
+    ), names.map_text(get_tail(statement.variable))
 
 
 def _make_exact_key(at: StatementPlace, names: Renames) -> tuple:
-    return (*_make_near_key(at, names), collect_conditions(at.said, names))
+    return (*_make_near_key(at, names), collect_conditions(at.statement, names))
 
 
 def _make_near_key(at: StatementPlace, names: Renames) -> tuple:
-    return (*_make_place_key(at, names), at.topics, names.map_text(at.said.expression))
+    return (*_make_place_key(at, names), at.topics, names.map_text(at.statement.expression))
 
 
 def _score(one: StatementPlace, other: StatementPlace, names: Renames) -> int:
     """How much two statements have in common; too little where they publish on topics that are known to differ, unless
     they stand in one place."""
-    first, second = one.said, other.said
+    first, second = one.statement, other.statement
     if first.language != second.language:
         return 0
     file, function, variable = _make_place_key(one, names)

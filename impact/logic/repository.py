@@ -201,7 +201,9 @@ class _Run:
         for state in states.values():
             one = self.digests.decode_state(state.key)
             statements += len(one.statements)
-            unresolved += sum(not any(one.outlets[place].topic for place in said.outlets) for said in one.statements)
+            unresolved += sum(
+                not any(one.outlets[place].topic for place in statement.outlets) for statement in one.statements
+            )
             unread += [state.locate(path) for path in one.unread]
         return LogicCoverage(
             len(commits), compared, cut_off, len(states), statements, unresolved, tuple(sorted(unread))

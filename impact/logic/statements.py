@@ -75,7 +75,7 @@ class Outlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
     written: str = ""
 
 
-class Said(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class PublishStatement(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A publish statement. path: relative to the package. variable: the publisher as written. outlets: places in
     Digest.outlets of those that it may use. nodes: names of the nodes that run it."""
 
@@ -106,7 +106,7 @@ class PackageStatements(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A package at one commit. unread: files that were not read, or not in full. unclear: path, function and callee of
     calls that may publish, of which it is not known."""
 
-    statements: tuple[Said, ...] = ()
+    statements: tuple[PublishStatement, ...] = ()
     outlets: tuple[Outlet, ...] = ()
     inlets: tuple[Inlet, ...] = ()
     unread: tuple[str, ...] = ()
@@ -175,7 +175,7 @@ class _Digester:
             elif site.role == "subscriber":
                 inlets.extend(self._make_inlets(site))
         known = {site: place for site in join.sites.endpoints if (place := places.get(id(site))) is not None}
-        said: list[Said] = []
+        published: list[PublishStatement] = []
         for statement in join.sites.statements:
             if statement.through:
                 continue
@@ -185,9 +185,11 @@ class _Digester:
                     known[site] = len(outlets)
                     outlets.append(self._make_outlet(site))
                 numbers.append(known[site])
-            said.append(self._build_statement(statement, tuple(dict.fromkeys(numbers))))
+            published.append(self._build_statement(statement, tuple(dict.fromkeys(numbers))))
         return PackageStatements(
-            tuple(said), tuple(outlets), tuple(dict.fromkeys(inlets)), _list_unread_files(join), _list_unclear(join)
+            tuple(published), tuple(outlets), tuple(
+                dict.fromkeys(inlets)
+            ), _list_unread_files(join), _list_unclear(join)
         )
 
     def _find_owners(self, fn: Fn) -> list[Owner]:
@@ -239,7 +241,7 @@ class _Digester:
                 for topic in self._resolve_topics(site._replace(names=(value,))):
                     yield Inlet(topic, node.id if node else "", callback.name if callback else "", fn.source.path, line)
 
-    def _build_statement(self, statement: Statement, outlets: tuple[int, ...]) -> Said:
+    def _build_statement(self, statement: Statement, outlets: tuple[int, ...]) -> PublishStatement:
         use, join = statement.use, self.join
         fn = use.fn
         own = join.list_guards(fn, use.call.guard)
@@ -248,7 +250,7 @@ class _Digester:
         found = found or [Way(Trigger("unknown", "", "", 0))]
         ways = [self._build_path(way.trigger, (*way.guards, *own)) for way in found]
         nodes = tuple(sorted({node.id for node in map(_get_node, self._find_owners(fn)) if node is not None}))
-        return Said(
+        return PublishStatement(
             fn.source.path, use.call.line, fn.name, join.calls.get_receiver(use), outlets, statement.type,
             statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
         )  # fmt: skip

@@ -30,7 +30,7 @@ from ..tree import PathProblem, shown
 
 if TYPE_CHECKING:
     from ..config import Config
-    from ..targets.machine.shared_libraries import Shelf
+    from ..targets.machine.shared_libraries import SharedLibraries
     from ..targets.resolve import Chosen
     from .workspace import Workspace
 
@@ -259,11 +259,11 @@ def read_space(folder: Path, root: Path, workspace: Workspace, store: Store, job
     return found if inside.startswith("..") else found._replace(label=inside.replace(os.sep, "/"))
 
 
-def list_shelves(installed: InstallSpace, targets: Sequence[Chosen], config: Config) -> list[Shelf]:
+def list_shared_libraries(installed: InstallSpace, targets: Sequence[Chosen], config: Config) -> list[SharedLibraries]:
     """What each target has to run the files with, and this machine, on its own where no target is it."""
     from ..targets.capture import list_prefixes, read_platform
     from ..targets.machine.loader import Loader, detect_machine
-    from ..targets.machine.shared_libraries import DescribedShelf, MachineShelf
+    from ..targets.machine.shared_libraries import DescribedLibraries, InstalledLibraries
     from ..targets.machine.sonames import load_sonames
     from ..targets.platform import normalize_platform
 
@@ -273,28 +273,32 @@ def list_shelves(installed: InstallSpace, targets: Sequence[Chosen], config: Con
     own, near = _list_library_folders(underlays), _list_library_folders([*installed.underlays, *sourced])
     platform = normalize_platform(read_platform(Path("/")))
     loader, machine = Loader([*own, *near]), detect_machine()
-    found: list[Shelf] = []
+    found: list[SharedLibraries] = []
     distro = os.environ.get("ROS_DISTRO", "")
     for chosen in targets:
         target = chosen.target
         # Sourced here and not dated otherwise: then it is this very machine, and its files say more than any list.
         if target.name == target.distro == distro and target.platform == platform:
-            found.append(MachineShelf(target.name, loader, machine, platform, load_sonames()))
+            found.append(InstalledLibraries(target.name, loader, machine, platform, load_sonames()))
         else:
-            found.append(DescribedShelf(target, load_sonames(), _list_library_names(own), _list_library_names(near)))
-    if not any(isinstance(shelf, MachineShelf) for shelf in found):
-        found.append(MachineShelf(THIS_MACHINE, loader, machine, platform, load_sonames()))
+            found.append(
+                DescribedLibraries(target, load_sonames(), _list_library_names(own), _list_library_names(near))
+            )
+    if not any(isinstance(libraries, InstalledLibraries) for libraries in found):
+        found.append(InstalledLibraries(THIS_MACHINE, loader, machine, platform, load_sonames()))
     return found
 
 
-def list_foreign_files(installed: InstallSpace, shelves: Iterable[Shelf]) -> Iterator[PathProblem]:
+def list_foreign_files(installed: InstallSpace, shared_libraries: Iterable[SharedLibraries]) -> Iterator[PathProblem]:
     """What cannot be told of files that are built for another kind of machine than one that would run them."""
-    for shelf in shelves:
-        others = Counter(b.elf.machine for b in installed.binaries if shelf.machine and b.elf.machine != shelf.machine)
+    for libraries in shared_libraries:
+        others = Counter(
+            b.elf.machine for b in installed.binaries if libraries.machine and b.elf.machine != libraries.machine
+        )
         for machine, count in sorted(others.items()):
             kind = machine.removeprefix("EM_").lower() or "a machine that is not named"
             files = format_count(count, "file")
-            yield PathProblem(installed.label, f"{files} built for {kind}, not checked against {shelf.name}")
+            yield PathProblem(installed.label, f"{files} built for {kind}, not checked against {libraries.name}")
 
 
 def _list_library_folders(prefixes: Iterable[str]) -> list[str]:

@@ -921,7 +921,7 @@ class PackageJoin:
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
-                    at = At(path, *code.place(found.offset))
+                    at = At(path, *code.locate(found.offset))
                     yield _make_member_use(found, at, role, "cpp", conditions + around)
 
     def list_cpp_api_uses(self, roles) -> Iterator[CppApiUse]:
@@ -980,7 +980,7 @@ class PackageJoin:
                 if around is not None and key not in seen:
                     seen.add(key)
                     yield CppApiUse(found.package, found.name, found.how, found.arguments, found.given,
-                                    At(path, *code.place(found.offset)), role, found.sure, found.through,
+                                    At(path, *code.locate(found.offset)), role, found.sure, found.through,
                                     found.templated, conditions + around, targets)  # fmt: skip
             self.unresolved_receivers += len(uses.unresolved)
 

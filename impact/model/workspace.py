@@ -160,7 +160,9 @@ class FilesOutside:
 
 
 class Workspace:
-    """All packages of a tree, linked. `packages` is by name; `watched` is what digests were asked to look out for."""
+    """All packages of a tree, linked. packages: by name."""
+
+    packages: dict[str, Package]
 
     def __init__(
         self,
@@ -174,7 +176,7 @@ class Workspace:
         unread: frozenset[str] = frozenset(),
         outside: FilesOutside | None = None,
     ):
-        self.packages: dict[str, Package] = {d.name: Package(d) for d in packages}
+        self.packages = {d.name: Package(d) for d in packages}
         self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
         # Files and folders that were not read, as submodules that are not checked out.
         self.unread = unread
@@ -571,7 +573,7 @@ class _Linker:
                 except msgspec.MsgspecError:
                     continue  # of another version: made anew
                 headers = {path: described for path, described in read.items() if " " in described}
-                if not all(self.offered.still_says(path, described) for path, described in headers.items()):
+                if not all(self.offered.is_unchanged(path, described) for path, described in headers.items()):
                     continue
                 if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items() if path not in headers):
                     found[place.path] = _Joined(before, packed, None)

@@ -17,7 +17,7 @@ _PLACES = 5
 def render_item(report: Report, item: UpgradeItem, style: Style, fixable: Collection[str] = ()) -> Iterator[str]:
     """An item with the code of its first place, and once more where other words are said of another place.
 
-    fixable: fingerprints of findings that `check --fix` cures.
+    fixable: fingerprints of findings that `check --fix` fixes.
     """
     for findings in _group_by_message(item):
         first, *others = render_finding(report, findings[0], style)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import format_json
-from ..analysis.report import Coverage, Report, ReportedTarget
+from ..analysis.report import AnalysisCoverage, Report, ReportedTarget
 from ..rules.rule import Finding
 from . import evidence
 
@@ -49,7 +49,7 @@ def build_notes(target: ReportedTarget) -> dict[str, Any]:
     return {"notes": list(target.notes)} if target.notes else {}
 
 
-def build_coverage_data(coverage: Coverage) -> dict[str, Any]:
+def build_coverage_data(coverage: AnalysisCoverage) -> dict[str, Any]:
     """What was analysed, as the schemas have it."""
     return coverage._asdict() | {"unresolved": dict(sorted(coverage.unresolved.items()))}
 

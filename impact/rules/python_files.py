@@ -9,7 +9,7 @@ from ..targets.distro.distro import DistroTarget
 from .vocabulary import Diagnostic, Doubt, Package, TargetView, Upcoming, list_place_doubts, rate_upcoming
 
 
-class Refused(NamedTuple):
+class RejectedUse(NamedTuple):
     """What is not accepted. kind, needs, replacement: of the rule's text. doubts: beside those of its place.
     conditions: of the file, under which it stands."""
 
@@ -23,7 +23,7 @@ class Refused(NamedTuple):
 
 
 def report_refused(
-    view: TargetView, find: Callable[[Package, DistroTarget], Iterable[Refused]]
+    view: TargetView, find: Callable[[Package, DistroTarget], Iterable[RejectedUse]]
 ) -> Iterator[Diagnostic]:
     """Diagnostics on what the Python of a view's target does not accept. find: gives it, for a package and a target
     with Python 3. Their data has `version`, that of Python, and `horizon`, which is empty for the target itself."""

@@ -23,7 +23,7 @@ Its scope says what it is called with, and how often:
     flow           workspace                      once; it rests on the message flow, and on nothing that is not
                                                   remembered with the flow
     flow_change    workspace, base                as `flow`, and only when there is a base
-    install_space  view, installed, shelf         once for each machine that built files are checked on, and only
+    install_space  view, installed, libraries     once for each machine that built files are checked on, and only
                                                   when there is an install space
     targets        views                          once, with all targets together; it yields (view, diagnostic)
 

@@ -227,7 +227,7 @@ def _holds_at(evidence: Evidence, events: tuple[ChangeEvent, ...], line: Line, p
 def _find_first_day(evidence: Evidence, target: DistroTarget, holds: bool, providers: Providers) -> str:
     released = release_day(target.distro)
     if evidence.library:
-        return released if holds and target.came_with_release(evidence.package) else ""
+        return released if holds and target.was_added_with_release(evidence.package) else ""
     if target.is_overridden(evidence.package):
         return ""
 

@@ -19,7 +19,7 @@ from ..tree.ignore import find_git_dir
 from ..tree.paths import is_vendored
 from . import snapshot as snapshots
 from .distro.distro import DistroTarget, TargetError
-from .distro.known import KnownDistro, did_you_mean, list_known_distros, list_rosdep_systems
+from .distro.known import KnownDistro, list_known_distros, list_rosdep_systems, suggest_name
 from .platform import CODENAMES, OTHER_RELEASES, OTHER_SYSTEMS, normalize_library_name, normalize_platform
 from .snapshot import Snapshot
 
@@ -74,7 +74,7 @@ def parse_target(
 
 def _describe_unknown(text: str, base: str, named: Mapping[str, Any], folder: Path, data: Snapshot | None) -> str:
     distros = [known.name for known in list_known_distros(data)]
-    hint = did_you_mean(base, [*distros, *named], "; ") or "."
+    hint = suggest_name(base, [*distros, *named], "; ") or "."
     own = f" Targets of rosimpact.toml: {', '.join(sorted(named))}." if named else ""
     if (folder / text).exists() and (folder == Path() or lies_in(folder / text, folder)):
         hint = f": a file is read as a target when its name ends in `.json` or `{_DPKG}`."
@@ -126,7 +126,7 @@ def _check_table(where: str, platform: str | None, versions: Mapping[str, str], 
     known = data.list_values("package") | data.list_values("library")
     for name in versions:
         if name not in known and normalize_library_name(name) not in known:
-            hint = did_you_mean(name, sorted(known)) or "a ROS package or a platform library is meant"
+            hint = suggest_name(name, sorted(known)) or "a ROS package or a platform library is meant"
             raise TargetError(f"{where}: `versions` has an unknown name `{escape(name)}`; {hint}")
     words = normalize_platform(platform or "").split()
     if not words:
@@ -134,9 +134,9 @@ def _check_table(where: str, platform: str | None, versions: Mapping[str, str], 
     systems = list_rosdep_systems(data) | OTHER_SYSTEMS
     releases = {name.split()[1] for name in CODENAMES.values()} | OTHER_RELEASES
     if words[0] not in systems:
-        hint = did_you_mean(words[0], sorted(systems | releases)) or f"known systems: {', '.join(sorted(systems))}"
+        hint = suggest_name(words[0], sorted(systems | releases)) or f"known systems: {', '.join(sorted(systems))}"
     elif words[0] in ("ubuntu", "debian") and words[1:2] and words[1].isalpha() and words[1] not in releases:
-        hint = did_you_mean(words[1], sorted(releases)) or f"known releases: {', '.join(sorted(releases))}"
+        hint = suggest_name(words[1], sorted(releases)) or f"known releases: {', '.join(sorted(releases))}"
     else:
         return
     raise TargetError(f"{where}: unknown platform `{escape(str(platform))}`; {hint}")

@@ -237,8 +237,8 @@ def resolve(repo: Any, revision: str, place: str) -> tuple[str, Any]:
         except (KeyError, ValueError, TypeError, OSError, pygit2.GitError):
             if found.type_str == "tree":
                 return str(found.id), found.id
-    cure = "its history is cut off (shallow), fetch more of it" if repo.is_shallow else "git rev-parse must know it"
-    raise TreeError(f"`{shown(revision)}` is no revision of `{shown(place)}`; {cure}")
+    remedy = "its history is cut off (shallow), fetch more of it" if repo.is_shallow else "git rev-parse must know it"
+    raise TreeError(f"`{shown(revision)}` is no revision of `{shown(place)}`; {remedy}")
 
 
 def merge_base(repo: Any, commit: str, other: str) -> str | None:

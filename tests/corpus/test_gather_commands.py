@@ -12,8 +12,8 @@ import time
 import pytest
 from rosimpact.corpus.gather import Progress
 from rosimpact.corpus.progress import Estimate, Reporter, describe_progress
-from rosimpact.corpus.report import Report, read_reports, write_rows
-from rosimpact.corpus.store import Taken, open_reports
+from rosimpact.corpus.report import BugReport, read_reports, write_rows
+from rosimpact.corpus.store import ReportCounts, open_reports
 from rosimpact.impact.cli.app import app
 from server import Fault, Services, archived, askbot_item, issue, question, stamp
 from typer.testing import CliRunner
@@ -265,7 +265,7 @@ def test_hydrate_says_beforehand_when_the_quota_will_not_do(say, server, store, 
 def test_hydrate_takes_texts_that_are_at_hand(say, store, tmp_path):
     labels, texts = tmp_path / "labels.jsonl", tmp_path / "texts.jsonl"
     write_labels(labels, f"{REPO}#1", f"{REPO}#2")
-    rows = [Report(f"{REPO}#{n}", "u", "github", None, "t", f"body {n}", wording="abridged") for n in (1, 3)]
+    rows = [BugReport(f"{REPO}#{n}", "u", "github", None, "t", f"body {n}", wording="abridged") for n in (1, 3)]
     write_rows(texts, rows)
     said = say("corpus", "hydrate", "--labels", labels, "--from", texts)
     assert said.status == 0
@@ -298,7 +298,7 @@ def test_export_and_status(say, server, store, archive, tmp_path):
     assert say("corpus", "export", columns).status == 0
     rows = parquet.read_table(columns).to_pylist()
     assert len(rows) == 122
-    assert [Report(**row | {"tags": tuple(row["tags"])}) for row in rows] == list(open_reports(store))
+    assert [BugReport(**row | {"tags": tuple(row["tags"])}) for row in rows] == list(open_reports(store))
 
 
 def test_one_is_one(say, server, store, tmp_path):
@@ -346,10 +346,10 @@ def test_an_estimate_counts_what_was_waited_and_is_silent_until_it_can_know():
 
 
 def test_progress_in_words():
-    assert describe_progress(Progress(1200, 4000, Taken(new=1000, same=200)), 75.0) == (
+    assert describe_progress(Progress(1200, 4000, ReportCounts(new=1000, same=200)), 75.0) == (
         "1,200 of about 4,000 read; 1,000 new, 200 unchanged, about 75 s left"
     )
-    assert describe_progress(Progress(0, None, Taken()), None) == "0 read; nothing new"
+    assert describe_progress(Progress(0, None, ReportCounts()), None) == "0 read; nothing new"
 
 
 def test_a_terminal_shows_a_line_that_renews_itself():
@@ -360,7 +360,7 @@ def test_a_terminal_shows_a_line_that_renews_itself():
     stream = Terminal()
     with Reporter("github:a/[b]", stream=stream) as reporter:
         for done in (100, 200):
-            reporter.report_page(Progress(done, 400, Taken(new=done)))
+            reporter.report_page(Progress(done, 400, ReportCounts(new=done)))
         reporter.print_line("GitHub: the rate limit is reached; waiting 45 s")
         assert reporter._bars is not None
         reporter._bars.refresh()

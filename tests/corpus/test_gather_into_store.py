@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 from rosimpact.corpus.gather import find_missing, find_service, gather, hydrate, import_reports, refresh
 from rosimpact.corpus.polite import Client
-from rosimpact.corpus.report import CorpusError, Report
+from rosimpact.corpus.report import BugReport, CorpusError
 from rosimpact.corpus.sources.github import GitHub, Listed, Searched
 from rosimpact.corpus.sources.ros_answers import Archive, ArchivedFiles, Askbot
-from rosimpact.corpus.sources.stack_exchange import StackExchange, Tagged
-from rosimpact.corpus.store import GatheredReport, Store
+from rosimpact.corpus.sources.stack_exchange import StackExchange, TaggedQuestions
+from rosimpact.corpus.store import CorpusStore, GatheredReport
 from server import Fault, Services, archived, askbot_item, issue, pull, question, stamp
 from waiting import Hours
 
@@ -31,7 +31,7 @@ def server():
 
 @pytest.fixture
 def store(tmp_path):
-    with Store(tmp_path / "corpus.sqlite", clock=ticking()) as opened:
+    with CorpusStore(tmp_path / "corpus.sqlite", clock=ticking()) as opened:
         yield opened
 
 
@@ -52,7 +52,7 @@ def exchange(server: Services) -> StackExchange:
     return StackExchange(client("Stack Exchange"), f"{server.url}/2.3")
 
 
-def ids(store: Store) -> list[str]:
+def ids(store: CorpusStore) -> list[str]:
     return [report.id for report in store.iterate_reports()]
 
 
@@ -67,7 +67,7 @@ def test_a_report_of_github_is_what_was_posted(server, store):
     server.issues[NAV] = [issue(NAV, 7, day="2024-03-01T12:00:00Z", title="Costmap is empty", labels=[{"name": "bug"}])]
     gather(Listed(github(server), NAV), store)
     assert list(store.iterate_reports()) == [
-        Report(
+        BugReport(
             id=f"{NAV}#7",
             url=f"https://github.com/{NAV}/issues/7",
             source="github",
@@ -116,7 +116,7 @@ def test_more_reports_of_one_second_than_fit_a_page(server, store):
 def test_pull_requests_come_only_where_asked_for(server, tmp_path):
     server.issues[NAV] = [issue(NAV, 1), pull(NAV, 2)]
     for kinds, expected in ((("issue",), ["issue"]), (("issue", "pull"), ["issue", "pull"])):
-        with Store(tmp_path / f"{len(kinds)}.sqlite") as store:
+        with CorpusStore(tmp_path / f"{len(kinds)}.sqlite") as store:
             gather(Listed(github(server), NAV, kinds=kinds), store)
             assert [report.kind for report in store.iterate_reports()] == expected
 
@@ -224,18 +224,18 @@ def test_what_is_kept_names_the_author_and_nothing_else_of_the_person(server, st
 
 def test_questions_of_a_tag_come_in_the_order_of_posting(server, store):
     server.questions = [question(n) for n in range(1, 251)] + [question(900, tags=["arduino"])]
-    taken = gather(Tagged(exchange(server), "ros2"), store)
+    taken = gather(TaggedQuestions(exchange(server), "ros2"), store)
     assert taken.new == 250
     assert all("key" not in asked.query and asked.query["site"] == "robotics" for asked in server.asked)
     server.asked.clear()
     server.questions.append(question(300))
-    assert gather(Tagged(exchange(server), "ros2"), store).new == 1
+    assert gather(TaggedQuestions(exchange(server), "ros2"), store).new == 1
     assert len(server.asked) == 1
 
 
 def test_questions_that_were_migrated_in_one_second(server, store):
     server.questions = [question(n, creation_date=1_700_000_000) for n in range(1, 331)]
-    gather(Tagged(exchange(server), "ros2"), store)
+    gather(TaggedQuestions(exchange(server), "ros2"), store)
     assert len(ids(store)) == 330
 
 
@@ -249,7 +249,7 @@ def test_a_migrated_question_counts_once_whichever_side_came_first(server, store
         "<p>It fails.</p><hr /><p>Originally posted by <a>mj</a> on ROS Answers with karma: 21 on 2011-05-20</p>"
     )
     server.questions = [question(31710, footer), question(5)]
-    jobs = [Archive(tmp_path / "archive"), Tagged(exchange(server), "ros2")]
+    jobs = [Archive(tmp_path / "archive"), TaggedQuestions(exchange(server), "ros2")]
     for source in jobs if archive_first else reversed(jobs):
         gather(source, store)
     assert ids(store) == ["robotics-se:5", "ros-answers:10010"]
@@ -264,7 +264,7 @@ def test_of_a_migrated_question_the_post_with_a_label_speaks(server, store, tmp_
     (folder / "10010.md").write_bytes(archived(10010, migrated=31710))
     server.questions = [question(31710)]
     gather(Archive(tmp_path), store)
-    gather(Tagged(exchange(server), "ros2"), store)
+    gather(TaggedQuestions(exchange(server), "ros2"), store)
     assert ids(store) == ["ros-answers:10010"]
     store.want(["robotics-se:31710"])
     assert ids(store) == ["robotics-se:31710"]
@@ -372,11 +372,13 @@ def test_a_labelled_report_keeps_its_id_when_its_repository_moves_and_is_gathere
 
 
 def test_texts_at_hand_are_taken_over_and_replace_nothing(store):
-    ours = Report("ros2/rclcpp#1", "u", "github", "2024-01-01", "t", "ours", wording="abridged")
-    other = Report("ros2/rclcpp#9", "u", "github", "2024-01-01", "t", "of no label")
+    ours = BugReport("ros2/rclcpp#1", "u", "github", "2024-01-01", "t", "ours", wording="abridged")
+    other = BugReport("ros2/rclcpp#9", "u", "github", "2024-01-01", "t", "of no label")
     taken, left_out = import_reports([ours, other], store, frozenset(["ros2/rclcpp#1"]))
     assert (taken.new, left_out) == (1, 1)
-    import_reports([Report("ros2/rclcpp#1", "u", "github", None, "t", "another")], store, frozenset(["ros2/rclcpp#1"]))
+    import_reports(
+        [BugReport("ros2/rclcpp#1", "u", "github", None, "t", "another")], store, frozenset(["ros2/rclcpp#1"])
+    )
     assert store.report("ros2/rclcpp#1") == ours
 
 
@@ -398,7 +400,7 @@ def test_an_archive_that_has_moved_makes_no_question_gone(server, store):
 def test_a_text_that_names_another_source_is_asked_for_where_its_id_leads(server, store):
     """As one of the corpus does: found on ROS Answers, posted on GitHub."""
     id = "https://api.github.com/repos/rospilot/rospilot/issues/72"
-    import_reports([Report(id, id, "ros-answers", None, "t", "old")], store, frozenset([id]))
+    import_reports([BugReport(id, id, "ros-answers", None, "t", "old")], store, frozenset([id]))
     server.issues["rospilot/rospilot"] = [issue("rospilot/rospilot", 72, body="new")]
     assert refresh(lambda source, count: github(server), store, ALL).changed == 1
     found = store.report(id)
@@ -408,7 +410,7 @@ def test_a_text_that_names_another_source_is_asked_for_where_its_id_leads(server
 # -- refresh -----------------------------------------------------------------------------------------------------------
 
 
-def everything(server: Services, store: Store, folder: Path, count: int = 3) -> None:
+def everything(server: Services, store: CorpusStore, folder: Path, count: int = 3) -> None:
     server.issues[NAV] = many(NAV, count)
     server.questions = [question(n) for n in range(1, count + 1)]
     questions = folder / "content" / "question"
@@ -416,7 +418,7 @@ def everything(server: Services, store: Store, folder: Path, count: int = 3) -> 
     for number in range(1, count + 1):
         (questions / f"{number}.md").write_bytes(archived(number))
     gather(Listed(github(server), NAV), store)
-    gather(Tagged(exchange(server), "ros2"), store)
+    gather(TaggedQuestions(exchange(server), "ros2"), store)
     gather(Archive(folder), store)
 
 
@@ -456,8 +458,8 @@ def test_a_deleted_text_leaves_the_file_itself(tmp_path):
     """Not only its row: neither a free page nor the journal may hold it."""
     path = tmp_path / "corpus.sqlite"
     chance = random.Random(1)
-    reports = [Report(f"a/b#{n}", "u", "github", None, "t", chance.randbytes(3000).hex()) for n in range(40)]
-    with Store(path), Store(path) as store:  # one more has it open, or closing it would mend much by itself
+    reports = [BugReport(f"a/b#{n}", "u", "github", None, "t", chance.randbytes(3000).hex()) for n in range(40)]
+    with CorpusStore(path), CorpusStore(path) as store:  # one more has it open, or closing it would mend much by itself
         store.put([GatheredReport(report) for report in reports])
         packed = [row[0] for row in store._fetch_all("SELECT report FROM report ORDER BY id")]
         # what fits no page goes on in others, from which a piece of its end is looked for

@@ -9,7 +9,7 @@ from moving import REPOSITORY, Direct, Moving
 from rosimpact.corpus.gather import gather
 from rosimpact.corpus.sources import github
 from rosimpact.corpus.sources.github import GitHub, Listed
-from rosimpact.corpus.store import Store
+from rosimpact.corpus.store import CorpusStore
 from server import Services
 
 RUNS = 30
@@ -36,14 +36,14 @@ def gathered(server: Services, world: Moving, tmp_path, stop_after: float) -> di
         return Listed(GitHub(Direct(server, world), server.url), REPOSITORY)
 
     for _ in range(100):
-        with Store(path) as store:
+        with CorpusStore(path) as store:
             try:
                 gather(source(), store, tell)
                 break
             except KeyboardInterrupt:
                 continue
     world.rest()
-    with Store(path) as store:
+    with CorpusStore(path) as store:
         gather(source(), store)
         return {report.id: report.body for report in store.iterate_reports()}
 
@@ -64,5 +64,7 @@ def test_a_list_that_changes_with_every_request_is_given_up(server, tmp_path, mo
     world.rows *= 30
     shuffle = random.Random(1).shuffle
     server.after = lambda asked: shuffle(world.rows)
-    with Store(tmp_path / "corpus.sqlite") as store, pytest.raises(github.CorpusError, match="changes faster than"):
+    with CorpusStore(
+        tmp_path / "corpus.sqlite"
+    ) as store, pytest.raises(github.CorpusError, match="changes faster than"):
         gather(Listed(GitHub(Direct(server, world), server.url), REPOSITORY), store)

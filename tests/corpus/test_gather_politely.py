@@ -8,11 +8,11 @@ import logging
 
 import pytest
 from rosimpact.corpus.gather import gather
-from rosimpact.corpus.polite import Client, Later, Refused
+from rosimpact.corpus.polite import Client, Later, StatusError
 from rosimpact.corpus.report import CorpusError
 from rosimpact.corpus.sources.github import GitHub, Listed, Searched
-from rosimpact.corpus.sources.stack_exchange import StackExchange, Tagged
-from rosimpact.corpus.store import Store
+from rosimpact.corpus.sources.stack_exchange import StackExchange, TaggedQuestions
+from rosimpact.corpus.store import CorpusStore
 from rosimpact.corpus.tokens import find_github_token, find_stack_exchange_key
 from server import Fault, Services, issue, question, stamp
 from waiting import Hours
@@ -34,7 +34,7 @@ def server():
 
 @pytest.fixture
 def store(tmp_path):
-    with Store(tmp_path / "corpus.sqlite") as opened:
+    with CorpusStore(tmp_path / "corpus.sqlite") as opened:
         yield opened
 
 
@@ -145,7 +145,7 @@ def test_patience_is_for_all_waits_together(server):
 def test_a_refusal_is_final(server, store, fault, message):
     clock = Hours(NOW)
     server.fail(fault)
-    with pytest.raises(Refused, match=message):
+    with pytest.raises(StatusError, match=message):
         gather(Listed(GitHub(client(clock), server.url), REPO), store)
     assert len(server.asked) == 1 and clock.slept == []
 
@@ -245,7 +245,7 @@ def test_halves_of_characters_do_not_stop_a_gathering(server, store):
 
 def test_a_token_that_a_server_repeats_is_not_shown(server):
     server.fail(Fault(401, {}, b'{"message": "bad token ghp_repeated"}'))
-    with pytest.raises(Refused) as refused:
+    with pytest.raises(StatusError) as refused:
         client(Hours(NOW), secrets=["ghp_repeated"]).get(f"{server.url}/x")
     assert "ghp_repeated" not in str(refused.value) and "***" in str(refused.value)
 
@@ -291,7 +291,7 @@ def test_backoff_is_obeyed_though_the_answer_is_good(server, store):
     clock = Hours(NOW)
     server.questions = [question(n) for n in range(1, 151)]
     server.backoff = 11
-    gather(Tagged(exchange(server, clock), "ros2"), store)
+    gather(TaggedQuestions(exchange(server, clock), "ros2"), store)
     assert clock.slept == [11]
 
 
@@ -300,10 +300,10 @@ def test_the_quota_of_the_day_ends_the_day(server, store):
     server.questions = [question(n) for n in range(1, 351)]
     server.quota = 2
     with pytest.raises(Later, match=r"the quota of the day is used up, .* at 2023-11-15 00:00 UTC \(in 1.8 h\)"):
-        gather(Tagged(exchange(server, clock, patience=60), "ros2"), store)
+        gather(TaggedQuestions(exchange(server, clock, patience=60), "ros2"), store)
     assert len(list(store.iterate_reports())) > 100
     server.quota = 100
-    gather(Tagged(exchange(server, clock), "ros2"), store)
+    gather(TaggedQuestions(exchange(server, clock), "ros2"), store)
     assert len(list(store.iterate_reports())) == 350
 
 
@@ -312,14 +312,14 @@ def test_a_throttle_that_arrives_as_status_400_tells_its_seconds(server, store):
     server.questions = [question(1)]
     server.quota = 0
     with pytest.raises(Later, match=r"too many requests came from here, .* \(in 11.5 h\)"):
-        gather(Tagged(exchange(server, clock), "ros2"), store)
+        gather(TaggedQuestions(exchange(server, clock), "ros2"), store)
 
 
 def test_a_question_that_stack_exchange_refuses(server, store):
     wrong = b'{"error_id": 400, "error_name": "bad_parameter", "error_message": "site"}'
     server.fail(Fault(400, {}, wrong))
-    with pytest.raises(Refused, match=r"refused \(bad_parameter: site\)"):
-        gather(Tagged(exchange(server, Hours(NOW)), "ros2"), store)
+    with pytest.raises(StatusError, match=r"refused \(bad_parameter: site\)"):
+        gather(TaggedQuestions(exchange(server, Hours(NOW)), "ros2"), store)
 
 
 # -- secrets -----------------------------------------------------------------------------------------------------------
@@ -382,7 +382,7 @@ def test_secrets_are_in_no_message_no_log_and_no_store(server, tmp_path, monkeyp
     server.questions = [question(n) for n in range(1, 120)]
     said: list[str] = []
     try:
-        with Store(tmp_path / "corpus.sqlite") as store:
+        with CorpusStore(tmp_path / "corpus.sqlite") as store:
             for fault in (
                 Fault(),
                 Fault(401),
@@ -395,7 +395,7 @@ def test_secrets_are_in_no_message_no_log_and_no_store(server, tmp_path, monkeyp
                     more = {"clock": Hours(NOW), "timeout": 2, "tries": tries, "tell": said.append}
                     hub = GitHub(Client("GitHub", secrets=[token], **more), server.url, token)
                     site = StackExchange(Client("Stack Exchange", secrets=[key], **more), f"{server.url}/2.3", key)
-                    for source in (Listed(hub, REPO), Searched(hub, "x"), Tagged(site, "ros2")):
+                    for source in (Listed(hub, REPO), Searched(hub, "x"), TaggedQuestions(site, "ros2")):
                         server.faults[:] = [fault]
                         try:
                             gather(source, store)

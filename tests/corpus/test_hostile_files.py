@@ -12,16 +12,16 @@ import pytest
 from rosimpact.classifier.model import ClassifierError, load
 from rosimpact.corpus.gather import find_service, gather
 from rosimpact.corpus.labelling import Session
-from rosimpact.corpus.report import CorpusError, Report, read_reports, write_rows
+from rosimpact.corpus.report import BugReport, CorpusError, read_reports, write_rows
 from rosimpact.corpus.robust import read_robust
 from rosimpact.corpus.sources.markup import convert_to_markdown
 from rosimpact.corpus.sources.ros_answers import Archive, SavedPages
-from rosimpact.corpus.store import GatheredReport, Store, open_reports
+from rosimpact.corpus.store import CorpusStore, GatheredReport, open_reports
 from rosimpact.impact.cli.app import app
 from server import archived
 from typer.testing import CliRunner
 
-ROW = Report("o/r#1", "https://github.com/o/r/issues/1", "github", None, "t", "b")
+ROW = BugReport("o/r#1", "https://github.com/o/r/issues/1", "github", None, "t", "b")
 
 
 def tar(path, members) -> None:
@@ -35,7 +35,7 @@ def tar(path, members) -> None:
 def test_a_link_or_pipe_in_an_archive_hides_no_question(tmp_path):
     tar(tmp_path / "a.tar.gz", [("1.md", tarfile.SYMTYPE, b""), ("2.md", tarfile.FIFOTYPE, b""),
                                 ("3.md", tarfile.LNKTYPE, b""), ("10.md", tarfile.REGTYPE, archived(10))])  # fmt: skip
-    with Store(tmp_path / "corpus.sqlite") as store:
+    with CorpusStore(tmp_path / "corpus.sqlite") as store:
         gather(Archive(tmp_path / "a.tar.gz"), store)
         assert [report.id for report in store.iterate_reports()] == ["ros-answers:10"]
 
@@ -44,7 +44,7 @@ def test_an_archive_that_unpacks_without_end_is_refused(tmp_path):
     member = tarfile.TarInfo("x/content/question/1.md")
     member.size = 1 << 40
     (tmp_path / "a.tar").write_bytes(member.tobuf(tarfile.GNU_FORMAT) + bytes(10_000))
-    with Store(tmp_path / "corpus.sqlite") as store, pytest.raises(CorpusError, match="is damaged"):
+    with CorpusStore(tmp_path / "corpus.sqlite") as store, pytest.raises(CorpusError, match="is damaged"):
         gather(Archive(tmp_path / "a.tar"), store)
 
 
@@ -58,7 +58,7 @@ def test_links_pipes_and_large_files_of_a_clone_are_named_and_the_rest_is_read(t
         file.truncate(3 << 30)
     (folder / "4.md").write_bytes(archived(4))
     source = Archive(tmp_path)
-    with Store(tmp_path / "corpus.sqlite") as store:
+    with CorpusStore(tmp_path / "corpus.sqlite") as store:
         gather(source, store)
         assert [report.id for report in store.iterate_reports()] == ["ros-answers:4"]
     assert len(source.unread) == 3
@@ -106,7 +106,7 @@ def test_a_line_that_is_no_report(content, tmp_path):
 
 def test_a_pipe_is_no_file_of_reports_and_no_store(tmp_path):
     os.mkfifo(tmp_path / "pipe")
-    for read in (lambda: list(open_reports(tmp_path / "pipe")), lambda: Store(tmp_path / "pipe")):
+    for read in (lambda: list(open_reports(tmp_path / "pipe")), lambda: CorpusStore(tmp_path / "pipe")):
         with pytest.raises(CorpusError, match="not a regular file"):
             read()
 
@@ -118,14 +118,14 @@ def test_a_pipe_is_no_file_of_reports_and_no_store(tmp_path):
 )  # fmt: skip
 def test_a_damaged_store_is_an_error_and_stays(harm, tmp_path):
     path = tmp_path / "corpus.sqlite"
-    with Store(path) as store:
+    with CorpusStore(path) as store:
         store.put([GatheredReport(ROW)])
         store._db.execute("INSERT INTO gathering VALUES ('x', '{}', 1, 1)")
     with sqlite3.connect(path) as db:
         db.execute(harm)
     db.close()
     before = path.read_bytes()
-    with pytest.raises(CorpusError, match=r"corpus\.sqlite: (is|cannot be)"), Store(path) as store:
+    with pytest.raises(CorpusError, match=r"corpus\.sqlite: (is|cannot be)"), CorpusStore(path) as store:
         store.read_state("x")
         list(store.iterate_reports())
     assert path.read_bytes() == before

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from rich.console import Console
 from rosimpact.corpus.label_screen import GUIDE_FILE, Screen, clean
 from rosimpact.corpus.labelling import WHY_LIMIT, Session, read_current_labels
-from rosimpact.corpus.report import LABELS, PHASES, Report, find_faults
+from rosimpact.corpus.report import LABELS, PHASES, BugReport, find_faults
 
 GUIDE = GUIDE_FILE.read_text(encoding="utf-8")
 # It is drawn beside every text and takes most of the time: enough of it to be scrolled. A test of its own draws all.
@@ -40,8 +40,8 @@ PIECES += ["\u202e", "~~~cpp\n", "---"]
 TEXTS = st.one_of(st.text(max_size=300), st.lists(st.sampled_from(PIECES), max_size=40).map("".join))
 
 
-def report(number: int, title: str = "Title", body: str = "Body") -> Report:
-    return Report(f"acme/arm#{number}", "https://github.com/acme/arm", "github", None, title, body)
+def report(number: int, title: str = "Title", body: str = "Body") -> BugReport:
+    return BugReport(f"acme/arm#{number}", "https://github.com/acme/arm", "github", None, title, body)
 
 
 def drawn(screen: Screen, width: int = 100, height: int = 30) -> str:

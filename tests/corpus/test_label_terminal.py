@@ -16,7 +16,7 @@ import time
 
 import pytest
 from rosimpact.corpus.labelling import find_journal, read_journal
-from rosimpact.corpus.report import Label, Report, read_labels, write_rows
+from rosimpact.corpus.report import BugReport, Label, read_labels, write_rows
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals there")
 
@@ -24,7 +24,7 @@ SEQUENCE = re.compile(r"\x1b\[[0-9;?]*[A-Za-z~]|\x1b[()][A-Z0-9]|\x1b[=>]")
 PATIENCE = 120  # seconds until a screen counts as never drawn
 LONG = "\n\n".join(f"paragraph {n:03d} of the log" for n in range(200))
 REPORTS = [
-    Report(
+    BugReport(
         "acme/arm#1",
         "https://github.com/acme/arm/issues/1",
         "github",
@@ -32,8 +32,8 @@ REPORTS = [
         "Build stops after the upgrade",
         "Since noetic:\n\n```\nfatal error: gone.h\n```\n\n<details>\nhidden evidence\n</details>",
     ),
-    Report("acme/arm#2", "https://github.com/acme/arm/issues/2", "github", "2024-05-02", "Long one", LONG),
-    Report(
+    BugReport("acme/arm#2", "https://github.com/acme/arm/issues/2", "github", "2024-05-02", "Long one", LONG),
+    BugReport(
         "ros-answers:7",
         "https://answers.ros.org/question/7",
         "ros-answers",

@@ -19,16 +19,16 @@ from rosimpact.corpus.labelling import (
     select_offered,
     select_reports,
 )
-from rosimpact.corpus.report import CorpusError, Label, Report, read_labels, write_rows
+from rosimpact.corpus.report import BugReport, CorpusError, Label, read_labels, write_rows
 
 UPDATE = GivenLabel("library-update", "system", "build", "compiler of the new distro refuses the alias")
 MISSING = GivenLabel("dependency", "undeclared", "build", "package.xml lacks an entry")
 OTHER = GivenLabel("other", None, "none", "a wish")
 
 
-def report(number: int, **more) -> Report:
+def report(number: int, **more) -> BugReport:
     id = f"acme/arm#{number}"
-    return Report(
+    return BugReport(
         id, f"https://github.com/acme/arm/issues/{number}", "github", "2024-05-01", f"Fault {number}", "text", **more
     )
 
@@ -272,7 +272,7 @@ def test_the_journal_knows_who_looked_at_a_suggestion(file):
 
 
 def test_only_the_reports_asked_for():
-    elsewhere = Report("ros-answers:7", "https://answers.ros.org/question/7", "ros-answers", None, "t", "b")
+    elsewhere = BugReport("ros-answers:7", "https://answers.ros.org/question/7", "ros-answers", None, "t", "b")
     copy = report(9, same_as="acme/arm#1")
     everything = [*REPORTS[:2], elsewhere, copy, REPORTS[0]]
     assert [r.id for r in select_reports(everything, (), ())] == ["acme/arm#1", "acme/arm#2", "ros-answers:7"]

@@ -5,9 +5,9 @@ import pytest
 from rosimpact.corpus.report import (
     KINDS,
     LABELS,
+    BugReport,
     CorpusError,
     Label,
-    Report,
     find_faults,
     find_repository,
     read_labels,
@@ -15,7 +15,7 @@ from rosimpact.corpus.report import (
     write_rows,
 )
 
-REPORT = Report("a/b#1", "https://github.com/a/b/issues/1", "github", "2024-01-31", "It stopped", "after the update")
+REPORT = BugReport("a/b#1", "https://github.com/a/b/issues/1", "github", "2024-01-31", "It stopped", "after the update")
 LABEL = Label("a/b#1", "library-update", "ros", "run", "stopped after an update", ("library-update",), "single")
 
 

@@ -10,11 +10,11 @@ import pytest
 from rosimpact.corpus.report import find_faults, read_labels
 from rosimpact.corpus.robust import (
     describe_licence,
+    find_report,
     judge_record,
     make_rows,
     map_record,
     read_robust,
-    report_of,
     summarize,
 )
 
@@ -151,7 +151,7 @@ def test_phases(tmp_path, phase, failures, severity, expected):
     ],
 )
 def test_the_report_a_record_is_about(text, id):
-    assert report_of(text) == id
+    assert find_report(text) == id
 
 
 def test_without_an_issue_the_pull_request_is_the_report_and_else_the_record(tmp_path):

@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.corpus.report import LABELS, group_of, read_labels
+from rosimpact.corpus.report import LABELS, find_group, read_labels
 from rosimpact.corpus.splits import make_grouped_folds, make_grouped_splits, make_time_split, parse_day, select_unseen
 
 IDS = st.builds(lambda repo, number: f"acme/r{repo}#{number}", st.integers(0, 12), st.integers(1, 9))
@@ -16,7 +16,7 @@ IDS = st.builds(lambda repo, number: f"acme/r{repo}#{number}", st.integers(0, 12
 @given(st.lists(st.tuples(IDS, st.sampled_from(LABELS)), min_size=1, max_size=60), st.integers(2, 4))
 def test_no_repository_on_both_sides_and_every_row_tested_once(rows, folds):
     ids, labels = [id for id, _ in rows], [label for _, label in rows]
-    if len({group_of(id) for id in ids}) < folds:
+    if len({find_group(id) for id in ids}) < folds:
         with pytest.raises(ValueError, match="groups"):
             make_grouped_splits(ids, labels, folds)
         return
@@ -47,8 +47,8 @@ def test_the_order_of_rows_does_not_matter():
 
 
 def test_repositories_are_compared_as_github_does():
-    assert group_of("Acme/Arm#1") == group_of("acme/arm#2")
-    assert group_of("ros-answers:1") != group_of("ros-answers:2")
+    assert find_group("Acme/Arm#1") == find_group("acme/arm#2")
+    assert find_group("ros-answers:1") != find_group("ros-answers:2")
 
 
 def test_by_time():

@@ -9,7 +9,7 @@ import sys
 from xml.etree import ElementTree
 
 import pytest
-from rosimpact.corpus.report import Label, Report, read_labels, write_rows
+from rosimpact.corpus.report import BugReport, Label, read_labels, write_rows
 from rosimpact.corpus.stats import compute_stats, find_project, find_year
 
 
@@ -24,10 +24,10 @@ LABELS = [
     label("ros-answers:7", "inconsistency", "value", annotators=["inconsistency"] * 2, decided="agreed"),
 ]
 REPORTS = [
-    Report("Acme/Arm#1", "", "github", "2021-03-04", "After upgrading to noetic", "worked on melodic"),
-    Report("acme/arm#2", "", "github", None, "No rosdep key", ""),
-    Report("ros-answers:7", "", "ros-answers", "Jul 3, 2013", "Units", "degrees"),
-    Report("acme/none#9", "", "github", "2020-01-01", "without a label", "noetic"),
+    BugReport("Acme/Arm#1", "", "github", "2021-03-04", "After upgrading to noetic", "worked on melodic"),
+    BugReport("acme/arm#2", "", "github", None, "No rosdep key", ""),
+    BugReport("ros-answers:7", "", "ros-answers", "Jul 3, 2013", "Units", "degrees"),
+    BugReport("acme/none#9", "", "github", "2020-01-01", "without a label", "noetic"),
 ]
 
 

@@ -11,7 +11,7 @@ from late import Late
 from rosimpact.classifier import study as triage_study
 from rosimpact.corpus.curves import estimate_pooled_share, estimate_survival
 from rosimpact.corpus.figures import spread_places, write_names
-from rosimpact.corpus.report import KINDS, LABELS, CorpusError, Report, read_labels
+from rosimpact.corpus.report import KINDS, LABELS, BugReport, CorpusError, read_labels
 from rosimpact.corpus.study import run, run_study
 from rosimpact.impact.cli.app import app
 from rosimpact.impact.rules.rule import load_rules
@@ -161,12 +161,12 @@ def test_the_shipped_predictions_are_of_the_committed_labels():
 
 
 def test_predictions_hold_no_text_and_can_be_read_again(tmp_path):
-    report = Report("acme/arm#1", "https://x", "github", None, "Fails on jazzy", "secret words")
+    report = BugReport("acme/arm#1", "https://x", "github", None, "Fails on jazzy", "secret words")
     example = training.Example(report=report, label="dependency", twice=False)
-    judged = evaluate.Judged(np.array([[0.1, 0.6, 0.1, 0.1, 0.1]]), np.array([True]))
+    predicted = evaluate.Predictions(np.array([[0.1, 0.6, 0.1, 0.1, 0.1]]), np.array([True]))
     beside = {"majority": {"macro_f1": {"value": 0.5, "low": 0.4, "high": 0.6}, "right": 1.0}}
     digests = {"labels_digest": "1", "texts_digest": "2"}
-    found = triage_study.Measured(triage_study.make_predictions([example], judged), beside, digests)
+    found = triage_study.Measured(triage_study.make_predictions([example], predicted), beside, digests)
     triage_study.write(found, tmp_path)
     assert triage_study.read(tmp_path) == found
     assert "secret" not in "".join(path.read_text() for path in tmp_path.iterdir())

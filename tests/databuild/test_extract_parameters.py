@@ -3,7 +3,7 @@
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.databuild.extract.parameters import kind_of, mentions
+from rosimpact.databuild.extract.parameters import make_kind, mentions
 from rosimpact.impact.facts.kinds import FileFacts, decode, encode, extract
 
 CPP = [
@@ -68,7 +68,7 @@ YAML = [
 @pytest.mark.parametrize(
     ("kind", "text", "expected"),
     [
-        (kind_of(kind), *row)
+        (make_kind(kind), *row)
         for kind, rows in (("cpp", CPP), ("python", PYTHON), ("cfg", CFG), ("yaml", YAML))
         for row in rows
     ],
@@ -82,15 +82,15 @@ def test_what_a_file_declares(kind, text, expected):
 @pytest.mark.parametrize(
     ("kind", "text", "mentioned"),
     [
-        (kind_of("cpp"), 'f("rate"); g("arm.gains.p", \'x\');', ("p", "rate", "x")),
+        (make_kind("cpp"), 'f("rate"); g("arm.gains.p", \'x\');', ("p", "rate", "x")),
         (
-            kind_of("cpp"),
+            make_kind("cpp"),
             '// "old_rate"\nh(name + "_limit", "turbo/steps", "~frame", "gains.");',
             ("_limit", "frame", "gains", "old_rate", "steps"),
         ),
-        (kind_of("cpp"), 'log("a sentence", "50", "");', ()),
-        (kind_of("python"), "names = ['rate', \"frame\"]", ("frame", "rate")),
-        (kind_of("cfg"), "gen.add('rate', double_t, 0, 'x', 1.0)", ()),
+        (make_kind("cpp"), 'log("a sentence", "50", "");', ()),
+        (make_kind("python"), "names = ['rate', \"frame\"]", ("frame", "rate")),
+        (make_kind("cfg"), "gen.add('rate', double_t, 0, 'x', 1.0)", ()),
     ],
 )
 def test_what_a_file_mentions(kind, text, mentioned):
@@ -106,7 +106,7 @@ def test_what_may_be_a_mentioned_name(name, expected):
     assert mentions(("_limit", "max_", "rate"), name) is expected
 
 
-@pytest.mark.parametrize("kind", [kind_of("python"), kind_of("cfg"), kind_of("yaml")])
+@pytest.mark.parametrize("kind", [make_kind("python"), make_kind("cfg"), make_kind("yaml")])
 def test_a_file_that_cannot_be_read_declares_nothing(kind):
     facts = extract(kind, b"declare: [(").facts
     assert not facts.parameters and facts.problems
@@ -114,6 +114,6 @@ def test_a_file_that_cannot_be_read_declares_nothing(kind):
 
 @given(st.binary(max_size=200), st.sampled_from(["cpp", "python", "cfg", "yaml"]))
 def test_any_bytes_give_facts(data, kind):
-    kind = kind_of(kind)
+    kind = make_kind(kind)
     facts = extract(kind, b'declare_parameter("a", ' + data)
     assert decode(kind, encode(facts)) == facts and isinstance(facts, FileFacts)

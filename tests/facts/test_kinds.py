@@ -94,7 +94,7 @@ def test_first_line_tells_scripts_apart(data, kind):
     assert decode("script", encode(facts)) == facts
 
 
-KINDS = {*EXTRACTORS, cpp.__name__, python.__name__, *map(parameters.kind_of, parameters.LIMITS)}
+KINDS = {*EXTRACTORS, cpp.__name__, python.__name__, *map(parameters.make_kind, parameters.LIMITS)}
 LIMITS = ("manifest", "cmake", "interface", "cpp", "python", "launch", "parameters", "script", "settings")
 
 
@@ -106,7 +106,7 @@ LIMITS = ("manifest", "cmake", "interface", "cpp", "python", "launch", "paramete
         ("flow_launch_python", "python"), ("launch_xml", "launch"), ("flow_launch_xml", "launch"),
         ("params", "parameters"), ("script", "script"), ("shell", "script"), ("pyproject", "settings"),
         (cpp.__name__, "cpp"), (python.__name__, "python"),
-        *((parameters.kind_of(language), limit) for language, limit in parameters.LIMITS.items()),
+        *((parameters.make_kind(language), limit) for language, limit in parameters.LIMITS.items()),
     ],
 )  # fmt: skip
 def test_each_kind_has_its_limit(kind, limit, monkeypatch):

@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.analysis.findings import merge_diagnostics
-from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget, SourceLines
+from rosimpact.impact.analysis.report import AnalysisCoverage, Report, ReportedPackage, ReportedTarget, SourceLines
 from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.fix_actions import Edit
 from rosimpact.impact.rules.rule import Diagnostic, Rule
@@ -109,7 +109,7 @@ def report_of(hits, files, names=NAMES, **changes) -> Report:
         data="2026-08-22",
         targets=targets,
         findings=tuple(findings),
-        coverage=Coverage(5, 41, 40, {"include": 3, "topic": 1}),
+        coverage=AnalysisCoverage(5, 41, 40, {"include": 3, "topic": 1}),
         packages=packages,
         rules=lambda: tuple(RULES.values()),
         seconds=0.42,

@@ -10,7 +10,7 @@ import jsonschema
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.analysis.report import Coverage, Report, ReportedTarget
+from rosimpact.impact.analysis.report import AnalysisCoverage, Report, ReportedTarget
 from rosimpact.impact.report import github, html, markdown, sarif, text
 from rosimpact.impact.report import json as findings_json
 from rosimpact.impact.rules.rule import Finding
@@ -36,7 +36,7 @@ FINDINGS = st.builds(
 @given(st.lists(FINDINGS, max_size=5), st.lists(TEXTS, max_size=3))
 def test_every_format_takes_any_text(findings, lines):
     targets = tuple(ReportedTarget(name, name, "", "") for name in ("humble", "jazzy"))
-    report = Report("0.1.0", "", targets, tuple(findings), Coverage(1, 1, 1), excerpt=lambda path, line: lines)
+    report = Report("0.1.0", "", targets, tuple(findings), AnalysisCoverage(1, 1, 1), excerpt=lambda path, line: lines)
     for module in (text, findings_json, sarif, github, markdown, html):
         module.render(report).encode()
     assert len(json.loads(findings_json.render(report))["findings"]) == len(findings)
@@ -60,7 +60,9 @@ def test_json_follows_the_published_schema(report, schema):
 
 
 def test_json_of_a_failed_run_is_valid(schema):
-    data = json.loads(findings_json.render(Report("0.1.0", "", (), (), Coverage(), failure="there is no folder `x`")))
+    data = json.loads(
+        findings_json.render(Report("0.1.0", "", (), (), AnalysisCoverage(), failure="there is no folder `x`"))
+    )
     schema.validate(data)
     assert data["failure"] == "there is no folder `x`"
     assert data["findings"] == []
@@ -259,7 +261,7 @@ def test_markdown_counts_what_it_leaves_out(large):
     ("changes", "verdict"),
     [
         ({}, "safe on: humble, jazzy, rolling, robot"),
-        ({"coverage": Coverage(1, 3, 0)}, "analysed nothing"),
+        ({"coverage": AnalysisCoverage(1, 3, 0)}, "analysed nothing"),
         ({"failure": "no *such* folder"}, "failed: no \\*such\\* folder"),
         ({"targets": ()}, "found no target to check"),
     ],

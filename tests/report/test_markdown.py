@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 from rosimpact.impact.analysis.downstream import Effect, Impact
-from rosimpact.impact.analysis.report import Coverage, Report, ReportedPackage, ReportedTarget
-from rosimpact.impact.model.flow.graph import Coverage as FlowCoverage
+from rosimpact.impact.analysis.report import AnalysisCoverage, Report, ReportedPackage, ReportedTarget
+from rosimpact.impact.model.flow.graph import AnalysisCoverage as FlowCoverage
 from rosimpact.impact.report import github, markdown
 from rosimpact.impact.report.impact import render_markdown as impact_markdown
 from rosimpact.impact.report.markdown_text import escape_markdown, format_cell, quote
@@ -74,7 +74,7 @@ def report_of(name, other):
     finding = Finding("removed-header", "error", name, other, 3, 1, name, (name,), message, help)
     return Report(
         "0.1.0", "2026-08-22", (ReportedTarget(name, "jazzy", "", ""), ReportedTarget("b", "b", "", "")), (finding,),
-        Coverage(1, 1, 1), (ReportedPackage(name, other),), base=other,
+        AnalysisCoverage(1, 1, 1), (ReportedPackage(name, other),), base=other,
     )  # fmt: skip
 
 

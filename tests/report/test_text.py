@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from rosimpact.impact.analysis.report import Coverage, ReportedTarget, locate_subject, measure
+from rosimpact.impact.analysis.report import AnalysisCoverage, ReportedTarget, locate_subject, measure
 from rosimpact.impact.report import text
 from rosimpact.impact.report.style import PLAIN, choose_style
 from rosimpact.impact.rules.rule import Finding
@@ -79,9 +79,9 @@ def test_the_last_line_tells_what_is_not_shown(team):
 @pytest.mark.parametrize(
     ("changes", "start"),
     [
-        ({"coverage": Coverage()}, "nothing was analysed · 0 packages"),
+        ({"coverage": AnalysisCoverage()}, "nothing was analysed · 0 packages"),
         ({"failure": "`x` is no folder\nof yours"}, "failed: `x` is no folder\\nof yours · "),
-        ({"coverage": Coverage(1, 3, 3)}, "nothing found · 1 package, all of 3 files read · "),
+        ({"coverage": AnalysisCoverage(1, 3, 3)}, "nothing found · 1 package, all of 3 files read · "),
     ],
 )
 def test_summary(quiet, changes, start):

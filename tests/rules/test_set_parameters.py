@@ -44,14 +44,14 @@ NEW = OLD.replace("_plugin: checker", "_plugins: [checker]")
 
 
 def test_an_old_name_and_a_new_one(told):
-    ((line, targets, message, cure),) = told(OLD, "humble", "jazzy")
-    assert (line, targets, cure) == (3, "jazzy", "set `progress_checker_plugins`")
+    ((line, targets, message, remedy),) = told(OLD, "humble", "jazzy")
+    assert (line, targets, remedy) == (3, "jazzy", "set `progress_checker_plugins`")
     assert message.startswith("the parameter `progress_checker_plugin` is no longer declared by nav2_controller 1.3.")
 
 
 def test_a_name_that_is_not_there_yet(told):
-    ((line, targets, message, cure),) = told(NEW, "humble", "jazzy")
-    assert (line, targets, cure) == (3, "humble", "set `progress_checker_plugin`")
+    ((line, targets, message, remedy),) = told(NEW, "humble", "jazzy")
+    assert (line, targets, remedy) == (3, "humble", "set `progress_checker_plugin`")
     assert message.startswith("the parameter `progress_checker_plugins` is not declared by nav2_controller 1.1.")
 
 
@@ -123,7 +123,7 @@ wheels:
 
 
 def test_a_few_are_told_one_by_one(told):
-    assert [(line, cure) for line, _, _, cure in told(GRACEFUL, "jazzy")] == [
+    assert [(line, remedy) for line, _, _, remedy in told(GRACEFUL, "jazzy")] == [
         (5, ""),
         (6, "set `prefer_final_rotation`"),
     ]

@@ -1,7 +1,7 @@
 """Hashes of messages: those that public tools give for definitions that everybody knows."""
 
 import pytest
-from rosimpact.databuild.surface.hashes import hash_of
+from rosimpact.databuild.surface.hashes import compute_hash
 from rosimpact.impact.facts.interface import extract
 
 ROS1 = {
@@ -62,9 +62,9 @@ HASHES = [
 def test_hashes_of_interfaces(ros, name, expected):
     texts = ROS1 if ros == 1 else ROS2
     known = {one: extract(text.encode(), one.split("/")[1]) for one, text in texts.items()}
-    assert hash_of(name, ros, known[name], lambda one: known.get(one.replace("/", "/msg/"))) == expected
+    assert compute_hash(name, ros, known[name], lambda one: known.get(one.replace("/", "/msg/"))) == expected
 
 
 def test_a_bound_that_is_no_number_has_no_hash():
     idl = b"module arm { module msg { const long MOST = 5; struct A { sequence<long, MOST> a; }; }; };"
-    assert hash_of("arm/msg/A", 2, extract(idl, "idl"), lambda one: None) is None
+    assert compute_hash("arm/msg/A", 2, extract(idl, "idl"), lambda one: None) is None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from rosimpact.databuild.extract.cpp import extract as header
-from rosimpact.databuild.includes import Header as Read
+from rosimpact.databuild.includes import HeaderContent as Read
 from rosimpact.databuild.includes import build_table, drop_stored, extend_table, find_types, list_direct, list_includes
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces

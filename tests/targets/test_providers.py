@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rosimpact.databuild.providers import SCHEMA, include_paths, list_cmake, list_modules
-from rosimpact.databuild.surface.releases import normalize_url, tag_of
+from rosimpact.databuild.surface.releases import find_tag, normalize_url
 from rosimpact.impact.targets.providers.providers import Providers, add_facts, load_providers
 from rosimpact.impact.targets.providers.stdlib import is_in_stdlib, was_ever_in_stdlib
 from rosimpact.impact.targets.snapshot import SnapshotError
@@ -258,7 +258,7 @@ def test_paths_never_raise(path):
 )
 def test_tag_of_a_version(version, name, tag):
     tags = {"1.2.3": "refs/tags/1.2.3", "v2.0.0": "refs/tags/v2.0.0", "foo-3.0.0": "refs/tags/foo-3.0.0"}
-    assert tag_of(tags, version, name) == tag
+    assert find_tag(tags, version, name) == tag
 
 
 @pytest.mark.parametrize(

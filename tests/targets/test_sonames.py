@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from rosimpact.databuild.sonames import Suite, build_table, parse_libraries, parse_symbols
+from rosimpact.databuild.sonames import SuiteLibraries, build_table, parse_libraries, parse_symbols
 from rosimpact.impact.facts.elf import AskedSymbolVersions, Elf
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.machine.loader import Loader
-from rosimpact.impact.targets.machine.shared_libraries import DescribedShelf, MachineShelf
+from rosimpact.impact.targets.machine.shared_libraries import DescribedLibraries, InstalledLibraries
 from rosimpact.impact.targets.machine.sonames import load_sonames, parse_numbers
 
 SONAMES = load_sonames()
@@ -115,18 +115,20 @@ DESCRIBED = [
 
 @pytest.mark.parametrize(("distro", "platform", "soname", "there"), DESCRIBED)
 def test_what_a_described_machine_has(distro, platform, soname, there):
-    shelf = DescribedShelf(DistroTarget(distro, None, platform), SONAMES)
-    assert shelf.has(soname, ASKER, "") is there
+    libraries = DescribedLibraries(DistroTarget(distro, None, platform), SONAMES)
+    assert libraries.has(soname, ASKER, "") is there
 
 
 def test_a_version_of_ones_own_goes_over_that_of_the_platform():
-    own = DescribedShelf(DistroTarget("noetic", None, "debian bookworm", {"opencv": "4.9.0"}), SONAMES)
+    own = DescribedLibraries(DistroTarget("noetic", None, "debian bookworm", {"opencv": "4.9.0"}), SONAMES)
     assert [own.has(f"libopencv_core.so.{n}", ASKER, "") for n in ("409", "410")] == [True, False]
 
 
 def test_what_an_underlay_has_is_there():
-    shelf = DescribedShelf(DistroTarget("humble"), SONAMES, own={"libpcl_common.so.1.9"}, near={"libpcl_ml.so.1.9"})
-    assert [shelf.has(f"libpcl_{name}.so.1.9", ASKER, "") for name in ("common", "ml", "io")] == [True, None, False]
+    libraries = DescribedLibraries(
+        DistroTarget("humble"), SONAMES, own={"libpcl_common.so.1.9"}, near={"libpcl_ml.so.1.9"}
+    )
+    assert [libraries.has(f"libpcl_{name}.so.1.9", ASKER, "") for name in ("common", "ml", "io")] == [True, None, False]
 
 
 LACKS = [
@@ -140,8 +142,8 @@ LACKS = [
 
 @pytest.mark.parametrize(("distro", "platform", "library", "versions", "lacking"), LACKS)
 def test_versions_of_symbols_that_a_described_machine_lacks(distro, platform, library, versions, lacking):
-    shelf = DescribedShelf(DistroTarget(distro, None, platform), SONAMES)
-    assert [tuple(lack) for lack in shelf.lacks(AskedSymbolVersions(library, versions), ASKER, "") or ()] == lacking
+    libraries = DescribedLibraries(DistroTarget(distro, None, platform), SONAMES)
+    assert [tuple(lack) for lack in libraries.lacks(AskedSymbolVersions(library, versions), ASKER, "") or ()] == lacking
 
 
 # This machine
@@ -173,14 +175,16 @@ def root(tmp_path: Path, made_elf) -> Path:
 def test_what_this_machine_has(root, soname, machine, there):
     listing = f"1 libs found in cache\n\tlibhook.so.1 (libc6,x86-64) => {root}/opt/maker/lib/libhook.so.1\n"
     loader = Loader((), root, {}, lambda command: listing)
-    shelf = MachineShelf("robot", loader, "EM_X86_64", "debian bookworm", SONAMES)
-    assert shelf.has(soname, Elf(machine=machine, bits=64), "") is there
+    libraries = InstalledLibraries("robot", loader, "EM_X86_64", "debian bookworm", SONAMES)
+    assert libraries.has(soname, Elf(machine=machine, bits=64), "") is there
 
 
 def test_a_library_without_a_version_is_missed_where_prefixes_are_known(root):
     alone, sourced = (Loader(folders, root, {}, lambda command: "") for folders in ((), (str(root / "opt/ros/lib"),)))
-    shelves = [MachineShelf("robot", loader, "EM_X86_64", "debian bookworm", SONAMES) for loader in (alone, sourced)]
-    assert [shelf.has("librclcpp.so", ASKER, "") for shelf in shelves] == [None, False]
+    shared_libraries = [InstalledLibraries(
+        "robot", loader, "EM_X86_64", "debian bookworm", SONAMES
+    ) for loader in (alone, sourced)]
+    assert [libraries.has("librclcpp.so", ASKER, "") for libraries in shared_libraries] == [None, False]
 
 
 def test_the_files_own_search_folders_count(root, made_elf):
@@ -199,9 +203,11 @@ def test_a_library_for_another_kind_of_machine_is_none(root, made_elf):
 
 
 def test_what_can_be_installed_is_named():
-    shelf = MachineShelf("robot", Loader((), Path("/nowhere"), {}, lambda c: ""), "", "debian bookworm", SONAMES)
-    assert shelf.find_package("libpcl_common.so.1.13") == "libpcl-common1.13"
-    assert shelf.find_package("libpcl_common.so.1.11") == ""
+    libraries = InstalledLibraries(
+        "robot", Loader((), Path("/nowhere"), {}, lambda c: ""), "", "debian bookworm", SONAMES
+    )
+    assert libraries.find_package("libpcl_common.so.1.13") == "libpcl-common1.13"
+    assert libraries.find_package("libpcl_common.so.1.11") == ""
 
 
 # How the table is made
@@ -235,7 +241,9 @@ def test_how_far_symbols_reach_is_told_by_the_package_and_the_file():
 
 def test_a_table_says_which_platforms_have_a_library():
     table = build_table(
-        [Suite("one", {"a.so.1": "a1"}, {}), Suite("two", {"a.so.1": "a1x", "b.so.2": "b2"}, {"GLIBC": "2"})]
+        [SuiteLibraries(
+            "one", {"a.so.1": "a1"}, {}
+        ), SuiteLibraries("two", {"a.so.1": "a1x", "b.so.2": "b2"}, {"GLIBC": "2"})]
     )
     assert table.names.splitlines() == ["a.so.1 3 a1x", "b.so.2 2 b2"]
     assert (table.platforms, table.symbols) == (("one", "two"), ({}, {"GLIBC": "2"}))

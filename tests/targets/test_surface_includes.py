@@ -5,7 +5,7 @@ from rosimpact.databuild.extract.cpp import extract as header
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface.headers import keep_compiled_includes
-from rosimpact.databuild.surface_file import Including, write
+from rosimpact.databuild.surface_file import IncludesPacker, write
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp.lexical import Include
 from rosimpact.impact.facts.interface import extract as interface
@@ -51,7 +51,7 @@ def _header(code):
 
 
 def test_each_version_includes_what_it_did():
-    including = Including()
+    including = IncludesPacker()
     including.add("1.0.0", [("arm/a.h", _header("#include <x>\n#include <y>")), ("arm/b.h", _header("class B;"))])
     including.add("2.0.0", [("arm/a.h", _header("#include <y>\n#include <x>"))])
     including.add("3.0.0", [("arm/a.h", _header("#include <x>\n#include <y>"))], True)

@@ -1,4 +1,4 @@
-"""Uses of ROS packages that only some versions take: each row with a line that it is about, and the line cured."""
+"""Uses of ROS packages that only some versions accept: each row with a line that it is about, and the line fixed."""
 
 # ruff: noqa: E501
 import json

@@ -116,9 +116,9 @@ class CppCode:
     def _scanned(self) -> Scan:
         return scan(self._data)
 
-    def place(self, offset: int) -> tuple[int, int]:
+    def locate(self, offset: int) -> tuple[int, int]:
         """Line and column of an offset, from 1."""
-        return self._scanned.place(offset)
+        return self._scanned.locate(offset)
 
     def find_conditions(self, offset: int) -> tuple[Condition, ...] | None:
         """The preprocessor conditions around an offset; None in a directive."""
@@ -224,7 +224,9 @@ class CppCode:
                 if path[-1].start_byte == at and node.kind_id == KIND.assignment_expression:
                     left = node.child_by_field_name("left")
                     if left is not None:
-                        yield CppUse(word, at, "assigned", word, self._place(path), self._make_expr(left, path[:-1]))
+                        yield CppUse(
+                            word, at, "assigned", word, self._find_place(path), self._make_expr(left, path[:-1])
+                        )
             at = self.text.find(sign, at + len(sign))
 
     def _use(self, word: str, at: int, path: list[Node]) -> CppUse | None:
@@ -258,7 +260,7 @@ class CppCode:
         outer = path[:level]
         form = "scoped" if "::" in written else "bare"
         if not last:
-            return CppUse(word, at, form, written, self._place(path), template=template, last=False)
+            return CppUse(word, at, form, written, self._find_place(path), template=template, last=False)
         if number == KIND.field_expression:
             object_ = parent.child_by_field_name("argument")
             if object_ is None or object_ == node:
@@ -268,11 +270,11 @@ class CppCode:
             arrow = operator is not None and operator.end_byte - operator.start_byte == 2
             if "::" in written:
                 return None
-            return CppUse(word, at, "member", written, self._place(path), self._make_expr(object_, outer), arrow,
+            return CppUse(word, at, "member", written, self._find_place(path), self._make_expr(object_, outer), arrow,
                        call, template=template)  # fmt: skip
         if number == KIND.field_initializer:
             call = self._list_arguments(parent.named_children[-1], outer)
-            return CppUse(word, at, "initializer", written, self._place(path), call=call, template=template)
+            return CppUse(word, at, "initializer", written, self._find_place(path), call=call, template=template)
         if number == KIND.call_expression:
             return self._make_use(word, at, form, written, template, self._find_args(path, level), False, path, outer)
         if self._is_declared(node, parent):
@@ -282,7 +284,7 @@ class CppCode:
 
     def _make_use(self, word, at, form, written, template, call, made, path, outer) -> CppUse:
         local = self._find_local(word, at, outer) if form == "bare" else None
-        return CppUse(word, at, form, written, self._place(path), None, False, call, made, template, local)
+        return CppUse(word, at, form, written, self._find_place(path), None, False, call, made, template, local)
 
     def _find_args(self, path: Sequence[Node], level: int) -> tuple[Expr, ...] | None:
         """The arguments where the node at a level is what a call calls."""
@@ -359,7 +361,7 @@ class CppCode:
             found.append(self._make_expr(type_, path))
         return tuple(found) or None  # `A a();` declares a function
 
-    def _place(self, path: Sequence[Node]) -> CodePlace:
+    def _find_place(self, path: Sequence[Node]) -> CodePlace:
         scope: list[str] = []
         owner, function = "", False
         opened: list[str] = []

@@ -170,7 +170,7 @@ class Declarations(FunctionReader):
         name, listed = children[1].children[0], children[1].children[-1]
         if listed.kind_id != KIND.parameter_list:
             return False
-        line, column = self.place(name.start_byte)
+        line, column = self.locate(name.start_byte)
         inner = self.guard("if", asked, line, guard)
         callee = strip_template(self.text[name.start_byte : name.end_byte])
         parts = self.follow_mistaken_parameters(get_items(listed), inner)
@@ -203,7 +203,7 @@ class Declarations(FunctionReader):
             parts = self.follow_mistaken_parameters(get_items(listed) if listed is not None else [], guard)
             if parts is None:
                 return None
-            line, column = self.place(children[0].start_byte)
+            line, column = self.locate(children[0].start_byte)
             self.calls.append(FlowCall(name, parts, line, column, guard))
             return FlowExpr("call", name, parts)
         return None
@@ -248,7 +248,7 @@ class Declarations(FunctionReader):
 
     def evaluate_lambda_expression(self, node: Node, guard: int, position: str, target: str) -> FlowExpr:
         """A lambda becomes a Function; what it is called is its Expr."""
-        line, column = self.place(node.start_byte)
+        line, column = self.locate(node.start_byte)
         name = f"{self.name}::lambda@{line}:{column}" if self.name else f"lambda@{line}:{column}"
         if self.name == "" and self.owner:
             name = f"{self.owner}::{name}"

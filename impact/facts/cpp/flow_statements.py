@@ -169,8 +169,8 @@ class CppStatements(Declarations):
         following = next((child for child in children if child.start_byte >= node.end_byte and child.is_named), None)
         if following is None or node.children[0].kind_id != KIND.call_expression:
             return False
-        _line, column = self.place(node.start_byte)
-        next_line, next_column = self.place(following.start_byte)
+        _line, column = self.locate(node.start_byte)
+        next_line, next_column = self.locate(following.start_byte)
         last_line = bisect_right(self.starts, node.end_byte)
         return next_line == last_line or (next_line <= last_line + 1 and next_column > column)
 

@@ -144,7 +144,7 @@ class FunctionReader:
     def find_line(self, node: Node) -> int:
         return bisect_right(self.starts, node.start_byte)
 
-    def place(self, offset: int) -> tuple[int, int]:
+    def locate(self, offset: int) -> tuple[int, int]:
         line = bisect_right(self.starts, offset)
         return line, offset - self.starts[line - 1] + 1
 
@@ -428,7 +428,7 @@ class FunctionReader:
         if callee in BINDS and arguments and (callee != "bind" or arguments[0].kind == "function"):
             return FlowExpr("bind", "", arguments)
         if not logs and not (method in SILENT and method):
-            line, column = self.place(at)
+            line, column = self.locate(at)
             kept = "" if target is None or target == RETURN else target
             self.calls.append(FlowCall(callee, arguments, line, column, guard, types, kept, target == RETURN))
         if target is None:

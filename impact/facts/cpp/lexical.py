@@ -293,7 +293,7 @@ class Scan:
 
     text: str
     visible: str
-    place: Callable[[int], tuple[int, int]]
+    locate: Callable[[int], tuple[int, int]]
     segments: list[tuple[int, int, tuple[Condition, ...]]]
     found: list[tuple[int, bool, str]]
     defined: dict[str, None]
@@ -341,7 +341,7 @@ def _make_locator(text: str) -> Callable[[int], tuple[int, int]]:
     """Gives line and column of offsets, from 1. Each is counted from the one before, which is most often near."""
     line, begin, last = 1, 0, 0
 
-    def place(offset: int) -> tuple[int, int]:
+    def locate(offset: int) -> tuple[int, int]:
         nonlocal line, begin, last
         if offset >= last:
             passed = text.count("\n", last, offset)
@@ -356,7 +356,7 @@ def _make_locator(text: str) -> Callable[[int], tuple[int, int]]:
         last = offset
         return line, offset - begin + 1
 
-    return place
+    return locate
 
 
 @lru_cache(maxsize=4)
@@ -364,7 +364,7 @@ def scan(data: bytes) -> Scan:
     """Reads a file as far as all that looks into it needs."""
     text = decode_source(data)
     problems: list[Problem] = []
-    place = _make_locator(text)
+    locate = _make_locator(text)
     found: list[tuple[int, bool, str]] = []
 
     def blank_match(match: re.Match[str]) -> str:
@@ -375,7 +375,7 @@ def scan(data: bytes) -> Scan:
             if group == "angled" or group == "quoted":
                 found.append((match.start(group), group == "angled", match.group(group)))
             elif group == "computed":
-                problems.append(Problem(place(match.start())[0], f"`#include {match.group(group)}` names a macro"))
+                problems.append(Problem(locate(match.start())[0], f"`#include {match.group(group)}` names a macro"))
         elif first == '"':
             # Quotes stay, so that a literal can be told from a comment.
             if "\n" not in hidden and len(hidden) > 1:
@@ -384,7 +384,7 @@ def scan(data: bytes) -> Scan:
             if hidden == "'":
                 return hidden
         elif hidden[1] == "*" and match.lastgroup is None:
-            problems.append(Problem(place(match.start())[0], "comment without an end"))
+            problems.append(Problem(locate(match.start())[0], "comment without an end"))
         if "\n" in hidden:
             return "\n".join([" " * len(line) for line in hidden.split("\n")])
         return " " * len(hidden)
@@ -424,7 +424,7 @@ def scan(data: bytes) -> Scan:
         if keyword in ("if", "ifdef", "ifndef"):
             blocks.open.append(([], _make_condition(keyword, body)))
         elif not blocks.open:
-            problems.append(Problem(place(start)[0], f"`#{keyword}` without `#if`"))
+            problems.append(Problem(locate(start)[0], f"`#{keyword}` without `#if`"))
         elif keyword == "endif":
             blocks.open.pop()
         else:
@@ -434,7 +434,7 @@ def scan(data: bytes) -> Scan:
     if blocks.open:
         problems.append(Problem(text.count("\n") + 1, f"{len(blocks.open)} `#if` without `#endif`"))
     ends = [end for _, end, _ in segments]
-    return Scan(text, visible, place, segments, found, defined, problems, ends, directives)
+    return Scan(text, visible, locate, segments, found, defined, problems, ends, directives)
 
 
 def find_at_line_starts(pattern: re.Pattern[str], text: str) -> Iterator[re.Match[str]]:
@@ -463,7 +463,7 @@ def find_word_uses(data: bytes, word: str) -> Iterator[tuple[int, int, tuple[Con
     for at in find_words(word, scanned.visible):
         conditions = scanned.find_conditions(at)
         if conditions is not None:
-            yield (*scanned.place(at), conditions)
+            yield (*scanned.locate(at), conditions)
 
 
 def extract(data: bytes) -> CppFile:
@@ -472,7 +472,7 @@ def extract(data: bytes) -> CppFile:
     Undecodable bytes become replacement characters, so columns are those of an editor that shows them so.
     """
     scanned = scan(data)
-    visible, place, tokens_text = scanned.visible, scanned.place, scanned.tokens_text
+    visible, locate, tokens_text = scanned.visible, scanned.locate, scanned.tokens_text
     words: set[bytes] = set()
     with_colons: set[bytes] = set()
     qualified: list[NameUseInFile] = []
@@ -494,21 +494,21 @@ def extract(data: bytes) -> CppFile:
         for at, name in found:
             if name not in known:
                 known.add(name)
-                qualified.append(NameUseInFile(name, *place(at), piece.conditions))
+                qualified.append(NameUseInFile(name, *locate(at), piece.conditions))
 
     words |= scanned.tokens
     words -= with_colons
     words -= _KEYWORD_BYTES
     long_words = sorted([word for word in words if len(word) > 3 and (word.isascii() or len(word.decode()) > 3)])
     return CppFile(
-        includes=includes_of(scanned),
+        includes=collect_includes(scanned),
         qualified=tuple(qualified),
         words=b" ".join(long_words[bisect_right(long_words, _AFTER_NUMBERS) :]).decode(),
         defined=tuple(scanned.defined),
         using=_list_using_names(visible) if "using" in tokens_text else (),
         problems=tuple(sorted(scanned.problems, key=_get_line)),
         exports=list_exports(visible) if any(word in tokens_text for word in _EXPORTING) else (),
-        references=_find_references(scanned.text, visible, place),
+        references=_find_references(scanned.text, visible, locate),
         types=list_defined_types(visible, tokens_text) if "namespace" in tokens_text else (),
         variables=_list_variable_types(visible),
         code=hashlib.sha1(" ".join(visible.split()).encode()).hexdigest()[:16],
@@ -612,11 +612,11 @@ def _get_line(item: Problem | Reference) -> int:
     return item.line
 
 
-def includes_of(scanned: Scan) -> tuple[Include, ...]:
+def collect_includes(scanned: Scan) -> tuple[Include, ...]:
     """The #include lines of a file, in its order."""
     includes: list[Include] = []
     for offset, angled, path in scanned.found:
-        line, column = scanned.place(offset)
+        line, column = scanned.locate(offset)
         includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, scanned.find_segment(offset)[2]))
     return tuple(includes)
 
@@ -641,7 +641,7 @@ def list_exports(visible: str) -> tuple[str, ...]:
 _JOINED = re.compile(r"""\s*\)*\s*((?:[+/]\s*"[^"\n]*"\s*)+)([+/])?""")
 
 
-def _place_below(after: str) -> str:
+def _find_name_below(after: str) -> str:
     """The path that literals join to the folder of a package, without a last name that goes on with a variable."""
     joined = _JOINED.match(after)
     if joined is None:
@@ -651,16 +651,16 @@ def _place_below(after: str) -> str:
     return "" if ".." in parts else "/".join(parts)
 
 
-def _find_references(text: str, visible: str, place) -> tuple[Reference, ...]:
+def _find_references(text: str, visible: str, locate) -> tuple[Reference, ...]:
     references: list[Reference] = []
     for match in _PACKAGE_URL.finditer(text) if '"package://' in text else ():
         if visible[match.start()] == '"':
             kind = "file" if match.group(2) else "package"
-            references.append(Reference(kind, match.group(1), match.group(2) or "", *place(match.start(1))))
+            references.append(Reference(kind, match.group(1), match.group(2) or "", *locate(match.start(1))))
     for match in _PACKAGE_CALL.finditer(visible) if "::getPath" in visible or "get_package_" in visible else ():
         literal = _PACKAGE_LITERAL.match(text, match.start(1))
         if literal:
-            name = _place_below(text[literal.end() : literal.end() + 200])
+            name = _find_name_below(text[literal.end() : literal.end() + 200])
             kind = "place" if name else "package"
-            references.append(Reference(kind, literal.group(1), name, *place(literal.start(1))))
+            references.append(Reference(kind, literal.group(1), name, *locate(literal.start(1))))
     return tuple(sorted(references, key=_get_line))

@@ -195,7 +195,7 @@ def _launch(data: bytes, kind: str) -> LaunchFile:
     problems = list(document.problems)
     for element in document.elements:
         depth = depths[element.parent] + 1 if element.parent >= 0 else 0
-        entity = _Entity(element.name if is_yaml else element.name.lower(), document.place(element.offset)[0])
+        entity = _Entity(element.name if is_yaml else element.name.lower(), document.locate(element.offset)[0])
         for attribute in element.attributes:
             if attribute.listed:
                 items = entity.attributes.setdefault(attribute.name, [])
@@ -206,7 +206,7 @@ def _launch(data: bytes, kind: str) -> LaunchFile:
             else:
                 # XML's readers make blanks of line ends and tabs in values; the first of two of a name counts.
                 entity.attributes.setdefault(attribute.name, _BLANK.sub(" ", attribute.value))
-        entity.text = _own_text(document, element) if element.text and entity.tag == "rosparam" else ""
+        entity.text = _read_own_text(document, element) if element.text and entity.tag == "rosparam" else ""
         entities.append(entity)
         depths.append(depth)
         if depth == DEEPEST:
@@ -222,7 +222,7 @@ _BLANK = re.compile(r"\r\n|[\r\n\t]")
 _COMMENT_OR_CDATA = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
-def _own_text(document: Document, element: Element) -> str:
+def _read_own_text(document: Document, element: Element) -> str:
     """The text of an element without children as it stands, line ends around comments included: YAML needs them."""
     opened = TOKEN.match(document.text, element.offset)
     start = opened.end() if opened is not None else element.offset

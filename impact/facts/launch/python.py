@@ -28,11 +28,11 @@ from .actions import (
 from .parameter_files import DEEPEST
 from .python_calls import MAKERS, MOST_TURNS, LaunchCall
 from .python_values import (
+    ConditionalValue,
     ConditionValue,
     Context,
     Either,
     FilledFile,
-    Guarded,
     Items,
     LaunchClass,
     LaunchConstant,
@@ -49,10 +49,10 @@ from .python_values import (
     YamlContent,
     add_conditions,
     calculate_result,
+    find_index,
     get_source,
     join_conditions,
     make_parent_path,
-    place_in,
 )
 
 MOST_STEPS = 200_000
@@ -188,7 +188,7 @@ class Walker:
             key = self.evaluate(target.slice)
             if isinstance(holder, Pairs):
                 holder.set(key, self.add_conditions(value, holder.depth))
-            elif isinstance(holder, Items) and (place := place_in(holder, key)) is not None:
+            elif isinstance(holder, Items) and (place := find_index(holder, key)) is not None:
                 holder.items[place] = value
         elif isinstance(target, ast.Attribute):
             holder = self.evaluate(target.value)
@@ -245,7 +245,7 @@ class Walker:
 
     def bind_turn(self, target: ast.expr, turn: Any) -> tuple[ActionCondition, ...]:
         """Binds the variable of a loop for one turn; gives the conditions that this one stands under."""
-        value, extra = (turn.value, turn.conditions) if isinstance(turn, Guarded) else (turn, ())
+        value, extra = (turn.value, turn.conditions) if isinstance(turn, ConditionalValue) else (turn, ())
         self.bind(target, value)
         return extra
 
@@ -319,7 +319,7 @@ class Walker:
         if isinstance(value, (Items, Pairs)):
             if not value.items:
                 return False
-            if not any(isinstance(item, Guarded) for item in value.items):
+            if not any(isinstance(item, ConditionalValue) for item in value.items):
                 return True
         if isinstance(value, (LaunchModule, LaunchFunction, Object, LaunchClass, Action, Context)):
             return True
@@ -421,9 +421,9 @@ class Walker:
             return TextValue((make_named("arg", key.value),))
         if isinstance(holder, Pairs):
             found = holder.get(key)
-            if found is not None and not isinstance(found, Guarded):
+            if found is not None and not isinstance(found, ConditionalValue):
                 return found
-        if isinstance(holder, Items) and (place := place_in(holder, key)) is not None:
+        if isinstance(holder, Items) and (place := find_index(holder, key)) is not None:
             return holder.items[place]
         return Unknown(get_source(node))
 
@@ -702,7 +702,8 @@ class Walker:
             depth = len(self.conditions)
             if name == "items":
                 pairs = [
-                    (k, v.value, v.conditions) if isinstance(v, Guarded) else (k, v, ()) for k, v in receiver.items
+                    (k, v.value, v.conditions) if isinstance(v, ConditionalValue) else (k, v, ())
+                    for k, v in receiver.items
                 ]
                 return Items([add_conditions(Items([k, v], depth), c) for k, v, c in pairs], depth)
             if name in ("keys", "values"):
@@ -714,7 +715,7 @@ class Walker:
             if name in ("get", "pop") and arguments:
                 found = receiver.get(first)
                 if found is not None:
-                    return found if not isinstance(found, Guarded) else Unknown(get_source(node))
+                    return found if not isinstance(found, ConditionalValue) else Unknown(get_source(node))
                 if first is not None and all(isinstance(key, TextValue) for key, _ in receiver.items):
                     return arguments[1] if len(arguments) > 1 else LaunchConstant(None)
             if name == "copy":
@@ -811,7 +812,7 @@ class Walker:
         elif isinstance(value, Items):
             for item in value.items:
                 yield from self.list_actions(item, line, extra)
-        elif isinstance(value, Guarded):
+        elif isinstance(value, ConditionalValue):
             yield from self.list_actions(value.value, line, (*extra, *value.conditions))
         elif isinstance(value, Either):
             yield from self.list_actions(value.yes, line, (*extra, ActionCondition("if", value.condition, line)))

@@ -24,11 +24,11 @@ from .actions import (
 )
 from .python_values import (
     NOTHING,
+    ConditionalValue,
     ConditionValue,
     Context,
     Either,
     FilledFile,
-    Guarded,
     Items,
     LaunchConstant,
     LaunchFunction,
@@ -86,7 +86,7 @@ class LaunchCall(NamedTuple):
     def list_texts(self, value: Any) -> list[Value]:
         """A list of texts, one each."""
         items = value.items if isinstance(value, Items) else [value]
-        return [self.make_text(item.value if isinstance(item, Guarded) else item) for item in items]
+        return [self.make_text(item.value if isinstance(item, ConditionalValue) else item) for item in items]
 
     def make_piece(self, kind: str, *values: Any, is_str: bool = False) -> TextValue:
         """A substitution of several values."""
@@ -102,7 +102,7 @@ class LaunchCall(NamedTuple):
         self, value: Any, extra: tuple[ActionCondition, ...] = ()
     ) -> Iterator[tuple[Any, tuple[ActionCondition, ...]]]:
         """What a value may be, with the conditions under which it is; nothing for None."""
-        if isinstance(value, Guarded):
+        if isinstance(value, ConditionalValue):
             yield from self.list_branches(value.value, (*extra, *value.conditions))
         elif isinstance(value, Either):
             yield from self.list_branches(value.yes, (*extra, ActionCondition("if", value.condition, self.line)))
@@ -188,7 +188,7 @@ class LaunchCall(NamedTuple):
 
     def expand_parameter(self, name: Value, value: Any, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:
         """A parameter, or those of a nested dict."""
-        if isinstance(value, Guarded):
+        if isinstance(value, ConditionalValue):
             yield from self.expand_parameter(name, value.value, (*extra, *value.conditions))
         elif isinstance(value, Pairs):
             for key, held in value.items:
@@ -311,7 +311,7 @@ def _list_passed_arguments(call: LaunchCall, value: Any, extra: tuple[ActionCond
             yield call.skip_argument("launch_arguments", held, conditions)
         elif len(held.items) == 2 and isinstance(held.items[0], TextValue):
             name, given = held.items
-            if isinstance(given, Guarded):
+            if isinstance(given, ConditionalValue):
                 conditions, given = (*conditions, *given.conditions), given.value
             yield Action(
                 "pass", call.line, (("name", call.make_text(name)), ("value", call.make_text(given))), conditions
@@ -502,7 +502,7 @@ def _rewrite_yaml(call: LaunchCall) -> Any:
     parts = [call.make_text(call.get(0, "source_file")), make_literal("") if root is None else call.make_text(root)]
     rewrites = call.get(1, "param_rewrites")
     for key, value in rewrites.items if isinstance(rewrites, Pairs) else ():
-        parts += (call.make_text(key), call.make_text(value.value if isinstance(value, Guarded) else value))
+        parts += (call.make_text(key), call.make_text(value.value if isinstance(value, ConditionalValue) else value))
     value = (ValuePart("rewritten", "", tuple(parts)),)
     # Values that stand for others, wherever they are
     values = call.get(-1, "value_rewrites")
@@ -549,7 +549,7 @@ def _zip_turns(call: LaunchCall) -> Any:
 def _list_sure_turns(call: LaunchCall, value: Any) -> list[Any] | None:
     """What a loop over a value walks through, None where it is not known or hangs on conditions."""
     turns = call.walker.list_turns(value)
-    return None if turns is None or any(isinstance(turn, Guarded) for turn in turns) else turns
+    return None if turns is None or any(isinstance(turn, ConditionalValue) for turn in turns) else turns
 
 
 def _make_list(call: LaunchCall) -> Any:
@@ -573,7 +573,7 @@ def _make_dict(call: LaunchCall) -> Any:
 
 def _measure_length(call: LaunchCall) -> Any:
     given = call.get(0)
-    if isinstance(given, (Items, Pairs)) and not any(isinstance(item, Guarded) for item in given.items):
+    if isinstance(given, (Items, Pairs)) and not any(isinstance(item, ConditionalValue) for item in given.items):
         return LaunchConstant(len(given.items))
     return call.unknown
 

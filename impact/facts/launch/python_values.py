@@ -61,7 +61,7 @@ class TypedValue(NamedTuple):
     type: str
 
 
-class Guarded(NamedTuple):
+class ConditionalValue(NamedTuple):
     """A value that is only there under conditions."""
 
     value: Any
@@ -163,12 +163,12 @@ def add_conditions(value: Any, conditions: tuple[ActionCondition, ...]) -> Any:
     """A value under conditions, itself where there are none."""
     if not conditions:
         return value
-    if isinstance(value, Guarded):
-        return Guarded(value.value, (*conditions, *value.conditions))
-    return Guarded(value, conditions)
+    if isinstance(value, ConditionalValue):
+        return ConditionalValue(value.value, (*conditions, *value.conditions))
+    return ConditionalValue(value, conditions)
 
 
-def place_in(holder: Items, key: Any) -> int | None:
+def find_index(holder: Items, key: Any) -> int | None:
     """The place in a list that an index means, None when it is not known to be there."""
     if not isinstance(key, LaunchConstant) or not isinstance(key.value, int):
         return None

@@ -59,8 +59,8 @@ MARKS = ("$(", "://", "find(")
 class _Found:
     """What has been found in one file so far."""
 
-    def __init__(self, place: Callable[[int], tuple[int, int]]):
-        self.place = place
+    def __init__(self, locate: Callable[[int], tuple[int, int]]):
+        self.locate = locate
         self.references: list[Reference] = []
         self.unresolved: list[Problem] = []
         # What the include that is being read gives.
@@ -69,7 +69,7 @@ class _Found:
         self.conditions: tuple[Condition, ...] = ()
 
     def add(self, kind: str, package: str, name: str, offset: int, conditional: bool) -> None:
-        line, column = self.place(offset)
+        line, column = self.locate(offset)
         arguments = self.arguments if kind == "file" else None
         self.references.append(
             Reference(kind, package, name, line, column, conditional, arguments, self.conditions)
@@ -96,7 +96,7 @@ class _Found:
             elif m["command"] is not None:
                 self.add("command", "", m["command"], at, conditional)
             else:
-                self.unresolved.append(Problem(self.place(at)[0], text[m.start() : m.start() + 80]))
+                self.unresolved.append(Problem(self.locate(at)[0], text[m.start() : m.start() + 80]))
 
     def _add_substitution(
         self, verb: str, args: list[str], rest: str | None, after: str, at: int, conditional: bool
@@ -104,7 +104,7 @@ class _Found:
         names = [arg.strip("'\"") for arg in args]
         if not names or not PACKAGE.match(names[-1]):
             if names and "$" in names[-1]:
-                self.unresolved.append(Problem(self.place(at)[0], f"$({verb} {' '.join(args)})"[:80]))
+                self.unresolved.append(Problem(self.locate(at)[0], f"$({verb} {' '.join(args)})"[:80]))
             return
         package = names[-1]
         if verb == "exec-in-pkg":
@@ -250,7 +250,7 @@ def _read_launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
     document = read_document(data, kind)
     if kind == "launch_yaml" and not document.elements:  # arguments or parameters, called like a launch file
         return structs.replace(_read_yaml(data), problems=document.problems)
-    found = _Found(document.place)
+    found = _Found(document.locate)
     given = _find_include_arguments(document)
     for at, (element, conditions) in enumerate(zip(document.elements, _find_conditions(document), strict=True)):
         name, conditional = element.name, found.stand_under(conditions)
@@ -297,7 +297,7 @@ def _find_package(found: _Found, element: Element) -> Attribute | None:
     if package is None or PACKAGE.match(package.value):
         return package
     if "$" in package.value:
-        found.unresolved.append(Problem(found.place(package.offset)[0], package.value[:80]))
+        found.unresolved.append(Problem(found.locate(package.offset)[0], package.value[:80]))
     return None
 
 
@@ -328,7 +328,7 @@ def _add_command(found: _Found, attribute: Attribute | None, conditional: bool) 
 
 def _read_robot_description(data: bytes) -> ReferenceFile:
     document = scan(data)
-    found = _Found(document.place)
+    found = _Found(document.locate)
     for element, conditions in zip(document.elements, _find_conditions(document), strict=True):
         conditional = found.stand_under(conditions)
         if element.name == "plugin":
@@ -356,7 +356,7 @@ def _read_plugin_description(data: bytes) -> ReferenceFile:
             library = element.get("path")
         elif element.name == "class":
             type_ = element.get("type")
-            line = document.place(element.offset)[0]
+            line = document.locate(element.offset)[0]
             # pluginlib takes the type for the name of a class that has none
             classes.append(
                 PluginClass(element.get("name", type_), type_, element.get("base_class_type"), library, line)
@@ -427,7 +427,7 @@ def _read_yaml(data: bytes) -> ReferenceFile:
     if not YAML_WORTH_READING.search(data):
         return ReferenceFile(())
     text = decode(data)
-    found = _Found(Document(text).place)
+    found = _Found(Document(text).locate)
     _add_plugin_values(found, text, 0, False)
     for m in re.finditer(r"^.*(?:\$\(|://).*$", text, re.MULTILINE):
         line = m.group()
@@ -457,7 +457,7 @@ def _read_shell(data: bytes) -> ReferenceFile:
     if not WORTH_READING.search(data):
         return ReferenceFile(())
     text = decode(data)
-    found = _Found(Document(text).place)
+    found = _Found(Document(text).locate)
     heredoc = ""
     depth = 0
     offset = 0
@@ -504,7 +504,7 @@ def _add_shell_command(found: _Found, match: re.Match[str], start: int, conditio
     offset = start + match.start("args") + at
     if not PACKAGE.match(package):
         if "$" in package:
-            found.unresolved.append(Problem(found.place(offset)[0], f"{command} {package}"[:80]))
+            found.unresolved.append(Problem(found.locate(offset)[0], f"{command} {package}"[:80]))
         return
     name = rest[0][0] if rest and LITERAL.match(rest[0][0]) else ""
     if command in ("rosrun", "ros2 run") and name:

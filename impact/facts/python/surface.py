@@ -56,7 +56,7 @@ class Bound(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return any(is_private(part) for part in self.name.split("."))
 
 
-class Taken(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class ImportedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A name bound by an import. name: what it is called here, `*` for all of a module. module: as written, without
     the leading dots that level counts. original: the name over there, empty for the module itself (`import a.b` binds
     `a` and has module `a.b`). scope: the class whose body imports, empty for the module."""
@@ -81,7 +81,7 @@ class ModuleSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """
 
     names: tuple[Bound, ...]
-    imports: tuple[Taken, ...]
+    imports: tuple[ImportedName, ...]
     all: tuple[str, ...] | None = None
     all_open: bool = False
     open: tuple[tuple[str, str], ...] = ()

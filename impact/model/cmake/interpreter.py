@@ -944,7 +944,7 @@ class Interpreter:
             self.use_variable(name, template.at)
             return CMakeValue((wrap(f"${{{name}}}", template.at, (), False),), False)
         if not value.sure:
-            value = _place_unknown(value, f"${{{name}}}", template.at)
+            value = _put_unknown(value, f"${{{name}}}", template.at)
         return _flatten(value)
 
     def expand_one(self, template: Template) -> tuple[Word, ...]:
@@ -1219,7 +1219,7 @@ def _make_arguments_value(args: list[Word]) -> CMakeValue:
     return CMakeValue(tuple(words), all(item.sure for item in words))
 
 
-def _place_unknown(value: CMakeValue, unknown: str, at: At) -> CMakeValue:
+def _put_unknown(value: CMakeValue, unknown: str, at: At) -> CMakeValue:
     """The value with what is not known of it standing where it is read."""
     if unknown not in value.words:
         return value

@@ -62,7 +62,7 @@ class OfferedHeaders:
         included = hashlib.sha1("\n".join(self._list_included(header)).encode("utf-8", "surrogateescape")).hexdigest()
         return f"{self.gathered.ids[header]} {facts.code if facts is not None else ''}{included[:8]}"
 
-    def still_says(self, header: str, described: str) -> bool:
+    def is_unchanged(self, header: str, described: str) -> bool:
         """Whether a header says what it did when it was described."""
         content, _, code = described.partition(" ")
         now = self.gathered.ids.get(header, "")

@@ -1,7 +1,7 @@
-"""Whether all that a program does with its node is in sight: only then is a name that its code lacks a dead one.
+"""Whether all that a program does with its node is known: only then is a name that its code lacks a dead one.
 
-Out of sight is what code of other packages does with a node that it is given, what is loaded at run time, and names
-that are put together from what is not known. Whoever asks errs on the side of "not in sight".
+Unknown is what code of other packages does with a node that it is given, what is loaded at run time, and names
+that are put together from what is not known. Whoever asks errs on the side of "not known".
 """
 
 from __future__ import annotations
@@ -72,24 +72,24 @@ _OWN = frozenset(
 )
 
 
-class Sight(NamedTuple):
-    """Why not all names, and not all parameters, of a program are in sight; empty where they are."""
+class UnknownReasons(NamedTuple):
+    """Why not all names, and not all parameters, of a program are known; empty where they are."""
 
     names: str
     parameters: str
 
 
-class Seeing:
-    """Asks a body of code, joined, what of a program is in sight."""
+class EscapeAnalysis:
+    """Asks a body of code, joined, what a program does with its node outside of it."""
 
     def __init__(self, workspace: Workspace, join: Join):
         self.workspace, self.join = workspace, join
 
-    def find_sight(self, one: Running) -> Sight:
-        """What of a program is in sight."""
+    def find_unknown_reasons(self, one: Running) -> UnknownReasons:
+        """Why some names or parameters of a program may be unknown."""
         functions = sorted(one.functions, key=self._order.__getitem__)
         if not one.program.roots or not functions:
-            return Sight("its code is not in the workspace", "its code is not in the workspace")
+            return UnknownReasons("its code is not in the workspace", "its code is not in the workspace")
         classes = self.join.code.classes
         paths = {fn.source.path for fn in functions}
         paths.update(
@@ -98,7 +98,7 @@ class Seeing:
         steps = (self._list_outside(paths), self._list_bases(one), self._list_given(functions), self._list_dead(one))
         both = next(chain(*steps), "")
         names = both or next(self._list_unnamed(functions), "")
-        return Sight(names, both or next(self._list_unlisted(functions), ""))
+        return UnknownReasons(names, both or next(self._list_unlisted(functions), ""))
 
     @cached_property
     def _order(self) -> dict[Fn, int]:

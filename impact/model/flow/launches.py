@@ -16,7 +16,7 @@ from ..launch.follow import MOST_ACTIONS, follow
 from ..launch.result import Launched, SettingFile, Started, select_file_values
 from ..package import find_folder_role
 from ..workspace import Workspace
-from .escape_analysis import Seeing, Sight
+from .escape_analysis import EscapeAnalysis, UnknownReasons
 from .file_selection import compute_stamp
 from .graph import Graph
 from .join import Join, Running
@@ -123,17 +123,17 @@ def _run_within_limits(task: Callable[..., Iterable[_Row]], *given: Any) -> list
 
 def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> Iterator[Launch]:
     """What launch files start."""
-    sources, seeing = InWorkspace(workspace), Seeing(workspace, join)
-    sights: dict[str, Sight] = {}
+    sources, escapes = InWorkspace(workspace), EscapeAnalysis(workspace, join)
+    unknown: dict[str, UnknownReasons] = {}
     for path, launch in followed:
         running, missing = join.find_started(launch)
         graph = join.build(launch=launch)
         starts = []
         for one in running:
             program = f"{one.program.package}/{one.program.executable or one.program.plugin}"
-            if program not in sights:
-                sights[program] = seeing.find_sight(one)
-            starts.append(_start_node(join, launch, sources, one, program, sights[program]))
+            if program not in unknown:
+                unknown[program] = escapes.find_unknown_reasons(one)
+            starts.append(_start_node(join, launch, sources, one, program, unknown[program]))
         here = {id(one.instance.started) for one in running if one.instance is not None}
         others = [started for started in launch.started if id(started) not in here]
         elsewhere = {
@@ -180,17 +180,17 @@ def is_launch(path: str) -> bool:
 
 
 def _start_node(
-    join: Join, launch: Launched, sources: InWorkspace, one: Running, program: str, sight: Sight
+    join: Join, launch: Launched, sources: InWorkspace, one: Running, program: str, reasons: UnknownReasons
 ) -> LaunchedNode:  # fmt: skip
     instance = one.instance
     assert instance is not None
     renamed = tuple(_list_given_remappings(sources, instance, join.ros))
     given = tuple(_list_given(sources, launch, instance.started, instance))
-    names = {name for name in _list_names(join, one, instance) if name} if renamed and not sight.names else ()
-    asked = _collect_parameters(join, one) if (given or renamed) and not sight.parameters else ()
+    names = {name for name in _list_names(join, one, instance) if name} if renamed and not reasons.names else ()
+    asked = _collect_parameters(join, one) if (given or renamed) and not reasons.parameters else ()
     return LaunchedNode(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
-        sight.names, sight.parameters, instance.uncertain,
+        reasons.names, reasons.parameters, instance.uncertain,
     )  # fmt: skip
 
 

@@ -60,9 +60,9 @@ def _is_alone(name: str, place: int) -> bool:
 
 
 class NearNames(Generic[T]):
-    """Things by their names, asked for those whose name is a slip of another, or within a namespace of it: as
+    """Things by their names, asked for those whose name is a misspelling of another, or within a namespace of it: as
     is_slip_of_name() and is_in_namespace() say, without comparing every name with every other. Very long names are no
-    slips.
+    misspellings.
     """
 
     def __init__(self, things: Iterable[tuple[str, T]], *, namespaces: bool = False):

@@ -39,7 +39,7 @@ from .uses import list_cpp_uses
 def changed_default(view: TargetView, package: Package):
     for use in list_cpp_uses(view, package):
         found = use.found
-        if found.form != "default" or not use.sure or not _came_lately(view.target, found):
+        if found.form != "default" or not use.sure or not _was_added_lately(view.target, found):
             continue
         values = find_changed_default(view.offers, found, use.arguments)
         if values is None:
@@ -48,7 +48,7 @@ def changed_default(view: TargetView, package: Package):
         yield Diagnostic(use.at, use.name, package.name, data, evidence=found.evidence)
 
 
-def _came_lately(target: DistroTarget, found: Availability) -> bool:
+def _was_added_lately(target: DistroTarget, found: Availability) -> bool:
     """Whether a change came after the long-term distro before the target's."""
     earlier = find_previous_lts(target.distro)
     version = earlier.find_version(found.package) if earlier is not None else None

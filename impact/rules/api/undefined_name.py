@@ -34,7 +34,7 @@ from ...facts.python.bound import PYTHON2_BUILTINS
 from ...model.package import ImportUse
 from ...model.python.undefined import BESIDE, UNLISTED
 from ...targets.distro.distro import DistroTarget
-from ..python_files import Refused, report_refused
+from ..python_files import RejectedUse, report_refused
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, list_place_doubts, rule
 
 
@@ -86,10 +86,12 @@ def undefined_name(view: TargetView):
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
         yield from _find_lacking_elsewhere(view, package)
 
-    def find(package: Package, target: DistroTarget) -> Iterator[Refused]:
+    def find(package: Package, target: DistroTarget) -> Iterator[RejectedUse]:
         for use, name in _list_uses(view, package):
             if not use.module and _is_of_python2(name):
-                yield Refused(use, name.lstrip("."), "python 2", doubts=_collect_doubts(use), conditions=use.conditions)
+                yield RejectedUse(
+                    use, name.lstrip("."), "python 2", doubts=_collect_doubts(use), conditions=use.conditions
+                )
 
     yield from report_refused(view, find)
 

@@ -67,7 +67,8 @@ from .install_rules import is_installed, list_references, read_installs
             "use ament_python_install_package(), or the folder of the Python that CMake finds",
         ),
         "interpreter": Text(
-            "`{subject}` is to be run by `python`, which {platform} does not have, and is installed as it is", "{cure}"
+            "`{subject}` is to be run by `python`, which {platform} does not have, and is installed as it is",
+            "{remedy}",
         ),
     },
 )
@@ -230,9 +231,9 @@ def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagno
     target = view.target
     if target.python_major < 3 or target.python < _WITHOUT_PLAIN:
         return
-    cure = "start it with `#!/usr/bin/env python3`"
+    remedy = "start it with `#!/usr/bin/env python3`"
     if package.build_type == "catkin":
-        cure = "install it with catkin_install_python()"
+        remedy = "install it with catkin_install_python()"
     for install in installs:
         programs = install.kind == "programs" or (install.kind == "directory" and install.executable)
         if not programs or install.rewritten or not _OF_PROGRAMS.search(install.destination):
@@ -240,7 +241,7 @@ def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagno
         for path, _ in list_copied_files(install, "", package.digest.files):
             name = posixpath.basename(path)
             if path in package.digest.plain_scripts and name not in package.digest.interpreted:
-                data = {"platform": target.platform, "cure": cure}
+                data = {"platform": target.platform, "remedy": remedy}
                 doubts = (Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
                 yield Diagnostic(install.at, name, package.name, data, "interpreter", doubts, together=_ONE_LINE)
 

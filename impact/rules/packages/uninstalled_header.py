@@ -56,7 +56,7 @@ def uninstalled_header(view: TargetView, package: Package):
             continue
         lost = [to for to in inner if to not in installed.headers and to not in reported and not to.endswith(".in")]
         for to in lost if lost else ():
-            include = _include_of(view, written.get(path, ()), to)
+            include = _find_include(view, written.get(path, ()), to)
             if include is None or to in made or _is_answered(installed.headers, place, include.path):
                 continue
             reported.add(to)
@@ -74,7 +74,7 @@ def _collect_doubts(view: TargetView, package: Package, path: str) -> tuple[Doub
     return () if stops else (Doubt.DISTURBS,)
 
 
-def _include_of(view: TargetView, includes: tuple[IncludeUse, ...], to: str) -> IncludeUse | None:
+def _find_include(view: TargetView, includes: tuple[IncludeUse, ...], to: str) -> IncludeUse | None:
     """The include that names another file of the package and stands under no condition."""
     named = (include for include in includes if posixpath.basename(include.path) == posixpath.basename(to))
     return next((include for include in named if view.is_sure(include.conditions)), None)

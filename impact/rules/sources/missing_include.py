@@ -133,7 +133,7 @@ class _Places:
 
 
 def _include(view: TargetView, package: Package, need: NeededHeader, header: str) -> tuple[Insert, ...]:
-    """The cure that includes a header behind the standard C++ headers of the file that sort before it; nothing where it
+    """The fix that includes a header behind the standard C++ headers of the file that sort before it; nothing where it
     includes none outside of conditions."""
     standard = [
         i

@@ -27,7 +27,7 @@ from collections.abc import Iterator
 
 from ...facts.python.source import NO_PYTHON
 from ...targets.distro.distro import DistroTarget
-from ..python_files import Refused, report_refused
+from ..python_files import RejectedUse, report_refused
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 
 
@@ -53,18 +53,18 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_plac
     },
 )
 def python_version(view: TargetView):
-    def find(package: Package, target: DistroTarget) -> Iterator[Refused]:
+    def find(package: Package, target: DistroTarget) -> Iterator[RejectedUse]:
         reported = set()
         for use in package.digest.syntax:
             if use.needs == 2 and use.at.path not in reported:
                 reported.add(use.at.path)
-                yield Refused(use, use.what, "python 2")
+                yield RejectedUse(use, use.what, "python 2")
             elif use.needs == NO_PYTHON:
                 # What a newer Python than this one may read is not known.
                 if view.target.python_major >= 3 and target.python <= sys.version_info.minor:
-                    yield Refused(use, use.what, "none")
+                    yield RejectedUse(use, use.what, "none")
             elif use.needs > max(2, target.python) and view.target.python_major >= 3:
-                yield Refused(use, use.what, "newer", use.needs)
+                yield RejectedUse(use, use.what, "newer", use.needs)
 
     yield from report_refused(view, find)
     for package in view if view.target.python_major == 2 else ():

@@ -26,7 +26,7 @@ from collections.abc import Iterator
 
 from ...targets.distro.distro import DistroTarget
 from ...targets.providers.stdlib import find_successor, has_substitute, is_in_stdlib, was_ever_in_stdlib
-from ..python_files import Refused, report_refused
+from ..python_files import RejectedUse, report_refused
 from ..vocabulary import Doubt, Package, TargetView, Text, rule
 
 
@@ -39,13 +39,13 @@ from ..vocabulary import Doubt, Package, TargetView, Text, rule
     ),
 )
 def removed_python_module(view: TargetView):
-    def find(package: Package, target: DistroTarget) -> Iterator[Refused]:
+    def find(package: Package, target: DistroTarget) -> Iterator[RejectedUse]:
         for item in package.digest.imports:
             if not view.is_sure(item.conditions) or item.module.split(".")[0] in view.workspace.modules:
                 continue
             if was_ever_in_stdlib(item.module) and not is_in_stdlib(item.module, target.python, 3):
                 doubts = (Doubt.LATE,) if item.lazy or has_substitute(item.module) else ()
                 new = find_successor(item.module)
-                yield Refused(item, item.module, replacement=new, doubts=doubts, conditions=item.conditions)
+                yield RejectedUse(item, item.module, replacement=new, doubts=doubts, conditions=item.conditions)
 
     yield from report_refused(view, find)

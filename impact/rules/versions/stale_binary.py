@@ -41,7 +41,7 @@ from ..vocabulary import At, Diagnostic, TargetView, Text, rule
 
 if TYPE_CHECKING:
     from ...model.install_space import Binary, InstallSpace
-    from ...targets.machine.shared_libraries import Shelf
+    from ...targets.machine.shared_libraries import SharedLibraries
 
 
 class _Missing(NamedTuple):
@@ -71,12 +71,12 @@ _HELP = "[[install `{debian}`, or ]]rebuild {rebuilt}"
         ),
     },
 )
-def stale_binary(view: TargetView, installed: InstallSpace, shelf: Shelf):
+def stale_binary(view: TargetView, installed: InstallSpace, libraries: SharedLibraries):
     askers: dict[_Missing, dict[str, list[Binary]]] = {}
     for binary in installed.binaries:
-        if shelf.machine and binary.elf.machine != shelf.machine:
+        if libraries.machine and binary.elf.machine != libraries.machine:
             continue
-        for missing in _find_missing(view, binary, installed, shelf):
+        for missing in _find_missing(view, binary, installed, libraries):
             askers.setdefault(missing, {}).setdefault(binary.package, []).append(binary)
     stale = {package for by_package in askers.values() for package in by_package if package}
     order = {package: place for place, package in enumerate(build_order(view))} if len(stale) > 1 else {}
@@ -86,46 +86,48 @@ def stale_binary(view: TargetView, installed: InstallSpace, shelf: Shelf):
         packages = [package for package in ordered if package in by_package]
         for package, binaries in by_package.items():
             at = _find_place(view, package, binaries, installed)
-            data = {**_build_data(missing, binaries, shelf), **_build_remedy(missing, packages, shelf)}
-            gone = shelf.gone and missing.there
+            data = {**_build_data(missing, binaries, libraries), **_build_remedy(missing, packages, libraries)}
+            gone = libraries.gone and missing.there
             kind = "symbol" if missing.symbols >= 0 else "gone" if gone else "missing"
             yield Diagnostic(at, missing.subject, package, data, kind)
 
 
-def _find_missing(view: TargetView, binary: Binary, installed: InstallSpace, shelf: Shelf) -> Iterator[_Missing]:
+def _find_missing(
+    view: TargetView, binary: Binary, installed: InstallSpace, libraries: SharedLibraries
+) -> Iterator[_Missing]:
     needed = [soname for soname in binary.elf.needed if soname not in installed.libraries]
     absent = set()
     for soname in needed:
-        there = shelf.has(soname, binary.elf, binary.folder)
+        there = libraries.has(soname, binary.elf, binary.folder)
         if there is None:
             view.unresolved.setdefault("shared library", set()).add(soname)
         elif not there:
             absent.add(soname)
-            yield _Missing(soname, soname, shelf.describe_others(soname))
+            yield _Missing(soname, soname, libraries.describe_others(soname))
     for asked in binary.elf.asked:
         if asked.library in absent or asked.library not in needed:
             continue
-        lacks = shelf.lacks(asked, binary.elf, binary.folder)
+        lacks = libraries.lacks(asked, binary.elf, binary.folder)
         if lacks:
             yield _Missing(lacks[-1].version, asked.library, f"`{lacks[-1].there}`" if lacks[-1].there else "")
-    for lost in () if absent else shelf.find_lost_symbols(binary.elf, binary.folder, installed.places) or ():
+    for lost in () if absent else libraries.find_lost_symbols(binary.elf, binary.folder, installed.places) or ():
         yield _Missing(lost.name, lost.library, "", lost.more)
 
 
-def _build_data(missing: _Missing, binaries: list[Binary], shelf: Shelf) -> dict[str, str]:
+def _build_data(missing: _Missing, binaries: list[Binary], libraries: SharedLibraries) -> dict[str, str]:
     more = len(binaries) - 1
     return {
         "file": min(binary.path for binary in binaries),
         "files": format_count(more, "more file") if more else "",
         "library": missing.library if missing.library != missing.subject else "",
         "symbols": format_count(missing.symbols, "more symbol") if missing.symbols > 0 else "",
-        "there": f"{shelf.name} has {missing.there}" if missing.there else shelf.nothing,
+        "there": f"{libraries.name} has {missing.there}" if missing.there else libraries.nothing,
     }
 
 
-def _build_remedy(missing: _Missing, packages: list[str], shelf: Shelf) -> dict[str, str]:
+def _build_remedy(missing: _Missing, packages: list[str], libraries: SharedLibraries) -> dict[str, str]:
     order = " in this order" if len(packages) > 1 else ""
-    return {"debian": shelf.find_package(missing.subject) or "", "rebuilt": f"{', '.join(packages) or 'it'}{order}"}
+    return {"debian": libraries.find_package(missing.subject) or "", "rebuilt": f"{', '.join(packages) or 'it'}{order}"}
 
 
 def _find_place(view: TargetView, package: str, binaries: list[Binary], installed: InstallSpace) -> At:

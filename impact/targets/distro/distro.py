@@ -28,12 +28,12 @@ from ..version import parse_number
 from .conda import CHANNELS, find_libraries
 from .known import (
     _strip_packaging,
-    did_you_mean,
-    end_of_day,
+    compute_end_of_day,
     find_distro,
     format_day,
     list_known_distros,
     list_rosdep_systems,
+    suggest_name,
 )
 from .rosdep import decode_rule, iterate_texts, resolve_rule, split_platform
 
@@ -153,9 +153,9 @@ class DistroTarget:
         self._own_libraries = {normalize_library_name(key): value for key, value in self._overrides.items()}
         self._facts, self.end_of_life, self.lts = known.facts, known.end_of_life, known.lts
         notes: list[str] = []
-        self.date = self._place_date(date, notes)
+        self.date = self._move_date(date, notes)
         self._cut, self.approximate = self._find_commit_time()
-        self._rule_ts = end_of_day(self.date)
+        self._rule_ts = compute_end_of_day(self.date)
         self.platform = self._choose_platform(platform, notes)
         self._notes = tuple(notes)
         self.name = name or (distro if date is None else f"{distro}@{date}")
@@ -198,7 +198,7 @@ class DistroTarget:
         recipe = self._asked._replace(versions={**versions, **self._asked.versions})
         return DistroTarget(*recipe, self._data, {**rules, **self._rules})
 
-    def _place_date(self, date: str | None, notes: list[str]) -> str:
+    def _move_date(self, date: str | None, notes: list[str]) -> str:
         if date is None:
             return self.data_date
         try:
@@ -219,13 +219,13 @@ class DistroTarget:
         sync = self._data.query_row(
             "SELECT cut FROM sync WHERE distro = ? AND day <= ? ORDER BY day DESC LIMIT 1", (self._id, self.date)
         )
-        return (sync[0], False) if sync else (end_of_day(self.date), True)
+        return (sync[0], False) if sync else (compute_end_of_day(self.date), True)
 
     def _choose_platform(self, platform: str | None, notes: list[str]) -> str:
         """The platform asked for, else the main one that the synced packages were built for."""
         if platform:
             return normalize_platform(platform)
-        built_for, now = self._find_main_platform(self._cut), self._find_main_platform(end_of_day(self.date))
+        built_for, now = self._find_main_platform(self._cut), self._find_main_platform(compute_end_of_day(self.date))
         if built_for != now:
             notes.append(
                 f"{self.distro} had moved to {now}, not yet synced there: answered as of its last on {built_for}"
@@ -281,7 +281,7 @@ class DistroTarget:
         sync brought, the last counts."""
         syncs = self._data.fetch("SELECT day, cut FROM sync WHERE distro = ? ORDER BY day", (self._id,))
         # Commits up to the day before the first known sync were available on their own day, as far as is known.
-        early = end_of_day(syncs[0][0]) - 86400 if syncs else None
+        early = compute_end_of_day(syncs[0][0]) - 86400 if syncs else None
         days: dict[str, str | None] = {}
         for ts, version in self._list_steps(package):
             if early is None or ts <= early:
@@ -379,7 +379,7 @@ class DistroTarget:
         version = self.find_version(package)
         wanted = make_version_key(version or "")
         known = [(of, entries) for of, entries, _ in self._list_manifests(package) if of >= wanted] if version else []
-        return _come_along(known[0][1]) if known and known[0][0] != wanted else frozenset()
+        return _parse_companions(known[0][1]) if known and known[0][0] != wanted else frozenset()
 
     def build_type(self, package: str) -> str:
         """`ament_cmake`, `ament_python`, `catkin`, `cmake` ...; empty when not known or not said."""
@@ -393,10 +393,10 @@ class DistroTarget:
     def find_testing(self) -> DistroTarget | None:
         """The same distro with what has been released on its day and waits for the next sync, which its build farm
         builds against already; None when nothing waits, or syncs are not known."""
-        if self.approximate or self._cut >= end_of_day(self.date):
+        if self.approximate or self._cut >= compute_end_of_day(self.date):
             return None
         found = self.copy_with_changes()
-        found._cut = end_of_day(self.date)
+        found._cut = compute_end_of_day(self.date)
         return found
 
     def find_updated(self) -> DistroTarget | None:
@@ -425,7 +425,7 @@ class DistroTarget:
             " o.id = m.distro JOIN dependencies d ON d.id = m.dependencies WHERE p.name = ? AND o.ros = ?",
             (package, self.ros),
         )
-        return frozenset().union(*(_come_along(entries) for (entries,) in rows))
+        return frozenset().union(*(_parse_companions(entries) for (entries,) in rows))
 
     def list_build_types(self, package: str) -> frozenset[str]:
         """Every build type that a package is known to have had in a distro of this generation."""
@@ -501,7 +501,7 @@ class DistroTarget:
         found = self._resolve(key, os_name, release, self._rule_ts)
         if found is None and self.end_of_life and self.end_of_life < self.date:
             # rosdistro drops the rules of old releases; machines of an ended distro were set up when they stood.
-            found = self._resolve(key, os_name, release, end_of_day(self.end_of_life))
+            found = self._resolve(key, os_name, release, compute_end_of_day(self.end_of_life))
         return found
 
     def _resolve(self, key: str, os_name: str, release: str, ts: int) -> Resolution | None:
@@ -574,7 +574,7 @@ class DistroTarget:
         os_name, release = split_platform(self.platform)
         moments = [self._rule_ts]
         if self.end_of_life and self.end_of_life < self.date:
-            moments.append(end_of_day(self.end_of_life))
+            moments.append(compute_end_of_day(self.end_of_life))
         found: dict[str, Resolution] = {}
         for ts in moments:
             seen: set[str] = set()
@@ -624,7 +624,7 @@ class DistroTarget:
         cell = self._load_libraries().get(wanted)
         return cell.version if cell else None
 
-    def came_with_release(self, name: str) -> bool:
+    def was_added_with_release(self, name: str) -> bool:
         """True for platform libraries that everybody has in this version since the distro's release: it stays on one
         platform, this one, and nothing else brings the library."""
         wanted = normalize_library_name(name)
@@ -680,7 +680,7 @@ class DistroTarget:
         return self._changes
 
 
-def _come_along(entries: str) -> frozenset[str]:
+def _parse_companions(entries: str) -> frozenset[str]:
     """The names among the stored entries of a manifest that are installed along with it, conditions aside."""
     fields = (line.split("\t") for line in entries.splitlines())
     return frozenset(name for name, letters, *_ in fields if not _COMES_ALONG.isdisjoint(letters))
@@ -698,4 +698,4 @@ def _find_newest(distro: str, day: str, data: Snapshot) -> DistroTarget | None:
 
 def _describe_unknown_distro(name: str, data: Snapshot) -> str:
     names = [known.name for known in list_known_distros(data)]
-    return f"unknown distro `{name}`{did_you_mean(name, names, '; ') or '.'} Known: {', '.join(names)}"
+    return f"unknown distro `{name}`{suggest_name(name, names, '; ') or '.'} Known: {', '.join(names)}"

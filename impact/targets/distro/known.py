@@ -49,7 +49,7 @@ def find_distro(name: str, data: Snapshot | None = None) -> KnownDistro | None:
     return _load_known_distros(data or snapshots.load_snapshot()).get(name)
 
 
-def did_you_mean(name: str, known: Iterable[str], before: str = "") -> str:
+def suggest_name(name: str, known: Iterable[str], before: str = "") -> str:
     """A question about a name that is none, after some text; empty where nothing is called like it."""
     import difflib
 
@@ -95,7 +95,7 @@ def format_day(ts: int) -> str:
     return datetime.datetime.fromtimestamp(ts, datetime.timezone.utc).date().isoformat()
 
 
-def end_of_day(day: str) -> int:
+def compute_end_of_day(day: str) -> int:
     """The last second (UTC) of an ISO day, in seconds since 1970."""
     start = datetime.datetime.combine(datetime.date.fromisoformat(day), datetime.time(), datetime.timezone.utc)
     return int(start.timestamp()) + 86_399

@@ -20,14 +20,14 @@ from .sonames import Sonames
 _LONG_ENOUGH = 3
 
 
-class Lack(NamedTuple):
+class MissingVersion(NamedTuple):
     """A version of symbols that is not there, and what is, in words (empty when it is not known)."""
 
     version: str
     there: str
 
 
-class Lost(NamedTuple):
+class MissingSymbol(NamedTuple):
     """A C++ symbol without a version that none of the libraries which are loaded with a file has. name: as code writes
     it; library: which of them has others of the same class, empty where none has; more: how many others
     of it are lost."""
@@ -37,8 +37,8 @@ class Lost(NamedTuple):
     more: int
 
 
-class Shelf:
-    """The libraries of a machine, real or described.
+class SharedLibraries:
+    """The shared libraries of a machine, real or described.
 
     Attributes: target (its name), name (`this machine`, `ubuntu jammy`), gone (what is not there was there once,
     since it was built with), nothing (says that there is no such library at all), machine (`EM_X86_64`,
@@ -63,11 +63,11 @@ class Shelf:
         """The Debian package of a library that is not installed and can be; empty where none is known."""
         return ""
 
-    def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
+    def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[MissingVersion, ...] | None:
         """The versions of symbols that are asked of a library and not there; None when it is not known."""
         raise NotImplementedError
 
-    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[MissingSymbol, ...] | None:
         """Symbols without a version that a file asks for and that are not there, one for each library; None when it is
         not known. own: the files that are installed with it, by name."""
         return None
@@ -77,7 +77,7 @@ class Shelf:
 _OF_CLASSES = ("_ZN{}C", "_ZN{}D", "_ZTVN{}", "_ZTIN{}")
 
 
-class MachineShelf(Shelf):
+class InstalledLibraries(SharedLibraries):
     """This machine."""
 
     name, gone, nothing = "this machine", True, "this machine has no such file"
@@ -100,14 +100,16 @@ class MachineShelf(Shelf):
     def find_package(self, soname: str) -> str:
         return self._sonames.find_package(soname) if self._sonames.has(self.platform, soname) else ""
 
-    def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
+    def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[MissingVersion, ...] | None:
         path = self._loader.find(asked.library, asker, folder)
         offers = self._loader.list_symbol_versions(path) if path else frozenset()
         if not offers:
             return None  # the loader only warns of a library without versions
-        return tuple(Lack(version, _find_max(offers, version)) for version in asked.versions if version not in offers)
+        return tuple(
+            MissingVersion(version, _find_max(offers, version)) for version in asked.versions if version not in offers
+        )
 
-    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[Lost, ...] | None:
+    def find_lost_symbols(self, asker: Elf, folder: str, own: Mapping[str, str]) -> tuple[MissingSymbol, ...] | None:
         wanted = {u.name for u in asker.undefined if not u.version and not u.weak and u.name.startswith("_Z")}
         paths = self._loader.list_loaded(asker, folder, own) if wanted else ()
         if paths is None:
@@ -124,10 +126,10 @@ class MachineShelf(Shelf):
             # What is loaded as a plugin may find in its host what its own libraries never had.
             if owner or asker.program:
                 found.setdefault(owner, []).append(member.name)
-        return tuple(Lost(names[0], owner, len(names) - 1) for owner, names in found.items())
+        return tuple(MissingSymbol(names[0], owner, len(names) - 1) for owner, names in found.items())
 
 
-class DescribedShelf(Shelf):
+class DescribedLibraries(SharedLibraries):
     """A machine that is described: the packages of its platform, and those of its ROS distro."""
 
     machine, gone = "", False
@@ -169,13 +171,13 @@ class DescribedShelf(Shelf):
         there = self._described.find_library(library) if library else None
         return others or (f"{library} {there}" if there else "")
 
-    def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[Lack, ...] | None:
+    def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[MissingVersion, ...] | None:
         found = []
         for name in asked.versions:
             kind, _, version = name.partition("_")
             limit = self._reach.get(kind)
             if limit and re.fullmatch(r"[\d.]+", version) and compare(version, limit) > 0:
-                found.append(Lack(name, f"{kind}_{limit}"))
+                found.append(MissingVersion(name, f"{kind}_{limit}"))
         return tuple(found)
 
     @cached_property

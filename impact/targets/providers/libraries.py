@@ -34,7 +34,7 @@ NEAREST = 4
 _NAMED = ("cmake_names", "targets", "unknown")
 
 
-class Including(NamedTuple):
+class HeaderIncludes(NamedTuple):
     """What a header of a version of a library includes."""
 
     library: str
@@ -171,7 +171,7 @@ class SystemLibraries:
         versions = sorted(dict.fromkeys(self.list_versions(library).values()), key=parse)
         return {version: place for place, version in enumerate(versions)}
 
-    def find_included(self, header: str, platform: str) -> Including | None:
+    def find_included(self, header: str, platform: str) -> HeaderIncludes | None:
         """What a header includes in a platform's version, or in either of those between which that lies; None where
         neither has it, one of them was not read, or it is of no library that was."""
         library = self.find_by_header(header)
@@ -180,7 +180,7 @@ class SystemLibraries:
             return None
         found = [self._list_included(library, version, header) for version in (before, after)]
         known = [paths for paths in found if paths is not None]
-        return Including(library, before, tuple(dict.fromkeys(chain(*known)))) if known else None
+        return HeaderIncludes(library, before, tuple(dict.fromkeys(chain(*known)))) if known else None
 
     @cache_method
     def _list_included(self, library: str, version: str, header: str) -> tuple[str, ...] | None:

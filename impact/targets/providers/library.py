@@ -19,7 +19,7 @@ class _Boost(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Boost's libraries. compiled: that are linked against. brought: that come with another one. of_roscpp: in
     catkin_LIBRARIES wherever roscpp is found. headers: whose use needs a compiled library."""
 
-    class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    class HeaderPrefix(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """Headers by how their path begins. until: the version that needs none any more."""
 
         start: str
@@ -33,7 +33,7 @@ class _Boost(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     of_roscpp_source: str
     of_roscpp: str
     headers_source: str
-    headers: list[Header]
+    headers: list[HeaderPrefix]
 
 
 class _Gone(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ....edges.groups import group_pairs
-from ...facts.python.surface import LATE, Bound, PythonParameter, Taken, is_private
+from ...facts.python.surface import LATE, Bound, ImportedName, PythonParameter, is_private
 from .surface import InstalledModule, PythonSurface
 
 
@@ -39,7 +39,7 @@ class SurfaceNames:
         self.surface = surface
         self.modules: dict[str, InstalledModule] = {module.name: module for module in surface.modules}
         self._bound: dict[str, dict[str, list[Bound]]] = {}
-        self._taken: dict[str, dict[str, list[Taken]]] = {}
+        self._taken: dict[str, dict[str, list[ImportedName]]] = {}
 
     def find(self, dotted: str) -> PythonName | None:
         """What a dotted name (`rclpy.node.Node.create_timer`) stands for; None where it is surely not there, UNKNOWN
@@ -75,14 +75,14 @@ class SurfaceNames:
     def _is_hidden(self, dotted: str) -> bool:
         return any(dotted == name or dotted.startswith(f"{name}.") for name in self.surface.unknown)
 
-    def bound(self, module: InstalledModule) -> dict[str, list[Bound]]:
+    def list_bound(self, module: InstalledModule) -> dict[str, list[Bound]]:
         """The names of a module in order of the source, those of classes dotted."""
         known = self._bound.get(module.name)
         if known is None:
             known = self._bound[module.name] = group_pairs((bound.name, bound) for bound in module.surface.names)
         return known
 
-    def index_imports(self, module: InstalledModule) -> dict[str, list[Taken]]:
+    def index_imports(self, module: InstalledModule) -> dict[str, list[ImportedName]]:
         """The imports of a module by the name they bind."""
         known = self._taken.get(module.name)
         if known is None:
@@ -93,7 +93,7 @@ class SurfaceNames:
     def _find_in_module(self, module: InstalledModule | None, where: str, name: str, depth: int) -> PythonName | None:
         dotted = f"{where}.{name}"
         if module is not None:
-            written = self.bound(module).get(name)
+            written = self.list_bound(module).get(name)
             if written:
                 return _make_entry(dotted, written)
             for taken in reversed(self.index_imports(module).get(name, ())):
@@ -113,7 +113,7 @@ class SurfaceNames:
                 return found
         return UNKNOWN if unsure else None
 
-    def resolve_target(self, module: InstalledModule, taken: Taken) -> str:
+    def resolve_target(self, module: InstalledModule, taken: ImportedName) -> str:
         """The dotted name of the module that an import is about."""
         if not taken.level:
             return taken.module
@@ -122,7 +122,7 @@ class SurfaceNames:
         parts = parts[: len(parts) - up] if up else parts
         return ".".join([*parts, *([taken.module] if taken.module else [])])
 
-    def _resolve_import(self, module: InstalledModule, taken: Taken, depth: int) -> PythonName:
+    def _resolve_import(self, module: InstalledModule, taken: ImportedName, depth: int) -> PythonName:
         """What an import binds. It binds something, whatever becomes of it."""
         target = self.resolve_target(module, taken)
         if not taken.original:
@@ -140,7 +140,9 @@ class SurfaceNames:
             return PythonName(f"{target}.{taken.original}", "external")
         return found._replace(conditional=True) if taken.conditions else found
 
-    def _find_through_star(self, module: InstalledModule, taken: Taken, name: str, depth: int) -> PythonName | None:
+    def _find_through_star(
+        self, module: InstalledModule, taken: ImportedName, name: str, depth: int
+    ) -> PythonName | None:
         of = self.modules.get(self.resolve_target(module, taken))
         if of is None or depth > _DEPTH:
             return UNKNOWN
@@ -160,7 +162,7 @@ class SurfaceNames:
         if split is None or entry.bound is None or depth > _DEPTH:
             return UNKNOWN
         module, inside = split
-        written = self.bound(module).get(f"{inside}.{name}")
+        written = self.list_bound(module).get(f"{inside}.{name}")
         if written:
             return _make_entry(f"{entry.where}.{name}", written)
         if any(t.scope == inside and t.name == name for t in module.surface.imports):
@@ -215,9 +217,9 @@ class SurfaceNames:
         for module in self.surface.modules:
             if any(is_private(part) for part in module.name.split(".")):
                 continue
-            for name in self.bound(module):
+            for name in self.list_bound(module):
                 if "." not in name and not is_private(name) and not name.startswith("__"):
-                    found[f"{module.name}.{name}"] = _make_entry(f"{module.name}.{name}", self.bound(module)[name])
+                    found[f"{module.name}.{name}"] = _make_entry(f"{module.name}.{name}", self.list_bound(module)[name])
             for name in self.iterate_reexported(module):
                 dotted = f"{module.name}.{name}"
                 entry = self._find_in_module(module, module.name, name, 0)
@@ -244,7 +246,7 @@ class SurfaceNames:
         if module.surface.all is not None:
             yield from (name for name in module.surface.all if not name.startswith("+"))
             return
-        yield from (name for name in self.bound(module) if "." not in name and not name.startswith("_"))
+        yield from (name for name in self.list_bound(module) if "." not in name and not name.startswith("_"))
         if module.package and module.name not in seen:
             yield from self.iterate_reexported(module, seen)
 
@@ -255,7 +257,7 @@ class SurfaceNames:
             return {}
         module, inside = split
         found = {}
-        for name, written in self.bound(module).items():
+        for name, written in self.list_bound(module).items():
             head, _, last = name.rpartition(".")
             if head == inside and (last == "__init__" or not (is_private(last) or last in _OBJECT)):
                 found[last] = _make_entry(f"{entry.where}.{last}", written)

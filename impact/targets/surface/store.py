@@ -22,7 +22,7 @@ from ....edges.console import UserError
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.interface import Interface
-from ...facts.python.surface import Bound, ModuleSurface, Taken
+from ...facts.python.surface import Bound, ImportedName, ModuleSurface
 from ...facts.surface import CLASSES, Entity, HeaderSurface, drop_inline, list_offered
 from ..snapshot import DATA, SnapshotError
 from ..unpacked import make_decoder, read_packed
@@ -145,7 +145,7 @@ class SurfaceHistory:
         from .surface import InstalledModule, PythonSurface
 
         bound = group_pairs(self._iterate("bound", version, Bound))
-        taken = group_pairs(self._iterate("taken", version, Taken))
+        taken = group_pairs(self._iterate("taken", version, ImportedName))
         told = group_pairs(self._iterate("python", version, str))
         modules = (
             InstalledModule(

@@ -1,4 +1,4 @@
-"""Cures applied to the rules' own cases through the command line: what is proposed, and what is left alone."""
+"""Fixes applied to the cases of rules through the command line: what is proposed, and what is left alone."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import rule_cases
 from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
 
-# Cases whose cure is known on every target that they ask for: it undoes the change that they make, to the byte.
-CURED = (
+# Cases whose fix is known on every target that they ask for: it undoes the change that they make, to the byte.
+FIXED = (
     "api/moved_header",
     "api/removed_cmake_name__linked",
     "api/removed_header",
@@ -52,8 +52,8 @@ def files_of(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-@pytest.mark.parametrize("case", CURED)
-def test_a_cure_undoes_the_change_of_a_case(case: str, fix: Fix, tmp_path: Path):
+@pytest.mark.parametrize("case", FIXED)
+def test_a_fix_undoes_the_change_of_a_case(case: str, fix: Fix, tmp_path: Path):
     (broken,) = (one for one in rule_cases.read_cases(rule_cases.HERE / f"{case}.md") if one.findings)
     workspace = rule_cases.write_files(tmp_path / "ws", broken.files)
     output = fix(workspace, *broken.targets)
@@ -93,7 +93,7 @@ def ament(*, body: str, package: str, source: str) -> dict[str, str]:
 
 NODE = "#include <{header}>\n#include <rclcpp/rclcpp.hpp>\nint main() {{ return 0; }}\n"
 RCLCPP = "  <depend>rclcpp</depend>\n"
-# What a rule says, and does not cure: rule (empty: nothing is said), targets, files.
+# What a rule says, and does not fix: rule (empty: nothing is said), targets, files.
 UNTOUCHED = {
     # cv_bridge.hpp came with Iron, so one spelling is not right on both.
     "the new header is not on every target": (
@@ -259,7 +259,7 @@ EDITED = {
 
 
 @pytest.mark.parametrize(("targets", "files", "path", "edit"), EDITED.values(), ids=EDITED)
-def test_a_cure_changes_what_it_says_and_nothing_else(targets, files, path, edit, fix: Fix, tmp_path: Path):
+def test_a_fix_changes_what_it_says_and_nothing_else(targets, files, path, edit, fix: Fix, tmp_path: Path):
     workspace = rule_cases.write_files(tmp_path / "ws", files)
     fix(workspace, *targets)
     assert files[path].count(edit[0]) == 1

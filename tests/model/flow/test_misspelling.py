@@ -1,9 +1,9 @@
-"""Names that differ by a slip, and names that are told apart on purpose."""
+"""Names that are misspelt, and names that differ on purpose."""
 
 import pytest
 from rosimpact.impact.model.flow.misspelling import is_in_namespace, is_slip_of_name
 
-SLIPS = (
+MISSPELT = (
     ("/cmd_vel", "/cmdvel"), ("/wheel_odom", "/wheels_odom"), ("/base/scan_front", "/base/scan_frnot"),
     ("/tide_level", "/tide_levels"), ("/Joint_States", "/joint_states"), ("/odometry", "/odometri"),
 )  # fmt: skip
@@ -15,8 +15,8 @@ APART = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize(("one", "other"), SLIPS)
-def test_slips(one: str, other: str):
+@pytest.mark.parametrize(("one", "other"), MISSPELT)
+def test_misspelt_names_are_recognised(one: str, other: str):
     assert is_slip_of_name(one, other)
     assert is_slip_of_name(other, one)
 
