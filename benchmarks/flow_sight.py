@@ -1,0 +1,151 @@
+"""The message-flow graph at first sight: endpoints and sites drawn from systems that nobody here had opened.
+
+A set of systems is benchmarks/systems/NAME.systems.jsonl (repo, commit), what was drawn of them and how readers of the
+sources judged it benchmarks/systems/NAME.drawn.jsonl. A record is a fact, never text of a source:
+    endpoint   an endpoint of the graph: repo, path, line, role, node, name, type, how (as the graph says where the name
+               is from), certain; verdict: `right`, `wrong name`, `wrong node`, `wrong type`, `none` (nothing such is
+               there), `open` (the sources do not tell); why: one clause
+    site       a place in C++ or Python code that a search of the text takes for an API call: repo, path, line, role;
+               found: the graph has an endpoint, parameter or timer there, or names the place as not resolved (`named`);
+               verdict: `call` or `none` (the text is no such call)
+
+usage: flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
+       flow_sight.py score --set NAME
+
+`draw` writes the records without verdicts; `score` prints the figures of those that have one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import re
+import subprocess
+import sys
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from pathlib import Path
+
+import graph as sites
+import mining
+from rosimpact.impact.analysis.session import open_tree
+
+SETS = Path(__file__).parent / "systems"
+ROLES = {
+    "publishers": "publisher", "subscribers": "subscriber", "servers": "server", "clients": "client",
+    "action_servers": "action server", "action_clients": "action client", "timers": "timer", "parameters": "parameter",
+}  # fmt: skip
+CERTAIN = frozenset(("literal", "given", "launch"))
+_CPP = {
+    "publisher": r"advertise|advertiseCamera|create(?:_generic|_camera)?_publisher",
+    "subscriber": r"subscribe|subscribeCamera|create(?:_generic|_camera)?_subscription",
+    "server": r"advertiseService|create_service",
+    "client": r"serviceClient|create_client",
+    "timer": r"createTimer|createWallTimer|create_wall_timer|create_timer",
+    "parameter": r"declare_parameters?|get_parameter|getParam|param",
+}
+_PYTHON = {
+    "publisher": r"Publisher|create_publisher",
+    "subscriber": r"Subscriber|create_subscription",
+    "server": r"(?<!Action)Service|create_service",
+    "client": r"ServiceProxy|create_client",
+    "action server": r"ActionServer|SimpleActionServer",
+    "action client": r"ActionClient|SimpleActionClient",
+    "timer": r"Timer|create_timer",
+    "parameter": r"declare_parameters?|get_param|get_parameter",
+}
+_IN_PYTHON = {role: re.compile(rf"(?<!\w)(?:{names})\s*\(") for role, names in _PYTHON.items()}
+_DEFINITION = re.compile(r"\s*(?:class|def|from|import)\b")
+_COMMENT = re.compile(r"#.*")
+_CODE = (".cpp", ".cc", ".cxx", ".hpp", ".h", ".hh")
+_TESTS = re.compile(r"(?:^|/)(?:tests?|__pycache__)/|(?:^|/)test_[^/]*\Z|_test\.\w+\Z")
+
+
+def list_sites(path: str, data: bytes) -> Iterator[tuple[str, int]]:
+    """Role and line of what a search of the text takes for API calls."""
+    text = data.decode("utf-8", "replace")
+    if path.endswith(_CODE):
+        for role, names in _CPP.items():
+            yield from ((role, line) for line in sites.counted(text, names))
+    elif path.endswith(".py") and "launch" not in path.rpartition("/")[2]:
+        for number, line in enumerate(text.split("\n"), 1):
+            code = _COMMENT.sub("", line)
+            if not _DEFINITION.match(code):
+                yield from ((role, number) for role, pattern in _IN_PYTHON.items() if pattern.search(code))
+
+
+def read_graph(folder: Path, commit: str) -> dict:
+    """The graph of a commit, as `graph --format json` gives it."""
+    command = [sys.executable, "-m", "rosimpact.impact.cli", "graph", str(folder), "--rev", commit, "-q"]
+    done = subprocess.run([*command, "--format", "json", "--all"], capture_output=True, text=True, check=False)
+    return json.loads(done.stdout)
+
+
+def draw(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[dict]:
+    """Records of a system: as many endpoints and sites, each chosen at random."""
+    chance = random.Random(f"{seed} {clone.name} {commit}")
+    found, tree = read_graph(clone.folder, commit), open_tree(clone.folder, commit)
+    about = {"repo": clone.name, "commit": commit}
+    names = {node["id"]: node["name"] for node in found["nodes"]}
+    endpoints = [
+        {**about, "kind": "endpoint", "role": role, "path": one["path"], "line": one["line"],
+         "node": names.get(one["node"], one["node"]), "name": one.get("topic", one.get("name", "")),
+         "type": one.get("type", ""), "how": one.get("how", one.get("kind", "")),
+         "certain": one.get("how") in CERTAIN}
+        for listed, role in ROLES.items() if role not in ("timer", "parameter")
+        for one in found[listed] if not one.get("implied") and one.get("topic")
+    ]  # fmt: skip
+    yield from chance.sample(endpoints, min(number, len(endpoints)))
+    have = defaultdict(set)
+    for listed, role in ROLES.items():
+        for one in found[listed]:
+            have[role].add((one["path"], one["line"]))
+    named = {(one["path"], one["line"]) for one in found["coverage"]["unresolved"]}
+    tree_sites = []
+    for entry in tree.list_entries():
+        if entry.path.endswith((*_CODE, ".py")) and not _TESTS.search(entry.path):
+            tree_sites += [(role, entry.path, line) for role, line in list_sites(entry.path, tree.read(entry.path))]
+    for role, path, line in chance.sample(tree_sites, min(number, len(tree_sites))):
+        near = {(path, line + beside) for beside in range(-2, 3)}
+        yield {**about, "kind": "site", "role": role, "path": path, "line": line,
+               "found": not near.isdisjoint(have[role]), "named": not near.isdisjoint(named)}  # fmt: skip
+
+
+def score(records: list[dict]) -> None:
+    """Prints how the endpoints that readers judged are right, and which sites the graph has."""
+    endpoints = [one for one in records if one["kind"] == "endpoint" and one.get("verdict")]
+    for title, chosen in (("certain", [e for e in endpoints if e["certain"]]),
+                          ("not certain", [e for e in endpoints if not e["certain"]])):  # fmt: skip
+        verdicts = Counter(one["verdict"] for one in chosen)
+        told = sum(verdicts.values()) - verdicts["open"]
+        print(f"{title}: {verdicts['right']} of {told} right; {dict(verdicts)}")
+    for role in sorted({one["role"] for one in records if one["kind"] == "site"}):
+        calls = [one for one in records if one["kind"] == "site" and one["role"] == role and one.get("verdict") == "call"]
+        found, named = sum(one["found"] for one in calls), sum(one["named"] and not one["found"] for one in calls)
+        print(f"{role}: {found} of {len(calls)} found, {named} more named as not resolved")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("command", choices=("draw", "score"))
+    parser.add_argument("--set", required=True)
+    parser.add_argument("--clones", type=Path)
+    parser.add_argument("--number", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=18)
+    options = parser.parse_args()
+    drawn = SETS / f"{options.set}.drawn.jsonl"
+    if options.command == "score":
+        score([json.loads(line) for line in drawn.read_text().splitlines()])
+        return
+    systems = [json.loads(line) for line in (SETS / f"{options.set}.systems.jsonl").read_text().splitlines()]
+    with drawn.open("w") as out:
+        for system in systems:
+            (clone,) = mining.find_clones(options.clones, [system["repo"]])
+            for record in draw(clone, system["commit"], options.number, options.seed):
+                out.write(json.dumps(record) + "\n")
+            print(system["repo"], flush=True)
+
+
+if __name__ == "__main__":
+    main()
