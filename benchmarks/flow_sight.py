@@ -120,8 +120,9 @@ def score(records: list[dict]) -> None:
         verdicts = Counter(one["verdict"] for one in chosen)
         told = sum(verdicts.values()) - verdicts["open"]
         print(f"{title}: {verdicts['right']} of {told} right; {dict(verdicts)}")
-    for role in sorted({one["role"] for one in records if one["kind"] == "site"}):
-        calls = [one for one in records if one["kind"] == "site" and one["role"] == role and one.get("verdict") == "call"]
+    sites_of_calls = [one for one in records if one["kind"] == "site" and one.get("verdict") == "call"]
+    for role in sorted({one["role"] for one in sites_of_calls}):
+        calls = [one for one in sites_of_calls if one["role"] == role]
         found, named = sum(one["found"] for one in calls), sum(one["named"] and not one["found"] for one in calls)
         print(f"{role}: {found} of {len(calls)} found, {named} more named as not resolved")
 
