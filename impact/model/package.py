@@ -947,7 +947,8 @@ class PackageJoin:
         exported_words = {name.rpartition("::")[2] for name in exported}
         for path, (role, _, targets, conditions) in roles.items():
             words = vocabulary.select_wanted(vocabulary.words & spoken[path]) | assigning if path in spoken else set()
-            has_exported = not exported_words.isdisjoint(spoken.get(path, ()))
+            # Words of a file are at least four characters long.
+            has_exported = path in spoken and any(len(word) < 4 or word in spoken[path] for word in exported_words)
             initializes = path in spoken and INITIALIZES.search(self.read(path)) is not None
             if not words and not has_exported and not initializes:
                 continue
@@ -1157,6 +1158,12 @@ class PackageJoin:
                     imports.append(self.make_import_use(path, item))
             mentioned = [(attribute.text, attribute) for attribute in facts.attributes]
             mentioned += [(text, i) for i in others for text in (i.module, *(f"{i.module}.{n}" for n in i.names))]
+            known = {(text, place.conditions) for text, place in mentioned}
+            for attribute in facts.attributes:
+                text = self._find_watched_head(attribute.text)
+                if text and (text, attribute.conditions) not in known:
+                    known.add((text, attribute.conditions))
+                    mentioned.append((text, attribute))
             names.extend(
                 NameUse(text, At(path, place.line, place.column), role, False, "python", place.conditions)
                 for text, place in mentioned
@@ -1164,6 +1171,12 @@ class PackageJoin:
             )
             syntax.extend(_list_syntax(path, role, facts))
         return imports, names, syntax, modules
+
+    def _find_watched_head(self, text: str) -> str:
+        """The watched name in a module that a longer one is of: `os.errno` of `os.errno.EAGAIN`. Empty for none."""
+        while text.count(".") > 1 and text not in self.watched.python:
+            text = text.rpartition(".")[0]
+        return text if text in self.watched.python else ""
 
     def list_python_modules(self) -> set[str]:
         """Names of modules, packages and built libraries that Python files of the package may import."""

@@ -45,7 +45,8 @@ def load_watched() -> Watched:
     modules: dict[str, list[tuple[str, Pattern]]] = {}
     for label, row in load_uses().items():
         if row.pattern is not None and row.pattern.language == "python":
-            modules.setdefault(row.package, []).append((label, _strip_pattern(row.pattern)))
+            for module in row.pattern.imports or (row.package,):
+                modules.setdefault(module, []).append((label, _strip_pattern(row.pattern)))
     parameters = []
     for label, row in load_uses("behaviour").items():
         if row.pattern is None:

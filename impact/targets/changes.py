@@ -201,10 +201,11 @@ def find_standards(label: str) -> tuple[int, int]:
     return (row.refused_from, row.needs) if row is not None else (0, 0)
 
 
-def find_function(label: str) -> str:
-    """The function that a use calls, by its label; empty for other uses."""
+def find_function(label: str, language: str) -> str:
+    """The function that a use in a language calls, by its label; empty for other uses."""
     row = load_uses().get(label)
-    return row.pattern.word if row is not None and row.pattern is not None and row.pattern.calls else ""
+    pattern = row.pattern if row is not None else None
+    return pattern.word if pattern is not None and pattern.calls and pattern.language == language else ""
 
 
 def shows_no_type(label: str) -> bool:

@@ -58,7 +58,6 @@ EXAMPLES = {
     "len(map(...))": ("len(map(f, x))", "len(list(map(f, x)))"),
     "len(filter(...))": ("len(filter(f, x))", "len(list(filter(f, x)))"),
     "len(zip(...))": ("len(zip(a, b))", "len(list(zip(a, b)))"),
-    "yaml.load(stream) without a loader": ("yaml.load(stream)", "yaml.load(stream, Loader=yaml.SafeLoader)"),
     "rclcpp::executors::SingleThreadedExecutor": ("rclcpp::executors::SingleThreadedExecutor e;",
                                                   "SingleThreadedExecutor e;"),
     "rclcpp::executors::MultiThreadedExecutor by default": (

@@ -151,6 +151,10 @@ SNIPPETS = [
     ("bool f() { return goal.header.stamp == rclcpp::Time(0); }", {"gcc": "11.4.0"}, "header.stamp == rclcpp::Time"),
     ("bool f() { return goal.header.stamp == rclcpp::Time(0); }", {"gcc": "13.2.0"}, ""),
     ("bool f() { return rclcpp::Time(goal.header.stamp) == now; }", {"gcc": "11.4.0"}, ""),
+    ("yaml.load(stream)", {"pyyaml": "6.0.1"}, "yaml.load(stream) without a loader"),
+    ("yaml.load(stream)", {"pyyaml": "5.4.1"}, ""),
+    ("yaml.load(stream, Loader=yaml.SafeLoader)", {"pyyaml": "6.0.1"}, ""),
+    ("yaml.load(*arguments)", {"pyyaml": "6.0.1"}, ""),
     (SLOTS.format("nullptr"), {"python": "3.8.2"}, "nullptr for tp_print"),
     (SLOTS.format("nullptr"), {"python": "3.6.9"}, ""),
     (SLOTS.format("NULL"), {"python": "3.8.2"}, ""),  # of which compilers only warn

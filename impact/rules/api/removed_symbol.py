@@ -10,11 +10,10 @@ Why it breaks
     The compiler stops with "was not declared in this scope", or Python with an AttributeError or ImportError.
 
 Severity
-    error for unguarded names in code that is built or run, tests in Python that CMake runs and ROS 2's in C++ included,
-    and for what goes with the next sync; warning in other tests, under conditions of CMake that are not known, where
-    the name stays and changed its meaning, and for the first name of each package or library that goes with a later
-    update, or on the newest distro's platform; note under other tests of the code itself, in examples, and for the rest
-    of those.
+    error for unguarded names in code that is built or run, tests in Python that CMake runs and ROS 2's in C++ included;
+    warning in other tests, under conditions of CMake that are not known, where the name stays and changed its meaning,
+    and for the first name of each package or library that goes with an update, or on the newest distro's platform; note
+    under other tests of the code itself, in examples, and for the rest of those.
 
 Example
     cv::imread(path, CV_LOAD_IMAGE_ANYDEPTH)    // gone in OpenCV 4
@@ -94,7 +93,7 @@ def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> I
         if (
             change is None
             or change.kind not in KINDS_OF_NAMES
-            or (change.new and (use.text == change.new or use.text.endswith((f"::{change.new}", f".{change.new}"))))
+            or (use.text != change.old and _is_replacement(use.text, change))
             or (use.language == "python" and _TRIED.intersection(use.conditions))
             or not view.applies(use.conditions)
             or not view.may_concern(package, change, use.at.path)
@@ -113,6 +112,11 @@ def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> I
         yield diagnose(
             found if ahead is None else found.apply_horizon(ahead), use.at, use.text, package.name, doubts, order=order
         )
+
+
+def _is_replacement(text: str, change: ChangeInForce) -> bool:
+    """Whether a name is what a row says to use instead: `cv::X` is found by the row of `X`."""
+    return bool(change.new) and (text == change.new or text.endswith((f"::{change.new}", f".{change.new}")))
 
 
 def _list_doubts(
