@@ -100,12 +100,11 @@ class ChangingName:
 
     @cached_property
     def virtual(self) -> bool:
-        """Whether a method that overrides it may override nothing in one of the versions."""
+        """Whether it is a method that others may override in one of the versions, or in one beside it."""
         return self.what == "method" and any(
-            any("result" in told.aspects for told in event.told)
-            or any(not _list_signatures(form) <= _list_signatures(standing.here) for form in (event.had, event.has))
+            list_virtual_forms(form)
             for standing, *_ in self.forms
-            for event in (*standing.past, *standing.future)
+            for form in (standing.here, *(f for e in (*standing.past, *standing.future) for f in (e.had, e.has)))
         )
 
     @cached_property
@@ -176,11 +175,6 @@ def _list_other_forms(standing: Standing) -> list[Form]:
 def _has_other_default(standing: Standing) -> bool:
     """Whether the last change up to a version was one of defaults alone, which forms do not tell."""
     return bool(standing.past) and all(told.kind == "default" for told in standing.past[-1].told)
-
-
-def _list_signatures(form: Form | None) -> frozenset[tuple[tuple[str, ...], bool]]:
-    """The parameters of what may be overridden, and whether it is const."""
-    return frozenset((one.types, "const" in one.traits) for one in list_virtual_forms(form))
 
 
 def _is_pure(form: Form | None) -> bool:

@@ -6,10 +6,10 @@ from functools import lru_cache
 
 from ....edges.memory import cache_method
 from ...facts.cpp.lexical import KEYWORDS
-from ...facts.cpp.schema import CodePlace, Expr, WrittenParameter
+from ...facts.cpp.schema import CodePlace, CppClass, Expr, WrittenParameter
 from ...facts.cpp.schema import CppUse as Written
 from ...facts.usage import find_template_arguments
-from ...targets.surface.overrides import describe_override
+from ...targets.surface.overrides import describe_bases, describe_override
 from ..api import ASSIGNING, CALLED, CLASSES, ChangingName, FoundName
 from ..members import FoundField as FoundMember
 from .resolver import CppType, KnownFile, Resolver, locate_class
@@ -40,6 +40,7 @@ _SPACE = re.compile(r"\s*")
 _MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
 _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
 _FARTHEST, _FAR = 4000, 160
+_DEEPEST = 8
 _INTERFACES = ("::msg", "::srv", "::action")
 _CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*\()")
 _INITIALIZED = re.compile(r"\s*\(")
@@ -366,9 +367,34 @@ class ApiUses:
                         marks = tuple(mark for mark in ("const", "override") if mark in method.traits)
                         if "final" in method.traits and "override" not in marks:
                             marks = (*marks, "override")
+                        if "override" in marks and (bases := self._list_all_bases(class_, word)):
+                            marks = (*marks, describe_bases(bases))
                         given = describe_override(types, marks, normalise_parameter(method.type), class_.name)
                         yield FoundName(names[member[0]].package, member[0], method.offset, "override", len(types),
                                     given, False, True, member[1])  # fmt: skip
+
+    def _list_all_bases(self, class_: CppClass, word: str, depth: int = 0) -> list[tuple[str, str]] | None:
+        """The packages and names of the classes of other packages that a class is derived from; None where one of its
+        bases is not known, or one of the package may have a member of that name itself."""
+        found: list[tuple[str, str]] = []
+        for base in class_.bases:
+            type_ = self.resolver.find_type(base, locate_class(class_))
+            if type_ is None or not type_.name or depth > _DEEPEST:
+                return None
+            if not type_.own:
+                package = self.vocabulary.classes.get(type_.name)
+                if package is None:
+                    return None
+                found.append((package, type_.name))
+                continue
+            own = self.resolver.list_own_classes(type_.name)
+            if len(own) != 1 or own[0].open or word in own[0].members:
+                return None
+            inner = self._list_all_bases(own[0], word, depth + 1)
+            if inner is None:
+                return None
+            found += inner
+        return found
 
     def find_unimplemented(self, exported: Collection[str]) -> Iterator[FoundName]:
         """Methods that a base class in another package makes others implement in some version, and that a class of the

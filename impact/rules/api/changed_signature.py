@@ -47,13 +47,14 @@ _COMPILER = frozenset({"gcc", "glibc", "linux-headers"})
 
 _HERE = f"{UPSTREAM}[[ ({{horizon}})]]"
 _LATER = f"{_HERE}[[ (added in {{since}})]]"
-_HELP = "[[use `{replacement}`]]"
+_HELP = "[[use `{replacement}`]][[it is declared as `{detail}`]]"
 _LOST = {
     "arguments": f"`{{subject}}` does not accept {{arguments}} in {_HERE}; an earlier version does",
     "types": f"`{{subject}}` does not accept arguments of these types in {_HERE}; an earlier version does",
     "template": f"the template argument of `{{subject}}` cannot be deduced from this call in {_HERE}",
     "override": f"this method does not override `{{subject}}` in {_HERE}: its signature changed",
     "pure": f"this class does not implement `{{subject}}`, which is pure virtual in {_HERE}",
+    "unmatched": f"this method does not override `{{subject}}` in {_HERE}",
 }
 _EARLY = {
     "arguments": f"`{{subject}}` does not accept {{arguments}} in {_LATER}",
@@ -121,7 +122,7 @@ def _list_reviewed_of(
     }
     for use, change, ahead in uses:
         if (
-            find_function(use.text) in own.get(use.language, ())
+            find_function(use.text, use.language) in own.get(use.language, ())
             or not view.applies(use.conditions)
             or not (change.package in _COMPILER or view.may_concern(package, change, use.at.path))
             or (ahead is not None and not view.is_active_on(ahead, use.conditions))

@@ -36,13 +36,15 @@ _FORMS = frozenset(("arguments", "types", "override", "call"))
 def _find_answers(
     view: TargetView, ask: Ask, owners: Iterable[str], conditions: tuple[Condition, ...]
 ) -> Iterator[Availability]:
-    """What the target makes of a use, and the first update of it that breaks the use if that works so far."""
+    """What the target makes of a use, and the first update of it that breaks the use if that works so far; of a name
+    that is deprecated, the newest distro too."""
     found = ask(view.offers, view.python_offers)
     if found is not None:
         yield found
         if found.state != "deprecated" and found.form != "default":
             return
-    for ahead in view.updates:
+    deprecated = found is not None and found.state == "deprecated"
+    for ahead in view.horizons if deprecated else view.updates:
         if all(ahead.target.find_version(one) == view.target.find_version(one) for one in owners):
             continue
         later = ask(*view.make_offers(ahead))
@@ -65,7 +67,7 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
     reviewed = {change.old for change in view.list_changes(*_REVIEWED)}
     reviewed.update(change.new for change in view.list_changes(*_REVIEWED) if change.state == "absent")
     calls = {
-        find_function(change.old)
+        find_function(change.old, "cpp")
         for change in view.list_changes("call-changed")
         if view.offers.find_package(change.package) is None  # else its surfaces know more
     }
@@ -92,6 +94,8 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
         if use.how == "override" and (not found or says_override(use.given, use.arguments)):
             overridden.add((extract_class(use.given, use.arguments), use.name))
     for use, found in unserved:
+        if found.form == "unmatched" and not view.workspace.may_have.isdisjoint(found.symbol.packages):
+            continue  # a base class may be another there
         beside = found.form == "override" and not says_override(use.given, use.arguments)
         if beside and (extract_class(use.given, use.arguments), use.name) in overridden:
             continue  # another of that name overrides, or is to

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from ...facts.surface import Entity
+from ...facts.surface import Entity, format_declaration
 from ...facts.usage import split_arguments
 from ..evidence import make_offer_evidence
 from ..symbol import Availability, State, Symbol
@@ -104,8 +104,18 @@ def _check_override(offers: Offers, offered: Offered, arguments: int, given: tup
     for package, name in line:
         near = offers.find_package(package)
         line.extend(one for one in _find_holders(offers, near, name) if one not in line) if near is not None else ()
-    lost = Override(offers, given, arguments).find_lost_change(line)
-    return _answer("changed", lost[0], "override", lost[1]) if lost is not None else None
+    override = Override(offers, given, arguments)
+    lost = override.find_lost_change(line)
+    if lost is not None:
+        return _answer("changed", lost[0], "override", lost[1])
+    unmatched = override.find_unmatched(offered.name.rpartition("::")[2])
+    if unmatched is None:
+        return None
+    method, packages = unmatched
+    return Availability(
+        Symbol("c++", method.name, packages), "changed", offered.package, offered.version,
+        form="unmatched", detail=format_declaration(method),
+    )  # fmt: skip
 
 
 def _lies_between(offer: PackageOffer, offered: Offered) -> bool:

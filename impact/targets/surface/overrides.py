@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from ...facts.surface import Entity
+from ...facts.surface import CLASSES, Entity
 from .changes import Form, Overload, make_overload
 from .offers import Offered, iterate_other_forms, make_offered
 
@@ -17,6 +17,12 @@ if TYPE_CHECKING:
     from .offers import Offers
 
 _RESULT = "-> "
+_BASES = ": "
+
+
+def describe_bases(bases: Sequence[tuple[str, str]]) -> str:
+    """The mark of a method of a class whose bases are all known. bases: packages and names of the classes."""
+    return _BASES + ", ".join(" ".join(base) for base in bases)
 
 
 def describe_override(types: tuple[str, ...], marks: tuple[str, ...], result: str, class_: str) -> tuple[str, ...]:
@@ -48,6 +54,8 @@ class Override:
         self.offers, self.types = offers, given[:arguments]
         self.const, self.says_so = "const" in marks, "override" in marks
         self.parameters: tuple[str, ...] = ()
+        bases = next((one[len(_BASES) :] for one in marks if one.startswith(_BASES)), "")
+        self.bases = [(base.partition(" ")[0], base.partition(" ")[2]) for base in bases.split(", ") if base]
         self.result = next((one[len(_RESULT) :] for one in marks if one.startswith(_RESULT)), "")
 
     def find_lost_change(self, line: Sequence[tuple[str, str]]) -> tuple[Offered, bool] | None:
@@ -76,6 +84,60 @@ class Override:
                 elif all(self._differs_surely(make_overload(one), mine, form, offered) for one in here):
                     return make_offered(self.offers, offered, event, earlier), earlier
         return None
+
+    def find_unmatched(self, member: str) -> tuple[Entity, tuple[str, ...]] | None:
+        """A method of this name that the base classes have where the method, which is to override one, surely overrides
+        none of them, and the packages of all base classes; None where it may, or where one of the classes is not
+        completely known."""
+        lineage = self._list_lineage() if self.says_so and self.bases else None
+        if lineage is None:
+            return None
+        methods = [one for package, name in lineage for one in self._list_entities(package, f"{name}::{member}")]
+        parameters = {
+            parameter.name
+            for package, name in lineage
+            for one in self._list_entities(package, name)
+            for parameter in one.template or ()
+        }
+        if not methods or any(one.kind != "method" or self._may_match(one, parameters) for one in methods):
+            return None
+        return methods[0], tuple(dict.fromkeys(package for package, _ in lineage))
+
+    def _list_lineage(self) -> list[tuple[str, str]] | None:
+        """The packages and names of all classes that the method's class is derived from; None where one of them is not
+        stored of the target's very version."""
+        lineage = list(self.bases)
+        for package, name in lineage:
+            offer = self.offers.find_package(package)
+            if offer is None or not offer.exact or offer.build.has_empty_folders:
+                return None
+            declared = [one for one in self._list_entities(package, name) if one.kind in CLASSES]
+            if not declared:
+                return None
+            for base in {base.type.partition("<")[0] for one in declared for base in one.bases}:
+                if base == "std::enable_shared_from_this":
+                    continue  # which has nothing virtual
+                full = next(
+                    (one for one in offer.line.bases.get(name, ()) if f"::{one}".endswith(f"::{base.lstrip(':')}")), ""
+                )
+                owners = dict.fromkeys((package, full.partition("::")[0])) if full else {}
+                owner = next((one for one in owners if self.offers.has_name("c++", full, one)), None)
+                if owner is None:
+                    return None
+                if (owner, full) not in lineage:
+                    lineage.append((owner, full))
+        return lineage
+
+    def _may_match(self, method: Entity, parameters: set[str]) -> bool:
+        """Whether the method may override another, as far as their types show. parameters: of templates, which may
+        stand for anything."""
+        overload = make_overload(method)
+        if len(overload.types) != len(self.types) or ("const" in overload.traits) != self.const:
+            return False
+        pairs = list(zip(self.types, overload.types, strict=True))
+        if not parameters.isdisjoint(name for type_ in overload.types for name in re.findall(r"\w+", type_)):
+            return True
+        return not any(_never_agree(one, other) for one, other in pairs)
 
     def _list_entities(self, package: str, name: str, version: str = "") -> list[Entity]:
         """What a version of a package, by default the target's, declares by a name."""
@@ -196,6 +258,24 @@ def _differs(one: str, other: str) -> bool:
         return True
     sorts = [[(match.group(2) or match.group(3)).lower() for match in _SHAPE.finditer(text)] for text in (one, other)]
     return bool(sorts[0]) and bool(sorts[1]) and sorts[0] != sorts[1]
+
+
+_PLAIN = re.compile(r"std::(?:string|vector|map|function|shared_ptr|unique_ptr|weak_ptr|optional)\b")
+_MESSAGE = re.compile(r"\w+::(?:msg|srv|action)::\w+")
+
+
+def _never_agree(one: str, other: str) -> bool:
+    """Whether two types are surely not the same, whatever the names in them stand for."""
+    bare = [" ".join(re.sub(r"\bconst\b|&", " ", type_).split()) for type_ in (one, other)]
+    known = [type_ in _FUNDAMENTAL or type_ == "std::string" or bool(_MESSAGE.fullmatch(type_)) for type_ in bare]
+    if all(known) and bare[0] != bare[1]:
+        return True
+    # What is no alias shows whether it is a reference, and what sort of pointer.
+    shown = [
+        sure or bool(_PLAIN.match(type_)) or type_.rpartition("::")[2] in _POINTERS
+        for type_, sure in zip(bare, known, strict=True)
+    ]
+    return all(shown) and max(len(_SHAPE.findall(type_)) for type_ in bare) < 2 and _differs(one, other)
 
 
 def _strip_scopes(type_: str) -> str:
