@@ -13,6 +13,7 @@ from rosimpact.impact.analysis.findings import (
     add_fingerprints,
     apply_settings,
     choose_rules,
+    drop_outweighed,
     format_baseline,
     has_failures,
     lower_repeats,
@@ -29,7 +30,7 @@ from rosimpact.impact.config import PathSetting
 from rosimpact.impact.facts.place import Allow
 from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.rules.fix_actions import Edit
-from rosimpact.impact.rules.rule import Diagnostic, Finding, Rule, group_rules
+from rosimpact.impact.rules.rule import Diagnostic, Finding, Rule, group_rules, load_rules
 from rosimpact.impact.rules.severity import Doubt, Together
 from rosimpact.impact.rules.text import Text
 from rosimpact.impact.targets.evidence_record import Evidence
@@ -198,6 +199,24 @@ def test_repeats_are_notes():
     assert [RULES[name].compute_severity(diagnostic) for name, diagnostic in lowered] == [row[-1] for row in REPEATS]
     found = merged(*((name, "jazzy", diagnostic) for name, diagnostic in lowered))
     assert [each.line for each in found if each.repeated] == [4, 7, 8, 10, 16, 17]
+
+
+def test_what_another_rule_tells_of_the_same_place_with_more_weight_is_left_out():
+    rules = {**RULES, "moved-header": RULES["removed-header"]._replace(yields_to=("removed-header",))}
+    yielded = [
+        ("moved-header", hit(line=1)),
+        ("moved-header", hit(line=2)),
+        ("removed-header", hit(line=1)),
+        ("removed-header", hit(line=1)),  # the same twice
+    ]
+    kept = [(name, diagnostic.at.line) for name, diagnostic in drop_outweighed(yielded, rules)]
+    assert kept == [("moved-header", 2), ("removed-header", 1)]
+
+
+def test_rules_yield_to_rules_that_are_asked_with_them():
+    rules = load_rules()
+    for rule in rules.values():
+        assert all(other in rules and rules[other].scope == rule.scope == "target" for other in rule.yields_to), rule
 
 
 def test_a_fingerprint_does_not_depend_on_message_or_targets():

@@ -39,6 +39,29 @@ class SettingsError(UserError, ValueError):
     """A setting that cannot be obeyed; the text names it and what to write instead."""
 
 
+def drop_outweighed(
+    yielded: Sequence[tuple[str, Diagnostic]], rules: Mapping[str, Rule]
+) -> list[tuple[str, Diagnostic]]:
+    """What rules yield on one target, in order, without what another rule tells of the same place with more weight, see
+    `yields_to` of rule(), and without what a rule yields twice."""
+    places = {(name, *_locate(diagnostic)) for name, diagnostic in yielded}
+    seen: set[tuple] = set()
+    result = []
+    for name, diagnostic in yielded:
+        place = _locate(diagnostic)
+        known = name, place[:2], diagnostic.subject, repr(diagnostic.fact), diagnostic.doubts
+        if known in seen or any((other, *place) in places for other in rules[name].yields_to):
+            continue
+        seen.add(known)
+        result.append((name, diagnostic))
+    return result
+
+
+def _locate(diagnostic: Diagnostic) -> tuple[str, int, int]:
+    at = diagnostic.at
+    return getattr(at, "path", ""), getattr(at, "line", 0), getattr(at, "column", 0)
+
+
 def lower_repeats(yielded: Sequence[tuple[str, Diagnostic]], rules: Mapping[str, Rule]) -> list[tuple[str, Diagnostic]]:
     """What rules yield on one target, in order, with notes for the warnings whose cause another one tells."""
     shared = [_list_shared(rules[name], diagnostic) for name, diagnostic in yielded]

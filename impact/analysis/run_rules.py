@@ -12,7 +12,7 @@ from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic, Rule
 from ..targets.snapshot import SnapshotError
 from . import result_cache
-from .findings import lower_repeats
+from .findings import drop_outweighed, lower_repeats
 from .session import OpenedWorkspace
 
 # Starting processes costs about as much as running the rules on this many packages for one target.
@@ -117,7 +117,8 @@ def _run_remembered(
                 result_cache.store_yielded(opened.store, key, yielded, {})
             continue
         view = opened.views[place]
-        found[view.target.name] = yielded = lower_repeats(yielded, {rule.name: rule for rule in rules})
+        by_name = {rule.name: rule for rule in rules}
+        found[view.target.name] = yielded = lower_repeats(drop_outweighed(yielded, by_name), by_name)
         if not crashed:
             result_cache.store_results(opened.store, view, names, yielded)
     crashed.update(failed)

@@ -110,7 +110,7 @@ class Rule(NamedTuple):
 
     family: its folder. severity: the usual one. scope: see the module. preview: its precision is not measured yet.
     doubts: what speaks against an error in all of its diagnostics. group: the rule that it was a part of once, empty
-    otherwise. texts: templates by kind of diagnostic.
+    otherwise. texts: templates by kind of diagnostic. yields_to: rules that say the same with more weight.
     """
 
     name: str
@@ -123,6 +123,7 @@ class Rule(NamedTuple):
     doubts: tuple[Doubt, ...] = ()
     group: str = ""
     texts: Mapping[str, Text] = {}
+    yields_to: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, str, str]:
@@ -176,6 +177,7 @@ def rule(
     texts: Text | Mapping[str, Text],
     group: str = "",
     preview: bool = False,
+    yields_to: tuple[str, ...] = (),
 ):
     """Registers the decorated generator as a rule; the module's docstring tells how it is called.
 
@@ -183,7 +185,9 @@ def rule(
     that a finding of the rule can have, for what stops no build and no run however sure it is. doubts: what speaks
     against that in every finding. texts: one template, or several by the kind of diagnostic. group: the name of the
     rule that this check was a part of, so that settings, comments, baselines and fingerprints which name that one go on
-    to hold for this one. preview: it runs only when asked for, since its precision is not measured yet.
+    to hold for this one. preview: it runs only when asked for, since its precision is not measured yet. yields_to:
+    rules of the scopes `package` and `target` that tell the same cause with more weight: where one of them reports a
+    place on a target, this rule's diagnostics of that place are left out there.
     """
 
     def register(function):
@@ -194,7 +198,9 @@ def rule(
         run, called = (_run_on_packages(function), "target") if scope == "package" else (function, scope)
         documentation = _tell_severity(module.__doc__ or "", usual)
         by_kind = {"": texts} if isinstance(texts, Text) else texts
-        _RULES[name] = Rule(name, parts[-2], usual, run, documentation, called, preview, doubts, group, by_kind)
+        _RULES[name] = Rule(
+            name, parts[-2], usual, run, documentation, called, preview, doubts, group, by_kind, yields_to
+        )
         return function
 
     return register

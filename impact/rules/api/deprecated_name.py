@@ -25,7 +25,12 @@ from .diagnosis import build_availability_texts, diagnose
 from .uses import list_cpp_uses, list_python_uses
 
 
-@rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=build_availability_texts())
+@rule(
+    scope="target",
+    doubts=(Doubt.DEPRECATED,),
+    texts=build_availability_texts(),
+    yields_to=("changed-signature", "removed-cmake-name", "removed-python-name", "removed-symbol"),
+)
 def deprecated_name(view: TargetView):
     seen = set()
     for package in view:
@@ -51,7 +56,7 @@ def deprecated_name(view: TargetView):
                 continue
             if not f"{text}.".startswith(gone):  # else what it stands in has gone with it, which is reported
                 seen.add((at.path, at.line))
-                # What the next distro removes of CMake, removed-cmake-name says.
+                # What the next distro removes of CMake, removed-cmake-name says, once for the package.
                 cmake = change.kind.startswith("cmake")
                 if not cmake or view.find_availability(Symbol("command", text)).state != "upcoming":
                     yield diagnose(convert_row(Symbol("c++", text), change), at, text, package.name)

@@ -28,7 +28,12 @@ from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, rule
 from .diagnosis import build_availability_texts, build_data
 
 
-@rule(scope="target", doubts=(Doubt.DEPRECATED,), texts=build_availability_texts("include"))
+@rule(
+    scope="target",
+    doubts=(Doubt.DEPRECATED,),
+    texts=build_availability_texts("include"),
+    yields_to=("removed-header",),
+)
 def moved_header(view: TargetView):
     moved = {
         c.old: c

@@ -40,6 +40,7 @@ _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 @rule(
     group="missing-find-package",
     texts=Text("`{target}` includes `{header}` but is not given `{subject}`", "give `{subject}` to the target"),
+    yields_to=("unlinked-package",),
 )
 def ungiven_package(view: TargetView, package: Package):
     if package.build_type != "ament_cmake" or package.build.unresolved:
