@@ -565,7 +565,7 @@ class TargetView:
         found: dict[str, tuple[ChangeInForce, Horizon]] = {}
         for ahead in self.horizons:
             for change in find_coming_changes(self.target, ahead):
-                found.setdefault(change.old, (change, ahead))
+                found.setdefault(change.old or change.package, (change, ahead))
         return found
 
     @cache_method

@@ -1,8 +1,8 @@
 """Findings about what is there and will be gone: one treatment for all rules.
 
-What goes with the next sync breaks in the build farm already, and counts as if it were gone. What goes with a later
-update, or on the newest platform, is worth one warning for each package or library that changes, in the whole
-workspace: its first place by what breaks first. The rest are notes, and so is what only a distro further ahead lacks.
+Nothing breaks on the target yet. What goes with the next sync, a later update or on the newest distro is worth one
+warning for each package or library that changes, in the whole workspace: its first place by what breaks first. The rest
+are notes, and so is what only a distro further ahead lacks.
 """
 
 from __future__ import annotations
@@ -38,9 +38,6 @@ def rate_upcoming(found: Iterable[Diagnostic | Upcoming]) -> Iterator[Diagnostic
     for diagnostic, changed, horizon, _ in sorted(every, key=lambda one: one.order):
         evidence = diagnostic.evidence
         diagnostic = diagnostic._replace(evidence=evidence and evidence._replace(ahead=True))
-        if not horizon.soon:
-            late = Doubt.FAR if horizon.far else Doubt.UPCOMING
-            diagnostic = diagnostic._replace(
-                doubts=(*diagnostic.doubts, late), together=(Together(f"{changed} of {horizon.name}", True),)
-            )
-        yield diagnostic
+        late = Doubt.FAR if horizon.far else Doubt.UPCOMING
+        together = (Together(f"{changed} of {horizon.name}", everywhere=True),)
+        yield diagnostic._replace(doubts=(*diagnostic.doubts, late), together=together)

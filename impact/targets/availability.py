@@ -72,7 +72,7 @@ def list_horizons(target: DistroTarget, asked: Iterable[str] = ()) -> tuple[Hori
     and the newest long-term distro of its generation. asked: distros that are judged anyway, and are left out."""
     found = []
     if (testing := target.find_testing()) is not None:
-        found.append(Horizon(testing, f"the next sync of {target.distro}", soon=True))
+        found.append(Horizon(testing, f"the next sync of {target.distro}"))
     if (updated := target.find_updated()) is not None:
         found.append(Horizon(updated, f"{target.distro} of {updated.date}"))
     newest = target.find_newest()
@@ -92,7 +92,7 @@ def _count_newer_lts(target: DistroTarget) -> int:
 
 def find_coming_changes(target: DistroTarget, ahead: Horizon) -> tuple[ChangeInForce, ...]:
     """Reviewed changes that remove something on a horizon which a target has: of packages and libraries that are
-    there in another version."""
+    there in another version, and packages themselves."""
 
     here, there = target.changes().removed, ahead.target.changes().removed
     new = there.keys() - here.keys()
@@ -108,6 +108,7 @@ def find_coming_changes(target: DistroTarget, ahead: Horizon) -> tuple[ChangeInF
         for key in filter(new.__contains__, there)
         for change in there[key]
         if moves(change.package, change.library)
+        or (change.kind.startswith("package") and ahead.target.find_version(change.old or change.package) is None)
     )
 
 
@@ -157,7 +158,7 @@ class Availabilities:
 
     def find_on_horizon(self, symbol: Symbol) -> Availability:
         """The same, and `upcoming` for what is there and is removed on the nearest horizon. A newer distro counts for
-        platform libraries, and for names of CMake that are deprecated here already."""
+        platform libraries, and for what is deprecated here already."""
         here = self.find_availability(symbol)
         if here.state not in ("present", "deprecated"):
             return here
@@ -168,8 +169,10 @@ class Availabilities:
         return here
 
     def _is_deprecated(self, here: Availability) -> bool:
-        """Whether a reviewed row says that CMake warns of a name on the target."""
-        row = self._find_reviewed(here.symbol) if here.symbol.kind in ("command", "target", "variable") else None
+        """Whether the target warns of something, by what its version says or by a reviewed row."""
+        if here.state == "deprecated":
+            return True
+        row = self._find_reviewed(here.symbol)
         return row is not None and row.state == "deprecated"
 
     @cached_property
@@ -334,7 +337,7 @@ class Availabilities:
                 if not symbol.packages or change.library or change.package in symbol.packages:
                     return convert_row(symbol, change)
         for row in _load_removals().get(name, ()):
-            if not row.library or row.kind not in _ROWS[symbol.kind]:
+            if not row.library or row.kind not in _ROWS.get(symbol.kind, ()):
                 continue
             version = find_version(row.package, True, self.target)
             if version and not has_reached(row.removed_in, version, self.target):

@@ -23,14 +23,13 @@ class Symbol(NamedTuple):
 
 
 class Horizon(NamedTuple):
-    """What a target is going to be. name: as a message has it. soon: with the next sync, which the distro's build farm
-    builds against already. platform: the newest distro, of which only the platform counts: libraries and Python. What
-    its packages change is told by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two
-    long-term distros ahead, which is worth no warning."""
+    """What a target is going to be. name: as a message has it. platform: the newest distro, of which only the platform
+    counts (libraries and Python), packages that it lacks, and what is deprecated here already. What its packages change
+    otherwise is told by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two long-term
+    distros ahead, which is worth no warning."""
 
     target: DistroTarget
     name: str
-    soon: bool = False
     platform: bool = False
     far: bool = False
 

@@ -9,7 +9,7 @@ from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.symbol import Horizon
 
 TARGET = DistroTarget("jazzy")
-SYNC, UPDATE = Horizon(TARGET, "the next sync of jazzy", soon=True), Horizon(TARGET, "jazzy of 2026-08-22")
+SYNC, UPDATE = Horizon(TARGET, "the next sync of jazzy"), Horizon(TARGET, "jazzy of 2026-08-22")
 NEWEST, FAR = Horizon(TARGET, "lyrical", platform=True), Horizon(TARGET, "lyrical", platform=True, far=True)
 
 
@@ -42,11 +42,10 @@ def test_a_note_does_not_take_the_place_of_a_warning():
     assert severities(one(1, doubts=(Doubt.EXAMPLE,)), one(2)) == ["note", "warning"]
 
 
-def test_the_next_sync_counts_as_now_and_a_far_distro_as_a_note():
-    expected = ["error", "error", "warning", "note", "note"]
-    soon = [one(1, horizon=SYNC), one(2, horizon=SYNC), one(3, horizon=SYNC, doubts=(Doubt.TEST,))]
-    assert severities(*soon, one(4, horizon=FAR), one(5, "boost", FAR)) == expected
-    assert severities(one(1, horizon=UPDATE), one(2, horizon=UPDATE)) == ["warning", "note"]
+def test_every_horizon_counts_alike_and_a_far_distro_as_a_note():
+    for horizon in (SYNC, UPDATE, NEWEST):
+        assert severities(one(1, horizon=horizon), one(2, horizon=horizon)) == ["warning", "note"]
+    assert severities(one(1, horizon=FAR), one(2, "boost", FAR)) == ["note", "note"]
 
 
 def test_what_is_gone_already_keeps_its_severity():

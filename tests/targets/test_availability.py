@@ -57,9 +57,11 @@ def test_what_will_go_is_upcoming_on_the_nearest_horizon():
     assert melodic.horizon is not None and (melodic.horizon.name, melodic.horizon.platform) == ("noetic", True)
     assert melodic.evidence is not None and melodic.evidence.ahead
     # What packages of the newest distro lack is no matter of an update.
-    humble = Availabilities(DistroTarget("humble")).find_on_horizon(Symbol("header", OLD, TF2))
-    assert humble.state == "deprecated"
-    # But a command of CMake that warns already is left in time.
+    subscriber = Symbol("header", "message_filters/subscriber.h", ("message_filters",))
+    assert Availabilities(DistroTarget("jazzy")).find_on_horizon(subscriber).state == "present"
+    # But what warns already is left in time.
+    assert Availabilities(DistroTarget("kilted")).find_on_horizon(subscriber).state == "upcoming"
+    assert Availabilities(DistroTarget("humble")).find_on_horizon(Symbol("header", OLD, TF2)).state == "upcoming"
     command = Symbol("command", "ament_target_dependencies", ("ament_cmake_target_dependencies",))
     distros = (DistroTarget(name) for name in ("jazzy", "kilted", "lyrical"))
     ahead = [Availabilities(distro).find_on_horizon(command).state for distro in distros]
@@ -77,14 +79,14 @@ def test_what_will_go_is_upcoming_on_the_nearest_horizon():
     ],
 )
 def test_the_newest_distro_is_a_horizon_for_its_platform(target, asked, expected):
-    found = [one for one in list_horizons(target, asked) if not one.soon]
+    found = [one for one in list_horizons(target, asked) if "next sync" not in one.name]
     assert [(one.name, one.platform, one.far) for one in found] == expected
 
 
 def test_a_date_has_a_next_sync_and_an_update():
     soon, later, newest = list_horizons(DistroTarget("iron", "2023-06-04"))
-    assert (soon.name, soon.soon) == ("the next sync of iron", True)
-    assert later.name.startswith("iron of 20") and not later.soon and not later.platform
+    assert (soon.name, soon.platform) == ("the next sync of iron", False)
+    assert later.name.startswith("iron of 20") and not later.platform
     assert newest.platform
 
 
@@ -95,7 +97,7 @@ def test_a_target_answers_itself():
 def test_what_the_next_sync_removes_is_asked_of_the_packages_that_wait_for_it():
     target = DistroTarget("rolling", "2023-04-05")
     assert "SHARED_PTR_DEFINITIONS" not in {change.old for change in target.changes()}
-    (soon,) = (ahead for ahead in list_horizons(target) if ahead.soon)
+    (soon,) = (ahead for ahead in list_horizons(target) if "next sync" in ahead.name)
     coming = find_coming_changes(target, soon)
     assert "SHARED_PTR_DEFINITIONS" in {change.old for change in coming}
     # What is gone already does not go again.

@@ -9,11 +9,10 @@ Why it breaks
     The compiler stops with "No such file or directory" on that developer's machine and nowhere else.
 
 Severity
-    error for compiled code that is not guarded, tests of ROS 2 included, and for what goes with the next sync (which
-    the build farm builds against already); warning for tests of ROS 1, under CMake conditions that are not known, and
-    for the first use of each package or library that goes with a later update or on the newest distro's platform; note
-    for its other uses, for examples, for installed headers that the package does not compile itself, and under other
-    tests of the code itself.
+    error for compiled code that is not guarded, tests of ROS 2 included; warning for tests of ROS 1, under CMake
+    conditions that are not known, and for the first use of each package or library that goes with an update or on the
+    newest distro's platform, or is deprecated and removed on the newest distro; note for its other uses, for examples,
+    for installed headers that the package does not compile itself, and under other tests of the code itself.
 
 Example
     #include <tf2_geometry_msgs/tf2_geometry_msgs.h>     // gone from tf2_geometry_msgs 0.36

@@ -2,15 +2,15 @@
 
 What it does
     Reports declared dependencies and find_package calls that name a package which the known-changes table says was
-    taken out of ROS before, or with, the target's distro.
+    taken out of ROS before, or with, the target's distro, or will be with an update of it or in the newest distro.
 
 Why it breaks
     Nothing installs the package there.
 
 Severity
     error for a build or run dependency and for a find_package(REQUIRED) that surely counts on the target; warning for
-    dependencies of tests and documentation, and for optional or guarded calls; note for such calls that ask for a
-    package of the other generation of ROS.
+    dependencies of tests and documentation, for optional or guarded calls, and for the first use of a package that is
+    still there; note for such calls that ask for a package of the other generation of ROS, and for the other uses.
 
 Example
     <exec_depend>ros1_bridge</exec_depend>              <!-- not released since Humble -->
@@ -25,15 +25,19 @@ Not reported
 
 from collections.abc import Iterator
 
+from ...facts.condition import Condition
 from ...model.cmake.build import FoundPackage
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rule
 
 _GONE = "package `{subject}` is not available in {distro}"
+_LEAVING = "package `{subject}` will be removed: not in {distro}"
 TEXTS = {
     "declared": Text(_GONE, "remove the dependency"),
     "declared, renamed": Text(f"{_GONE}: it was renamed to `{{replacement}}`", "depend on `{replacement}`"),
     "found": Text(_GONE),
     "found, renamed": Text(f"{_GONE}: it was renamed to `{{replacement}}`", "find `{replacement}`"),
+    "upcoming": Text(_LEAVING, "use something else there, or a condition"),
+    "upcoming, renamed": Text(f"{_LEAVING}, where it is `{{replacement}}`", "use `{replacement}` there"),
 }
 
 
@@ -42,27 +46,43 @@ def removed_package(view: TargetView, package: Package):
     return list_gone_packages(view, package, "package-removed")
 
 
-def list_gone_packages(view: TargetView, package: Package, kind: str) -> Iterator[Diagnostic]:
-    """Diagnostics for every use of a package whose change of the given kind is in force."""
+def list_gone_packages(view: TargetView, package: Package, kind: str) -> Iterator[Diagnostic | Upcoming]:
+    """Diagnostics for every use of a package whose change of the given kind is in force, or will be."""
     gone = {c.old or c.package: c.new for c in view.list_changes(kind) if c.state == "removed"}
+    coming = {c.old or c.package: (c.new, ahead) for c, ahead in view.coming.values() if c.kind == kind}
     uses = [
-        (d.name, "declared", view.find_place(package, d),
+        (d.name, "declared", _list_conditions(d.condition), view.find_place(package, d),
          (d.kind in ("build", "buildtool", "exec") or Doubt.TEST,))
         for d in package.manifest.dependencies
         if d.kind not in ("conflict", "replace") and view.is_declaration_active(d.condition)
     ]  # fmt: skip
     uses += [
-        (f.name, "found", f.at, _collect_search_doubts(view, f))
+        (f.name, "found", f.conditions, f.at, _collect_search_doubts(view, f))
         for f in package.build.found
         if view.applies(f.conditions) and not (f.quiet and not f.required and f.name in package.build.asked)
     ]
     seen = set()
-    for name, how, at, doubts in uses:
-        if name not in gone or name in seen or view.is_available(name):
+    for name, how, conditions, at, doubts in uses:
+        if name in seen:
+            continue
+        if name in coming and name not in view.workspace.may_have and view.target.find_version(name) is not None:
+            replacement, ahead = coming[name]
+            if view.is_active_on(ahead, conditions):
+                seen.add(name)
+                data = {"distro": ahead.name, "replacement": replacement}
+                told = "upcoming, renamed" if replacement else "upcoming"
+                found = Diagnostic(at, name, package.name, data, told, doubts)
+                yield Upcoming(found, name, ahead, (at.path, at.line))
+            continue
+        if name not in gone or view.is_available(name):
             continue
         seen.add(name)
         data = {"distro": view.target.distro, "replacement": gone[name]}
         yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone[name] else how, doubts)
+
+
+def _list_conditions(condition: str) -> tuple[Condition, ...]:
+    return (Condition("manifest", condition),) if condition else ()
 
 
 def _collect_search_doubts(view: TargetView, found: FoundPackage) -> tuple[Doubt | bool, ...]:

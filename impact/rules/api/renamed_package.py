@@ -8,8 +8,8 @@ Why it breaks
 
 Severity
     error for a build or run dependency and for a find_package(REQUIRED) that surely counts on the target; warning for
-    dependencies of tests and documentation, and for optional or guarded calls; note for such calls that ask for a
-    package of the other generation of ROS.
+    dependencies of tests and documentation, for optional or guarded calls, and for the first use of a package that is
+    still there; note for such calls that ask for a package of the other generation of ROS, and for the other uses.
 
 Example
     <exec_depend>nav2_recoveries</exec_depend>          <!-- nav2_behaviors since Humble -->

@@ -61,4 +61,4 @@ def is_contradicted(view: TargetView, symbol: Symbol, change: ChangeInForce) -> 
     if change.library or change.kind == "api-changed":
         return False
     asked = symbol._replace(name=change.old, packages=(change.package,))
-    return view.find_availability(asked).state in ("present", "deprecated")
+    return view.find_availability(asked).state in ("present", "deprecated", "upcoming")

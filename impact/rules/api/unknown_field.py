@@ -11,9 +11,9 @@ Why it breaks
     robot, or an ImportError.
 
 Severity
-    error for code that is built or run, tests of ROS 2 included, also for what goes with the distro's next sync, since
-    its build farm builds against that already; warning in tests of ROS 1, for what only goes with a later update, and
-    where a telling name is used on something whose type does not show; note in examples.
+    error for code that is built or run, tests of ROS 2 included; warning in tests of ROS 1, for the first of each
+    package that only goes with an update of the distro, and where a telling name is used on something whose type does
+    not show; note in examples, and for the rest of those.
 
 Example
     request->start_controllers = {"arm"};       // controller_manager_msgs of Iron has activate_controllers

@@ -23,7 +23,7 @@ def collect_folder_doubts(view: TargetView, name: str, header: str) -> tuple[Dou
         return () if own else (Doubt.INCOMPLETE,)
     for ahead in view.updates:
         if _has_own_folder(view, view.make_offers(ahead)[0], name, header):
-            return () if ahead.soon else (Doubt.FAR if ahead.far else Doubt.UPCOMING,)
+            return (Doubt.FAR if ahead.far else Doubt.UPCOMING,)
     return None
 
 

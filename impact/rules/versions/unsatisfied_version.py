@@ -9,8 +9,8 @@ Why it breaks
     build goes on and fails later, in the compiler or at run time.
 
 Severity
-    error where the target's release or library, or that of the next sync, breaks the bound; warning where a package of
-    the workspace itself does, or a later update of the distro.
+    error where the target's release or library breaks the bound; warning where a package of the workspace itself does,
+    or an update of the distro.
 
 Example
     <depend version_gte="2.9.0">moveit_core</depend>     # the robot, humble, has 2.5.9
