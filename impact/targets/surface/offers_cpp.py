@@ -15,7 +15,7 @@ from ..symbol import Availability, State, Symbol
 from ..version import is_at_least
 from .changes import Form, Overload
 from .offers import Offered, Offers, PackageOffer, iterate_other_forms, list_declared, make_offered
-from .overrides import Override, list_virtual_forms
+from .overrides import Override
 
 if TYPE_CHECKING:
     from .store import SurfaceHistory
@@ -67,7 +67,7 @@ def _check_present(
     if offered.here is None or (how != "implement" and _is_alias(offers, package, name)):
         return None
     if how == "implement":
-        return _check_unimplemented(offered)
+        return _check_unimplemented(offers, offered)
     if offered.state == "deprecated":
         return _answer("deprecated", offered)
     if how != "call" or arguments < 0:
@@ -325,9 +325,12 @@ def _is_told(one: Entity, arguments: int) -> bool:
     )  # fmt: skip
 
 
-def _check_unimplemented(offered: Offered) -> Availability | None:
+def _check_unimplemented(offers: Offers, offered: Offered) -> Availability | None:
     """Whether a method that a class does not implement is pure in its base, and was not or will not be."""
-    here = list_virtual_forms(offered.here)
+    offer = offers.find_package(offered.package)
+    # That a method is pure no longer breaks nobody, so that changes do not tell of it.
+    declared = offer.history.iterate_entities(offered.name, offer.stored) if offer is not None else ()
+    here = [one for one in declared if "virtual" in one.traits]
     if not here or not all("pure" in one.traits for one in here):
         return None
     for form, earlier in ((offered.before, True), (offered.after, False)):
