@@ -337,3 +337,15 @@ def test_hostile_text_stays_text(say, tmp_path, opened):
     assert browser.execute_script("return window.hacked") is None
     assert "onerror=window.hacked=1>" in texts(browser, "#list pre")[0]
     assert browser.get_log("browser") == []
+
+
+def test_what_was_to_come_and_has_come_is_a_break(say, tmp_path):
+    ws = written(tmp_path / "ws", package("a"))
+    manifest = ws / "a/package.xml"
+    manifest.write_text(
+        manifest.read_text().replace("  <export>", "  <depend>gripper_controllers</depend>\n  <export>")
+    )
+    assert "will be removed" in say("check", ws, "--target", "jazzy").out
+    said = say("upgrade", ws, "--from", "jazzy", "--to", "kilted")
+    assert said.status == 1
+    assert said.out.splitlines()[0] == "jazzy → kilted breaks 1 of 1 package: 1 error to fix, in 1 place"

@@ -109,9 +109,9 @@ def merge_diagnostics(
     groups: dict[tuple, list[dict[str, Diagnostic]]] = {}
     for rule_name, target, diagnostic in diagnostics:
         severity = rules[rule_name].compute_severity(diagnostic)
-        ahead = diagnostic.evidence is not None and diagnostic.evidence.ahead
         at = diagnostic.at
-        key = (rule_name, severity, getattr(at, "path", ""), getattr(at, "line", 0), diagnostic.subject, ahead)
+        place = getattr(at, "path", ""), getattr(at, "line", 0)
+        key = (rule_name, severity, *place, diagnostic.subject, diagnostic.ahead)
         names = (target,) if target else tuple(targets) or ("",)
         _add_to_group(groups.setdefault(key, []), names, diagnostic)
     findings = [
@@ -169,6 +169,7 @@ def _make_finding(
         fix=first.fix if right else (),
         evidence=next((each.evidence for each in diagnostics if each.evidence is not None), None),
         repeated=all(Doubt.REPEATED in each.doubts for each in diagnostics),
+        ahead=first.ahead,
     )
 
 

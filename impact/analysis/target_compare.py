@@ -53,7 +53,8 @@ class Compared(NamedTuple):
 
 
 def compare_findings(findings: Iterable[Finding], other: Iterable[Finding]) -> Compared:
-    """Findings of one side against those of the other, by rule, package, path, line and subject."""
+    """Findings of one side against those of the other, by rule, package, path, line and subject, and by whether they
+    hold already."""
     there: dict[tuple, int] = {}
     for finding in other:
         there[_make_key(finding)] = max(there.get(_make_key(finding), 0), rank(finding.severity))
@@ -64,8 +65,8 @@ def compare_findings(findings: Iterable[Finding], other: Iterable[Finding]) -> C
     return result
 
 
-def _make_key(finding: Finding) -> tuple[str, str, str, int, str]:
-    return finding.rule, finding.package, finding.path, finding.line, finding.subject
+def _make_key(finding: Finding) -> tuple[str, str, str, int, str, bool]:
+    return finding.rule, finding.package, finding.path, finding.line, finding.subject, finding.ahead
 
 
 class UpgradeItem(NamedTuple):

@@ -74,17 +74,21 @@ def compare_upgrade(
             raise CheckError(f"--packages {name}: the workspace has no such package")
     wanted = set(packages or ("", *order))
     warning = {rule.name for rule in report.rules() if Doubt.DEPRECATED in rule.doubts}
+
+    def is_late(finding: Finding) -> bool:
+        return finding.ahead or finding.rule in warning
+
     now, then = ([finding for finding in side.report.findings if finding.package in wanted] for side in (after, before))
     told, lost = compare_findings(now, then), compare_findings(then, now)
     return Upgrade(
         old=before.report.targets[0],
         report=report,
         packages=tuple(ReportedPackage(name, folders[name]) for name in order if name in wanted),
-        breaks=tuple(group_items((f for f in told.new if _is_grave(f) and f.rule not in warning), order)),
-        deprecations=tuple(group_items((f for f in now if f.rule in warning), order)),
-        brought=tuple(f for f in told.new if _is_grave(f) or f.rule in warning),
-        both=tuple(f for f in told.both if _is_grave(f) and f.rule not in warning),
-        over=tuple(f for f in lost.new if _is_grave(f) and f.rule not in warning),
+        breaks=tuple(group_items((f for f in told.new if _is_grave(f) and not is_late(f)), order)),
+        deprecations=tuple(group_items((f for f in now if is_late(f)), order)),
+        brought=tuple(f for f in told.new if _is_grave(f) or is_late(f)),
+        both=tuple(f for f in told.both if _is_grave(f) and not is_late(f)),
+        over=tuple(f for f in lost.new if _is_grave(f) and not is_late(f)),
         fixable=_find_fixable(report.findings, make_reader(after.tree)),
         # Of a revision, what would change is shown.
         command=_format_command(path, new, options, "--diff" if options.rev else "--fix"),

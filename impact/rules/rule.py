@@ -80,13 +80,20 @@ class Diagnostic(NamedTuple):
         return self.kind, self.data
 
     @property
+    def ahead(self) -> bool:
+        """Whether it holds on what the target is going to be, and not yet on it."""
+        coming = self.evidence is not None and self.evidence.ahead
+        return coming or not {Doubt.UPCOMING, Doubt.FAR}.isdisjoint(self.doubts)
+
+    @property
     def values(self) -> dict[str, Value]:
         """The values that a text can name."""
         return {"subject": self.subject, "package": self.package, **self.data}
 
 
 class Finding(NamedTuple):
-    """A finding as reported, see docs/findings.md. repeated: it is a note only since another one is the warning."""
+    """A finding as reported, see docs/findings.md. repeated: it is a note only since another one is the warning.
+    ahead: it holds on what the targets are going to be, not yet on them."""
 
     rule: str
     severity: str
@@ -103,6 +110,7 @@ class Finding(NamedTuple):
     fix: tuple[FixAction, ...] = ()
     evidence: Evidence | None = None
     repeated: bool = False
+    ahead: bool = False
 
 
 class Rule(NamedTuple):
