@@ -123,11 +123,13 @@ class Package:
 
 
 class FilesOutside:
-    """What files say that belong to no package. lists_repositories: as Discovered has it."""
+    """What files say that belong to no package. lists_repositories: as Discovered has it. unread_submodules: the folders
+    of submodules that were not read, in order."""
 
     def __init__(self, discovered: Discovered, gathered: ExtractedFacts):
         self._gathered = gathered
         self.lists_repositories = discovered.lists_repositories
+        self.unread_submodules = sorted(problem.path for problem in gathered.problems if problem.is_submodule)
         self._scripts = [path for path in gathered.list_paths("shell", "script") if discovered.find_owner(path) is None]
         self._requirements = [p for p in gathered.list_paths("requirements") if discovered.find_owner(p) is None]
         self._containers = [path for path in gathered.list_paths("dockerfile", "ci") if not is_vendored(path)]
@@ -137,7 +139,7 @@ class FilesOutside:
         """Differs whenever one of them does."""
         paths = (*self._scripts, *self._requirements, *self._containers)
         ids = [(path, self._gathered.ids[path]) for path in paths]
-        return repr((ids, self.lists_repositories)).encode("utf-8", "backslashreplace")
+        return repr((ids, self.lists_repositories, self.unread_submodules)).encode("utf-8", "backslashreplace")
 
     @cached_property
     def distro_scripts(self) -> dict[str, DistroFile]:
@@ -209,11 +211,6 @@ class Workspace:
         """Names of folders that were not read: a submodule most likely holds the package that it is called after, in a
         version of its own."""
         return frozenset(path.rpartition("/")[2] for path in self.unread)
-
-    @cached_property
-    def unread_submodules(self) -> list[str]:
-        """The folders of submodules that were not read, in order."""
-        return sorted(problem.path for problem in self.gathered.problems if problem.is_submodule)
 
     @cached_property
     def may_have(self) -> frozenset[str]:

@@ -166,7 +166,7 @@ def _diagnose_unknown(view: TargetView, package: Package, at, name: str) -> Diag
         return Diagnostic(at, name, package.name, kind="build type", fix=(Remove(at.path, name),))
     if _KEY.fullmatch(name):
         return Diagnostic(at, name, package.name, kind="unknown", doubts=(Doubt.AMBIGUOUS,))
-    if view.workspace.unread_submodules:
+    if view.workspace.outside.unread_submodules:
         return _diagnose_unread(view, package, at, name)
     if name.startswith(f"{package.name}_"):
         return Diagnostic(at, name, package.name, kind="called after", doubts=(Doubt.AMBIGUOUS,))
@@ -178,7 +178,7 @@ def _diagnose_unknown(view: TargetView, package: Package, at, name: str) -> Diag
 
 def _diagnose_unread(view: TargetView, package: Package, at, name: str) -> Diagnostic:
     """A name that nobody knows in public, where submodules were not read: those that it is called after, or all."""
-    unread = view.workspace.unread_submodules
+    unread = view.workspace.outside.unread_submodules
     after = [path for path in unread if is_called_after(name, path.rpartition("/")[2])]
     return Diagnostic(at, name, package.name, {"unread": tuple(after or unread)}, "unread", (Doubt.PRIVATE,))
 
