@@ -12,7 +12,7 @@ from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import Assignment, FlowCall, FlowExpr
-from .code import FlowCode, Fn, Variable, get_outer, get_tail, split_name
+from .code import Cls, FlowCode, Fn, Variable, get_outer, get_tail, split_name
 from .frameworks import FrameworkRow, Frameworks, Spot
 from .types import FlowType, parse_flow_type
 
@@ -38,7 +38,7 @@ class Calls:
 
     def __init__(self, code: FlowCode, table: Frameworks):
         self.code, self.table = code, table
-        self._kinds: dict[FlowType, frozenset[str]] = {}
+        self._kinds: dict[tuple[str, Cls | None], frozenset[str]] = {}
         self._uses: dict[int, FrameworkCall | None] = {}
         self._makers: dict[int, tuple[Fn | None, list[Fn]]] = {}
 
@@ -68,18 +68,19 @@ class Calls:
         """Kinds of framework classes that a type belongs to, by itself or by its bases."""
         if not kind.name:
             return frozenset()
-        known = self._kinds.get(kind)
+        cls = self.code.find_class_of(kind, fn)
+        known = self._kinds.get((kind.name, cls))
         if known is None:
             found = {self.table.find_kind(kind.name)}
-            cls = self.code.find_class(kind.name, fn.source, fn.scope)
             if cls is not None:
                 found |= {self.table.find_kind(name) for name in self.code.list_base_names(cls) if name}
-            known = self._kinds[kind] = frozenset(found - {""})
+            known = self._kinds[kind.name, cls] = frozenset(found - {""})
         return known
 
     def find_own_kinds(self, fn: Fn) -> frozenset[str]:
         """Kinds of the class that a function belongs to."""
-        return self.find_kinds(FlowType(fn.facts.owner), fn) if fn.facts.owner else frozenset()
+        owner = self.code.find_owner(fn)
+        return self.find_kinds(FlowType(fn.facts.owner, (), owner), fn) if fn.facts.owner else frozenset()
 
     def find_use(self, fn: Fn, call: FlowCall) -> FrameworkCall | None:
         """The use that a call is, None when no row describes it."""

@@ -17,21 +17,17 @@ from ...facts.flow import (
     FlowCall,
     FlowClass,
     FlowExpr,
-    FlowFile,
     FlowFunction,
     FlowParameter,
 )
+from .modules import CodeFile, PythonModules
 from .types import UNKNOWN, FlowType, parse_flow_type
 
 _Row = TypeVar("_Row", bound=tuple)
 
 
-class CodeFile(NamedTuple):
-    """A file of the code. package: its name, empty for none."""
-
-    path: str
-    package: str
-    facts: FlowFile
+# Endings of C++ files that hold no declarations for others.
+_SOURCES = (".cpp", ".cc", ".cxx", ".c++", ".c", ".cu")
 
 
 class Fn:
@@ -79,17 +75,19 @@ class Fn:
 
 
 class Cls:
-    """A class with the file it stands in. name: as its facts have it; parts: of the name."""
+    """A class with the file it stands in. name: as its facts have it; parts: of the name. is_local: no other file can
+    name it by its name alone. key: tells it from all others; bodies of one class share it."""
 
-    __slots__ = ("facts", "name", "parts", "source")
+    __slots__ = ("facts", "is_local", "key", "name", "parts", "source")
 
-    def __init__(self, source: CodeFile, facts: FlowClass):
-        self.source, self.facts, self.name = source, facts, facts.name
+    def __init__(self, source: CodeFile, facts: FlowClass, is_local: bool):
+        self.source, self.facts, self.name, self.is_local = source, facts, facts.name, is_local
         self.parts = split_name(facts.name)
+        self.key = f"{source.path if is_local else source.package}::{facts.name}"
 
 
 class Variable(NamedTuple):
-    """Which variable a name means. kind: `member` (owner: the class's name), `local` (owner: the function's place) or
+    """Which variable a name means. kind: `member` (owner: the class's key), `local` (owner: the function's place) or
     `global` (owner: path of the file)."""
 
     kind: str
@@ -100,7 +98,8 @@ class Variable(NamedTuple):
 def _collect_names(source: CodeFile) -> tuple[object, ...]:
     """What a file contributes to what names mean: where they are equal, names mean the same."""
     facts = source.facts
-    return source.path, source.package, facts.language, facts.aliases, id(facts) if facts.classes else 0
+    included = tuple(header for header in facts.includes if header.endswith(_SOURCES))
+    return source.path, source.package, facts.language, facts.aliases, included, id(facts) if facts.classes else 0
 
 
 class _About(Generic[_Row]):
@@ -188,12 +187,10 @@ class FlowCode:
         self._qualified: dict[str, list[tuple[str, Alias]]] = {}
         # Names in C++ that stand for others.
         self._renamed: set[str] = set()
-        # Packages of Python by the names of their folders.
-        self._packages: dict[str, list[CodeFile]] = {}
+        # Sources in C++ that others include.
+        included = {header.rpartition("/")[2] for source in self.sources for header in source.facts.includes}
         for place, source in enumerate(self.sources):
             known = self.aliases.setdefault(source.path, {})
-            if source.path.endswith("/__init__.py"):
-                self._packages.setdefault(source.path.split("/")[-2], []).append(source)
             for alias in source.facts.aliases:
                 known.setdefault(alias.name, []).append(alias)
                 if source.facts.language == "cpp" and alias.name != "*":
@@ -201,8 +198,10 @@ class FlowCode:
                     self._renamed.add(alias.name)
                     if alias.scope:
                         self._qualified.setdefault(alias.name, []).append((source.package, alias))
+            is_source = source.path.endswith(_SOURCES) and source.path.rpartition("/")[2] not in included
+            is_local = is_source or source.facts.language == "python"
             for cls in source.facts.classes if before is None else ():
-                self.classes.setdefault(get_tail(cls.name), []).append(Cls(source, cls))
+                self.classes.setdefault(get_tail(cls.name), []).append(Cls(source, cls, is_local))
             if before is not None and before.sources[place].facts is source.facts:
                 functions = before.functions_in[source.path]
                 for fn in functions:
@@ -230,7 +229,8 @@ class FlowCode:
         return known
 
     def _find_meant(self, name: str, source: CodeFile, scope: str) -> str:
-        for _ in range(5):
+        # What Python imports is named as in the module that has it.
+        for _ in range(5 if source.facts.language == "cpp" else 1):
             head, separator, rest = _split_first(name)
             alias = self._find_alias(head, source, scope)
             if alias is None and rest:
@@ -250,12 +250,14 @@ class FlowCode:
         key = (text, source.path, scope)
         known = self._meant_types.get(key)
         if known is None:
-            known = self._meant_types[key] = self._find_meant_type(text, source, scope)
+            kind = self._find_meant_type(text, source, scope)
+            name = kind.name if source.facts.language == "cpp" else parse_flow_type(text).name
+            known = self._meant_types[key] = kind._replace(cls=self.find_class(name, source, scope))
         return known
 
     def _find_meant_type(self, text: str, source: CodeFile, scope: str) -> FlowType:
         kind = parse_flow_type(text)
-        for _ in range(5):
+        for _ in range(5 if source.facts.language == "cpp" else 1):
             head, _, rest = _split_first(kind.name)
             alias = self._find_alias(head, source, scope)
             if alias is None and rest:
@@ -313,29 +315,41 @@ class FlowCode:
             return found
 
     def _find_class(self, name: str, source: CodeFile, scope: str) -> Cls | None:
-        name = self.resolve_name(parse_flow_type(name).name if "<" in name else name, source, scope)
-        if not name:
-            return None
-        wanted = _resolve_module(name, source.path)
-        found = [cls for cls in self.classes.get(wanted[-1], ()) if cls.parts[-len(wanted) :] == wanted]
-        if not found and source.facts.language == "python" and len(wanted) > 1:
-            # Imported: the module is in the path, not in the class's name.
-            found = [
-                cls
-                for path in self.list_exporting_paths(wanted)
-                for cls in self.classes.get(path[-1], ())
-                if _may_be_module(cls.source.path, path[:-1]) and cls.name == path[-1]
-            ]
+        if source.facts.language == "python":
+            place = self.modules.find("class", name, source, scope)
+            named = self.classes[get_tail(place[1])] if place is not None else ()
+            found = [cls for cls in named if (cls.source.path, cls.name) == place]
+        else:
+            wanted = split_name(self.resolve_name(parse_flow_type(name).name if "<" in name else name, source, scope))
+            named = self.classes.get(wanted[-1], ()) if wanted else ()
+            found = [cls for cls in named if cls.parts[-len(wanted) :] == wanted and cls.source.facts.language == "cpp"]
         if len(found) > 1:
             groups = group_pairs((_rate_nearness(cls, source, scope), cls) for cls in found)
             found = groups[max(groups)]
-        names = {(cls.name, cls.source.package) for cls in found}
         # Of several bodies under one name (behind `#if`, say) the largest.
-        return max(found, key=lambda cls: cls.facts.end - cls.facts.line) if len(names) == 1 else None
+        keys = {cls.key for cls in found}
+        return max(found, key=lambda cls: cls.facts.end - cls.facts.line) if len(keys) == 1 else None
+
+    @cached_property
+    def modules(self) -> PythonModules:
+        """Its modules of Python."""
+        return PythonModules(self.sources, self.aliases, self._find_alias)
 
     def find_class_of_type(self, type_: str, source: CodeFile, scope: str) -> Cls | None:
         """The class that a type means, as class_of() says; of a pointer or container that of what it holds."""
-        return self.find_class(self.resolve_written(type_, source, scope).name, source, scope)
+        return self.resolve_written(type_, source, scope).cls
+
+    def find_class_of(self, kind: FlowType, fn: Fn) -> Cls | None:
+        """The class that a type is in a function."""
+        return kind.cls or self.find_class(kind.name, fn.source, fn.scope)
+
+    def list_class_bodies(self, key: str) -> list[Cls]:
+        """The bodies of the class of a key."""
+        return self._bodies.get(key, [])
+
+    @cached_property
+    def _bodies(self) -> dict[str, list[Cls]]:
+        return group_pairs((cls.key, cls) for group in self.classes.values() for cls in group)
 
     @cache_method
     def list_bases(self, cls: Cls) -> list[Cls]:
@@ -353,9 +367,9 @@ class FlowCode:
 
     @cached_property
     def derived(self) -> dict[str, list[Cls]]:
-        """Name of a class to the classes of the code that derive from it, at any distance."""
+        """Key of a class to the classes of the code that derive from it, at any distance."""
         return group_pairs(
-            (base.name, cls) for group in self.classes.values() for cls in group for base in self.list_bases(cls)[1:]
+            (base.key, cls) for group in self.classes.values() for cls in group for base in self.list_bases(cls)[1:]
         )
 
     def find_base_made(self, fn: Fn, each: Assignment) -> tuple[str, tuple[FlowExpr, ...]] | None:
@@ -411,7 +425,7 @@ class FlowCode:
     @cache_method
     def list_overrides(self, cls: Cls, name: str) -> list[Fn]:
         """Bodies of a method in classes that derive from a class."""
-        return [fn for one in self.derived.get(cls.name, ()) for fn in self._list_bodies(one, name)]
+        return [fn for one in self.derived.get(cls.key, ()) for fn in self._list_bodies(one, name)]
 
     def find_enclosing(self, fn: Fn) -> Fn | None:
         """The function that a lambda, or a function of Python, stands in."""
@@ -440,7 +454,7 @@ class FlowCode:
         head = parts[0]
         if head == "this":
             if len(parts) == 1:
-                return Variable("this", fn.facts.owner, "this"), ()
+                return Variable("this", owner.key if (owner := self.find_owner(fn)) else fn.facts.owner, "this"), ()
             known = fn.heads.get(parts[:2])
             if known is None:
                 known = fn.heads[parts[:2]] = self.make_member(fn, parts[1])
@@ -461,9 +475,11 @@ class FlowCode:
             if owner is not None:
                 for cls in self.list_bases(owner):
                     if head in self.list_members(cls):
-                        return Variable("member", cls.name, head)
+                        return Variable("member", cls.key, head)
             elif head.endswith("_"):
                 return Variable("member", fn.facts.owner, head)
+        if fn.source.facts.language == "python" and (place := self.modules.find("constant", head, fn.source, fn.scope)):
+            return Variable("global", *place)
         return Variable("global", fn.source.path, head)
 
     @cache_method
@@ -476,7 +492,7 @@ class FlowCode:
         owner = self.find_owner(fn)
         if owner is None:
             return Variable("member", fn.facts.owner, name)
-        return Variable("member", self._find_declaring_class(owner, name).name, name)
+        return Variable("member", self._find_declaring_class(owner, name).key, name)
 
     def _find_declaring_class(self, cls: Cls, name: str) -> Cls:
         """The class that declares a member which a class has, as far as the code tells."""
@@ -493,18 +509,16 @@ class FlowCode:
         if depth == 0 and path in fn.identities:
             return fn.identities[path]
         found, rest = self.resolve_variable(path, fn)
+        if rest and found.kind == "global" and fn.source.facts.language == "python":
+            place = self.modules.find("constant", f"{found.name}.{rest[0]}", fn.source, fn.scope)
+            found, rest = (Variable("global", *place), rest[1:]) if place is not None else (found, rest)
         for part in rest:
-            kind = self.resolve_variable_type(found, fn, depth)
-            cls = self.find_class(kind.name, fn.source, fn.scope)
-            owner = self._find_declaring_class(cls, part).name if cls else f"{found.owner}.{found.name}"
+            cls = self.find_class_of(self.resolve_variable_type(found, fn, depth), fn)
+            owner = self._find_declaring_class(cls, part).key if cls else f"{found.owner}.{found.name}"
             found = Variable("member", owner, part)
         if depth == 0:
             fn.identities[path] = found
         return found
-
-    def list_class_functions(self, name: str) -> list[Fn]:
-        """All functions whose owner is a class of this name, lambdas in them included."""
-        return self._by_owner.get(get_tail(name), [])
 
     @cache_method
     def list_functions(self, cls: Cls) -> list[Fn]:
@@ -515,7 +529,10 @@ class FlowCode:
         own, wanted = fn.owner, cls.parts
         if own[-len(wanted) :] != wanted and wanted[-len(own) :] != own:
             return False
-        return fn.source.path == cls.source.path or fn.source.package == cls.source.package
+        if fn.source.path != cls.source.path and (cls.is_local or fn.source.package != cls.source.package):
+            return False
+        owner = self.find_owner(fn)
+        return owner is None or owner.key == cls.key
 
     @cached_property
     def _by_owner(self) -> dict[str, list[Fn]]:
@@ -569,9 +586,10 @@ class FlowCode:
                         if each.type and parse_flow_type(each.type).name:
                             return each.type, one.source, one.name
         else:
-            for constant in fn.source.facts.constants:
+            source = self._by_path.get(variable.owner, fn.source)
+            for constant in source.facts.constants:
                 if constant.name == variable.name and constant.type:
-                    return constant.type, fn.source, ""
+                    return constant.type, source, ""
         return "", fn.source, fn.scope
 
     def list_declared_values(self, variable: Variable, fn: Fn) -> Iterator[tuple[FlowExpr, Fn]]:
@@ -579,13 +597,12 @@ class FlowCode:
         if variable.kind == "member":
             rows = [
                 (member, cls.source)
-                for cls in self.classes.get(get_tail(variable.owner), ())
-                if cls.name == variable.owner
+                for cls in self.list_class_bodies(variable.owner)
                 for member in cls.facts.members
                 if member.name == variable.name
             ]
         elif variable.kind == "global":
-            rows = self.list_constants(variable.name, fn.source)
+            rows = self.list_constants(variable, fn)
         else:
             return
         for member, source in rows:
@@ -593,13 +610,19 @@ class FlowCode:
             if member.value is not None:
                 yield member.value, holder
 
-    def list_constants(self, name: str, source: CodeFile) -> list[tuple[DataMember, CodeFile]]:
-        """The constants of a name, by its last part, that a file has; else those of the first file of its package that
-        has any."""
-        by_path = self._constants.get(get_tail(name), {})
+    def list_constants(self, variable: Variable, fn: Fn) -> list[tuple[DataMember, CodeFile]]:
+        """The constants that a global variable is. In C++ those of its name, by its last part, that the file of a
+        function has, else those of the first file of its package that has any."""
+        by_path, source = self._constants.get(get_tail(variable.name), {}), fn.source
+        if source.facts.language == "python":
+            return by_path.get(variable.owner, [])
         beside = (path for path, rows in by_path.items() if rows[0][1].package == source.package)
         path = source.path if source.path in by_path else next(beside, "")
         return by_path.get(path, [])
+
+    @cached_property
+    def _by_path(self) -> dict[str, CodeFile]:
+        return {source.path: source for source in self.sources}
 
     @cached_property
     def _constants(self) -> dict[str, dict[str, list[tuple[DataMember, CodeFile]]]]:
@@ -617,17 +640,17 @@ class FlowCode:
 
     @cache_method
     def _find_member_type(self, owner: str, name: str) -> tuple[str, CodeFile, str] | None:
-        for cls in self.classes.get(get_tail(owner), ()):
-            if cls.name == owner:
-                for member in cls.facts.members:
-                    if member.name == name and member.type:
-                        return member.type, cls.source, cls.name
+        for cls in self.list_class_bodies(owner):
+            for member in cls.facts.members:
+                if member.name == name and member.type:
+                    return member.type, cls.source, cls.name
         return None
 
     def resolve_variable_type(self, variable: Variable, fn: Fn, depth: int = 0) -> FlowType:
         """The type of a variable, also where `auto` or Python leave it to what it is made from."""
         if variable.kind == "this":
-            return FlowType(variable.owner)
+            owner = self.find_owner(fn)
+            return FlowType(owner.name if owner is not None else variable.owner, (), owner)
         text, source, scope = self.find_declared_type(variable, fn)
         kind = self.resolve_written(text, source, scope) if text else UNKNOWN
         if kind.name or depth > 4:
@@ -670,7 +693,7 @@ class FlowCode:
                 return self.resolve_written(target.facts.returns, target.source, target.scope)
         meant = self.resolve_name(name, fn.source, fn.scope)
         if get_tail(meant)[:1].isupper():
-            return FlowType(meant)
+            return FlowType(meant, (), self.find_class(name, fn.source, fn.scope))
         return UNKNOWN
 
     def list_kept(self, variable: Variable) -> Iterator[tuple[Fn, FlowCall | FlowExpr]]:
@@ -735,8 +758,8 @@ class FlowCode:
                 found = self.find_method(owner, last)
                 if found:
                     return [*found, *self.list_overrides(owner, last)]
-        elif last in self.aliases[fn.source.path]:
-            return self.list_imported(self.resolve_name(last, fn.source), fn.source)
+        else:
+            return self.list_defined(last, fn.source, fn.scope)
         return self._select_nearest([f for f in candidates or () if not f.facts.owner and f.name], fn)
 
     def _list_called_methods(self, receiver: str, name: str, fn: Fn, depth: int) -> list[Fn]:
@@ -746,11 +769,11 @@ class FlowCode:
                 return [f for f in self.by_tail.get(name, ()) if f.facts.owner == fn.facts.owner]
             found = self.find_method(owner, name)
             if receiver != "this":
-                return [f for f in found if f.facts.owner != fn.facts.owner]
+                return [f for f in found if self.find_owner(f) is not owner]
             return [*found, *self.list_overrides(owner, name)]
         if fn.source.facts.language == "python":
-            meant = self.resolve_name(f"{receiver}.{name}", fn.source)
-            found = self.list_imported(meant, fn.source) if meant != f"{receiver}.{name}" else []
+            variable, _ = self.resolve_variable(receiver, fn)
+            found = self.list_defined(f"{receiver}.{name}", fn.source) if variable.kind == "global" else []
             if found:
                 return found
         cls = self._find_receiver_class(receiver, fn) if depth == 0 else self._resolve_receiver(receiver, fn, depth)
@@ -766,30 +789,13 @@ class FlowCode:
             kind = self.resolve_call_type(receiver, fn, depth + 1)
         else:
             kind = self.resolve_name_type(receiver, fn, depth)
-        return self.find_class(kind.name, fn.source, fn.scope)
+        return self.find_class_of(kind, fn)
 
-    def list_imported(self, name: str, source: CodeFile) -> list[Fn]:
-        """The functions of Python that a name with its module means in a file; of several packages' the own one's."""
-        found = [
-            f
-            for *module, last in self.list_exporting_paths(_resolve_module(name, source.path))
-            for f in self.by_tail.get(last, ())
-            if not f.facts.owner and _may_be_module(f.source.path, module)
-        ]
-        own = [f for f in found if f.source.package == source.package]
-        return own or found
-
-    def list_exporting_paths(self, path: tuple[str, ...], depth: int = 0) -> Iterator[tuple[str, ...]]:
-        """A module of Python and a name in it, and the modules from which its package has the name."""
-        yield path
-        module, name = path[:-1], path[-1]
-        for source in self._packages.get(module[-1], ()) if module and depth < 4 else ():
-            if not _may_be_module(source.path, module):
-                continue
-            for alias in self.aliases[source.path].get(name, ()):
-                yield from self.list_exporting_paths(_resolve_module(alias.target, source.path), depth + 1)
-            for alias in self.aliases[source.path].get("*", ()):
-                yield from self.list_exporting_paths((*_resolve_module(alias.target, source.path), name), depth + 1)
+    def list_defined(self, name: str, source: CodeFile, scope: str = "") -> list[Fn]:
+        """The functions of Python, outside of classes, that a name means in a file and scope."""
+        place = self.modules.find("function", name, source, scope)
+        candidates = self.by_tail.get(get_tail(place[1]), ()) if place is not None else ()
+        return [f for f in candidates if (f.source.path, f.name) == place and not f.facts.owner]
 
     def _select_nearest(self, found: list[Fn], fn: Fn) -> list[Fn]:
         for near in (
@@ -835,7 +841,7 @@ class FlowCode:
 
     @cached_property
     def constructions(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
-        """Where objects of a class of the code are made: name of the class to function, arguments and line."""
+        """Where objects of a class of the code are made: key of the class to function, arguments and line."""
         found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
         for fn in self.functions:
             for name, arguments, line in list_made(fn, self):
@@ -843,7 +849,7 @@ class FlowCode:
                 if last in self.classes or last in self._renamed:
                     cls = self.find_class(name, fn.source, fn.scope)
                     if cls is not None:
-                        found.setdefault(cls.name, []).append((fn, arguments, line))
+                        found.setdefault(cls.key, []).append((fn, arguments, line))
         return found
 
 
@@ -905,22 +911,8 @@ def _is_within(scope: str, outer: str) -> bool:
     return scope == outer or scope.startswith((outer + "::", outer + "."))
 
 
-def _may_be_module(path: str, module: Sequence[str]) -> bool:
-    """Whether a path may be that of a Python module."""
-    parts = path.removesuffix(".py").split("/")
-    if parts and parts[-1] == "__init__":
-        parts = parts[:-1]
-    names = [name for name in module if name]
-    return bool(names) and parts[-len(names) :] == names
-
-
-def _resolve_module(target: str, path: str) -> tuple[str, ...]:
-    """The module that a file imports: of a relative one (`.node`) the folders too."""
-    up = len(target) - len(target.lstrip("."))
-    return (*path.split("/")[:-up], *split_name(target)) if up else split_name(target)
-
-
 def _rate_nearness(cls: Cls, source: CodeFile, scope: str) -> int:
     """How near a class is to whoever names it."""
-    near = 4 * (cls.source.path == source.path) + 2 * (cls.source.package == source.package)
+    same = cls.source.path == source.path
+    near = 8 * (same or not cls.is_local) + 4 * same + 2 * (cls.source.package == source.package)
     return near + (_is_within(scope, get_outer(cls.name)) if get_outer(cls.name) else 0)

@@ -610,7 +610,7 @@ class Sites:
                     found += self.list_bodies(positional[place[0]], caller, use, depth + 1)
             owner = self.code.find_owner(one)
             if owner is not None:
-                for caller, arguments, _ in self.code.constructions.get(owner.name, ()):
+                for caller, arguments, _ in self.code.constructions.get(owner.key, ()):
                     if place[0] < len(arguments):
                         found += self.list_bodies(arguments[place[0]], caller, use, depth + 1)
             return list(dict.fromkeys(found))
@@ -724,8 +724,8 @@ class Sites:
         owner = self.code.find_owner(fn)
         makers = [(caller, call.arguments, 0) for caller, call in self.code.callers.get(fn, ())]
         if owner is not None and get_tail(fn.name) == get_tail(owner.name):
-            makers += self.code.constructions.get(owner.name, ())
-            makers += self.values.bases_made.get(owner.name, ())
+            makers += self.code.constructions.get(owner.key, ())
+            makers += self.values.bases_made.get(owner.key, ())
         for caller, arguments, _ in makers:
             if place < len(arguments):
                 yield self.resolve_handle(arguments[place], caller, depth + 1)

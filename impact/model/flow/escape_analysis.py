@@ -90,11 +90,8 @@ class EscapeAnalysis:
         functions = sorted(one.functions, key=self._order.__getitem__)
         if not one.program.roots or not functions:
             return UnknownReasons("its code is not in the workspace", "its code is not in the workspace")
-        classes = self.join.code.classes
         paths = {fn.source.path for fn in functions}
-        paths.update(
-            cls.source.path for name in one.classes for cls in classes.get(get_tail(name), ()) if cls.name == name
-        )
+        paths.update(cls.source.path for key in one.classes for cls in self.join.code.list_class_bodies(key))
         steps = (self._list_outside(paths), self._list_bases(one), self._list_given(functions), self._list_dead(one))
         both = next(chain(*steps), "")
         names = both or next(self._list_unnamed(functions), "")
@@ -129,10 +126,10 @@ class EscapeAnalysis:
 
     def _list_bases(self, one: Running) -> Iterator[str]:
         code, table = self.join.code, self.join.calls.table
-        for name in sorted(one.classes):
-            for cls in code.classes.get(get_tail(name), ()):
+        for key in sorted(one.classes):
+            for cls in code.list_class_bodies(key):
                 followed = {get_tail(base.name) for base in code.list_bases(cls)}
-                for base in code.list_base_names(cls) if cls.name == name else ():
+                for base in code.list_base_names(cls):
                     known = get_tail(base) in _BASES or get_tail(base) in followed or table.find_kind(base)
                     if base and not known and split_name(base)[0] not in _OWN:
                         yield f"`{base}` is not followed"

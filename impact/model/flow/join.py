@@ -53,7 +53,7 @@ _TRIGGERS = {
 
 class Running(NamedTuple):
     """A program with the node it is, and what of the code it reaches. instance: how a launch starts it; values: what
-    expressions are worth there. loaded: how the node loads this program, which is a nodelet then."""
+    expressions are worth there; classes: by key. loaded: how the node loads this program, which is a nodelet then."""
 
     program: StartableProgram
     node: Node
@@ -198,7 +198,7 @@ class Join:
 
     def _find_kinds(self, cls) -> frozenset[str]:
         return self.calls.find_kinds(
-            FlowType(cls.name), next(iter(self.code.list_class_functions(cls.name)), _make_nobody(cls.source))
+            FlowType(cls.name, (), cls), next(iter(self.code.list_functions(cls)), _make_nobody(cls.source))
         )
 
     def _make_node(self, program: StartableProgram, named: list[FrameworkCall]) -> Node:

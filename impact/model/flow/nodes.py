@@ -53,19 +53,19 @@ class CodeReach:
 
     def __init__(self, sites: Sites):
         self.sites, self.code = sites, sites.code
-        # Owners, as functions name them, of classes that are loaded by name, to the name of the class.
-        self._loaded: dict[str, str] = {}
+        # Functions of classes that are loaded by name, to the key of the class.
+        self._loaded: dict[Fn, str] = {}
         for source in self.code.sources:
             for name in source.facts.exports:
                 cls = self.code.find_class(name.removeprefix("::"), source)
                 if cls is not None:
-                    self._loaded.update((fn.facts.owner, cls.name) for fn in self.code.list_functions(cls))
+                    self._loaded.update((fn, cls.key) for fn in self.code.list_functions(cls))
         self._lambdas = group_pairs(((fn.source.path, fn.scope), fn) for fn in self.code.functions if fn.is_lambda)
 
     def find_reached(self, roots: Iterable[Fn], classes: Iterable[Cls] = ()) -> tuple[set[Fn], set[str]]:
-        """Functions and classes (by name) reached from some functions, and from objects of some classes."""
+        """Functions and classes (by key) reached from some functions, and from objects of some classes."""
         functions: set[Fn] = set()
-        names: set[str] = set()
+        keys: set[str] = set()
         queue: list[Fn] = list(roots)
         begun = set(queue)
         made: list[Cls] = list(classes)
@@ -73,9 +73,9 @@ class CodeReach:
             while made:
                 cls = made.pop()
                 for one in self.code.list_bases(cls):
-                    if one.name in names:
+                    if one.key in keys:
                         continue
-                    names.add(one.name)
+                    keys.add(one.key)
                     queue.extend(self.code.list_functions(one))
                     made.extend(self.list_held(one))
             if not queue:
@@ -83,15 +83,15 @@ class CodeReach:
             fn = queue.pop()
             if fn in functions:
                 continue
-            loaded = self._loaded.get(fn.facts.owner)
-            if loaded is not None and loaded not in names and fn not in begun:
+            loaded = self._loaded.get(fn)
+            if loaded is not None and loaded not in keys and fn not in begun:
                 continue  # one of many that may be loaded at run time: a node of its own
             functions.add(fn)
             further, objects = self.find_edges(fn)
             queue += [one for one in further if one not in functions]
             if objects:
-                made += [cls for cls in objects if cls.name not in names]
-        return functions, names
+                made += [cls for cls in objects if cls.key not in keys]
+        return functions, keys
 
     @cache_method
     def list_held(self, cls: Cls) -> list[Cls]:
@@ -169,8 +169,7 @@ def list_programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> It
             roots = [fn for fn in fns if fn.name in ("", function or "main")]
             if function and fns and function not in {fn.name for fn in fns}:
                 # The package has the function from one of its modules.
-                meant = code.resolve_name(function, fns[0].source)
-                roots += code.list_imported(meant if meant != function else f".{function}", fns[0].source)
+                roots += code.list_defined(function, fns[0].source)
             if roots:
                 yield StartableProgram(
                     package.package, "script", name, "", tuple(roots), frozenset((path,)), path, roots[0].facts.line

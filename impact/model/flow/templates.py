@@ -18,8 +18,8 @@ _DEEPEST = 4
 
 
 class TemplateArgument(NamedTuple):
-    """A type that is given for a parameter. text: as written; source, scope: where. cls: the class that gives it by
-    deriving, or that holds such an object, empty for none; fn: the function that does."""
+    """A type that is given for a parameter. text: as written; source, scope: where. cls: key of the class that gives it
+    by deriving, or that holds such an object, empty for none; fn: the function that does."""
 
     text: str
     source: CodeFile
@@ -81,7 +81,7 @@ class Templates:
                 yield given._replace(text=arguments[number]), around
 
     def _find_class(self, given: TemplateArgument) -> Cls | None:
-        return self.code.find_class(given.cls, given.source) if given.cls else None
+        return next(iter(self.code.list_class_bodies(given.cls)), None)
 
     @cached_property
     def _instances(self) -> dict[str, list[tuple[tuple[str, ...], TemplateArgument, Fn | None]]]:
@@ -92,11 +92,12 @@ class Templates:
         if not templates:
             return found
 
-        def note(text: str, source: CodeFile, scope: str, cls: str = "", fn: Fn | None = None) -> None:
+        def note(text: str, source: CodeFile, scope: str, owner: str = "", fn: Fn | None = None) -> None:
             if "<" in text:
                 kind = parse_flow_type(text)
                 if kind.arguments and get_tail(kind.name) in templates:
-                    given = TemplateArgument(kind.name, source, scope, cls, fn)
+                    cls = self.code.find_class(owner, source, fn.scope if fn is not None else "") if owner else None
+                    given = TemplateArgument(kind.name, source, scope, cls.key if cls is not None else "", fn)
                     found.setdefault(get_tail(kind.name), []).append((kind.arguments, given, fn))
 
         for source in self.code.sources:

