@@ -7,11 +7,12 @@ from functools import cached_property
 from itertools import islice, product
 from typing import NamedTuple
 
-from ...facts.flow import FlowCall, FlowExpr
+from ...facts.flow import FlowCall, FlowExpr, FlowParameter
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Variable, find_parameter, get_tail, split_name
 from .graph import How
+from .origins import ObjectOrigins, Origins
 
 NODE, NAMESPACE = "{node}", "{ns}"
 """Stand in a value for the name and the namespace of the node that evaluates it (ROS 2 writes them so in names)."""
@@ -85,7 +86,7 @@ class FlowValues:
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
-        for name in ("filled", "declared", "bases_made", "command_line"):
+        for name in ("filled", "declared", "bases_made", "command_line", "origins"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other.asked = self._budget, self.asked
         return other
@@ -208,14 +209,27 @@ class FlowValues:
         for text, how in self.command_line.list_parsed_texts(path, fn, self.arguments) if "." in path else ():
             yield FlowValue(text, "given" if how == "given" else "default")
             return
-        found = list(self.evaluate_variable(variable, fn, (*seen, variable)))
+        found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn)))
         if found:
             yield from found
         else:
             yield FlowValue(None, "unresolved", f"nothing tells what `{path}` is")
 
-    def evaluate_variable(self, variable: Variable, fn: Fn, seen: tuple = ()) -> Iterator[FlowValue]:
-        """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed."""
+    def _find_origins(self, path: str, fn: Fn) -> Origins | None:
+        """The origins of the objects of which a path names a member, None where they may be any of their class."""
+        root, rest = self.code.resolve_variable(path, fn)
+        return self.origins.find(root) if rest else None
+
+    @cached_property
+    def origins(self) -> ObjectOrigins:
+        """Where the code's objects come from."""
+        return ObjectOrigins(self.code, lambda: self.bases_made)
+
+    def evaluate_variable(
+        self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None
+    ) -> Iterator[FlowValue]:
+        """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed. origins:
+        of the objects that a member may be of, None for any."""
         if variable.kind == "member":
             for cls in self.code.list_class_bodies(variable.owner):
                 for member in cls.facts.members:
@@ -226,10 +240,15 @@ class FlowValues:
         elif variable.kind == "global":
             yield from self._evaluate_constant(variable, fn, seen)
         for writer, each in self.code.list_writes(variable):
+            if origins is not None and not self.origins.may_be_of(each.target, writer, origins):
+                continue
             if self.arguments is not None and self.command_line.excludes(writer, each.guard, len(self.arguments) + 1):
                 continue
             if each.operator == "=":
                 if variable.kind == "member" and each.value.kind == "list" and len(each.value.parts) > 1:
+                    continue
+                if origins is not None and (place := self._find_given(each.value, writer)) is not None:
+                    yield from self._evaluate_given(writer, place, origins, seen)
                     continue
                 yield from self._evaluate(each.value, writer, each.line, seen)
             elif each.operator == "for":
@@ -237,7 +256,9 @@ class FlowValues:
             elif each.operator == "+=":
                 yield FlowValue(None, "unresolved", f"`{variable.name}` is put together in steps")
         for use in self.filled.get(variable, ()):
-            yield from self._evaluate_parameter(use, seen)
+            target = self.calls.find_argument(use, use.row.variable)
+            if origins is None or target is None or self.origins.may_be_of(target.text, use.fn, origins):
+                yield from self._evaluate_parameter(use, seen)
         if not self.code.list_writes(variable) or variable.kind == "local":
             yield from self._evaluate_references(variable, seen)
         if variable.kind == "local":
@@ -312,6 +333,25 @@ class FlowValues:
                     yield from self._evaluate(argument, caller, line, seen)
         if not number:
             yield FlowValue(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
+
+    def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
+        """The parameter of a constructor that a value is, None for all else."""
+        owner = self.code.find_owner(fn)
+        if value.kind != "name" or owner is None or get_tail(fn.name) not in (get_tail(owner.name), "__init__"):
+            return None
+        return find_parameter(fn, value.text)
+
+    def _evaluate_given(
+        self, fn: Fn, parameter: tuple[int, FlowParameter], origins: Origins, seen: tuple
+    ) -> Iterator[FlowValue]:
+        """What a constructor is given where some objects are made."""
+        owner = self.code.find_owner(fn)
+        place, facts = parameter
+        for maker, arguments, line in self.code.constructions.get(owner.key, ()) if owner is not None else ():
+            if (maker.place, arguments) in origins.made and self._runs(maker):
+                argument = _find_argument(arguments, place, facts.name) or facts.default
+                if argument is not None:
+                    yield from self._evaluate(argument, maker, line, seen)
 
     def _runs(self, fn: Fn) -> bool:
         return self.within is None or fn in self.within
