@@ -123,8 +123,8 @@ class Package:
 
 
 class FilesOutside:
-    """What files say that belong to no package. lists_repositories: as Discovered has it. unread_submodules: the folders
-    of submodules that were not read, in order."""
+    """What files say that belong to no package. lists_repositories: as Discovered has it. unread_submodules: the
+    folders of submodules that were not read, in order."""
 
     def __init__(self, discovered: Discovered, gathered: ExtractedFacts):
         self._gathered = gathered

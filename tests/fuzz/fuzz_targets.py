@@ -419,7 +419,7 @@ def deb(data: bytes) -> None:
 
 
 _KINDS = sorted((
-    *kinds.EXTRACTORS, cpp.__name__, python.__name__, *map(declared.kind_of, declared.LIMITS),
+    *kinds.EXTRACTORS, cpp.__name__, python.__name__, *map(declared.make_kind, declared.LIMITS),
 ))  # fmt: skip
 
 
@@ -615,8 +615,8 @@ def _deb_seeds() -> dict[str, bytes]:
 _SEED_FOLDERS = {
     "manifest": "manifest", "manifest_variant": "manifest", "cmake": "cmake", "msg": "interface", "srv": "interface",
     "action": "interface", "idl": "interface", "cpp": "cpp", "flow_cpp": "cpp", cpp.__name__: "cpp",
-    declared.kind_of("cpp"): "cpp", "launch_xml": "launch_xml", "xacro": "launch_xml", "plugin_xml": "launch_xml",
-    "xml": "launch_xml", "launch_yaml": "launch_yaml", "params": "launch_yaml", declared.kind_of("yaml"): "launch_yaml",
+    declared.make_kind("cpp"): "cpp", "launch_xml": "launch_xml", "xacro": "launch_xml", "plugin_xml": "launch_xml",
+    "xml": "launch_xml", "launch_yaml": "launch_yaml", "params": "launch_yaml", declared.make_kind("yaml"): "launch_yaml",
     "shell": "shell", "script": "shell", "flow_script": "shell", "setup_cfg": "cfg", "pyproject": "toml",
 }  # fmt: skip
 

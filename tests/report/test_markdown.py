@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 from rosimpact.impact.analysis.downstream import Effect, Impact
 from rosimpact.impact.analysis.report import AnalysisCoverage, Report, ReportedPackage, ReportedTarget
-from rosimpact.impact.model.flow.graph import AnalysisCoverage as FlowCoverage
+from rosimpact.impact.model.flow.graph import Coverage as FlowCoverage
 from rosimpact.impact.report import github, markdown
 from rosimpact.impact.report.impact import render_markdown as impact_markdown
 from rosimpact.impact.report.markdown_text import escape_markdown, format_cell, quote
