@@ -87,7 +87,8 @@ def test_the_verdict_comes_first_and_the_work_in_build_order(say, ws):
     assert titles == ["1 of 2: zoom", "2 of 2: arm"]
     first = lines[lines.index("1 of 2: zoom") : lines.index("2 of 2: arm")]
     assert any("`cv_bridge/cv_bridge.h` is not available" in line and line.endswith("[fixable]") for line in first)
-    assert [line for line in first if "→" in line] == ["  → zoom/src/far.cpp:2:10", "  → zoom/src/near.cpp:1:10"]
+    assert [line for line in first if "→" in line] == ["  → zoom/src/far.cpp:2:10"]
+    assert "  and 1 more place: zoom/src/near.cpp:1" in first
     assert "  help: include `cv_bridge/cv_bridge.hpp`" in first
     assert "deprecated on kilted" in lines and "StaticSingleThreadedExecutor` is deprecated" in said.out
     assert "OpenCV" not in said.out, "what is broken on both is counted alone"
@@ -103,7 +104,7 @@ def test_what_it_says_can_be_fixed_is_fixed_by_the_command_it_names(say, ws):
     assert say(*shlex.split(command)[1:]).status == 1, "OpenCV 9 is nowhere"
     said = say("upgrade", ws, "--from", "humble", "--to", "kilted")
     assert said.status == 0
-    assert said.out.splitlines()[0] == "humble → kilted is safe: no known break in 4 packages"
+    assert said.out.splitlines()[0] == "humble → kilted: no new break in 4 packages; 1 error already on humble"
     assert "error of humble is" not in said.out and "can be fixed" not in said.out
 
 
@@ -196,6 +197,20 @@ def test_what_cannot_be_done_is_told_in_a_line(say, ws, arguments, words):
     said = say("upgrade", ws, *arguments)
     assert said.status == 2 and said.out == ""
     assert words in said.err and len(said.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("include", "verdict"),
+    [
+        ("<vector>", "humble → jazzy is safe: no known break in 1 package"),
+        ("<nowhere/known.h>", "humble → jazzy: no known break in 1 package; 1 include unresolved"),
+    ],
+)
+def test_safe_is_only_what_was_resolved(say, tmp_path, include, verdict):
+    ws = written(tmp_path / "ws", package("a", run=f"#include {include}\n"))
+    asked = ("upgrade", ws, "--from", "humble", "--to", "jazzy")
+    assert say(*asked).out.splitlines()[0] == verdict
+    assert json.loads(say(*asked, "-f", "json").out)["verdict"]["safe"] == ("is safe" in verdict)
 
 
 def test_a_folder_without_packages_is_no_upgrade(say, tmp_path):

@@ -197,14 +197,51 @@ def format_severities(graded: Iterable[Finding | UpgradeItem], between: str = ",
     return between.join(format_count(number, name) for name, number in count_by_severity(graded).items() if number)
 
 
+def group_alike(findings: Iterable[Finding]) -> list[list[Finding]]:
+    """Findings of one cause together, which say the same of one package at several places; in the order of the first
+    ones."""
+    groups: dict[tuple, list[Finding]] = {}
+    for finding in findings:
+        key = (finding.rule, finding.severity, finding.package, finding.message, finding.help, finding.targets)
+        groups.setdefault((*key, finding.new), []).append(finding)
+    return list(groups.values())
+
+
+def put_different_first(findings: Iterable[Finding]) -> list[Finding]:
+    """Findings with those first that say something not said yet, for a report that shows only a few."""
+    said: set[tuple[str, str]] = set()
+    first, again = [], []
+    for finding in findings:
+        key = (finding.rule, finding.message)
+        (again if key in said else first).append(finding)
+        said.add(key)
+    return first + again
+
+
+def format_causes(findings: Iterable[Finding], between: str = ", ") -> str:
+    """`2 errors in 40 places, 1 note`: each cause once; empty without any."""
+    groups = group_alike(findings)
+    return between.join(
+        format_count(number, severity) + format_places(group for group in groups if group[0].severity == severity)
+        for severity, number in count_by_severity(group[0] for group in groups).items()
+        if number
+    )
+
+
+def format_places(groups: Iterable[list[Finding]]) -> str:
+    """` in 40 places`, where causes have more than one each; empty otherwise."""
+    sizes = [len(group) for group in groups]
+    return f" in {sum(sizes):,} places" if sum(sizes) > len(sizes) else ""
+
+
 def count_by_target(report: Report) -> dict[str, dict[str, dict[str, int]]]:
-    """package → target → severity → count, of what is new. Every package and target is there; findings that name no
+    """package → target → severity → count of causes, of what is new. Every package and target is there; findings that name no
     package stand under the empty name, findings that name no target count for all."""
     names = [target.name for target in report.targets]
     table: dict[str, dict[str, dict[str, int]]] = {
         package.name: {name: {} for name in names} for package in report.packages
     }
-    for finding in list_new(report):
+    for finding, *_ in group_alike(list_new(report)):
         row = table.setdefault(finding.package, {name: {} for name in names})
         for name in finding.targets or names:
             cell = row.setdefault(name, {})
@@ -212,11 +249,23 @@ def count_by_target(report: Report) -> dict[str, dict[str, dict[str, int]]]:
     return table
 
 
+def format_gaps(coverage: AnalysisCoverage) -> str:
+    """What keeps a workspace without findings from being safe: `1 include unresolved`, `1 file not read`; empty when
+    everything was read and resolved."""
+    unread = coverage.files - coverage.parsed
+    gaps = [f"{_format_unresolved(coverage)} unresolved"] if any(coverage.unresolved.values()) else []
+    return ", ".join([*gaps, f"{format_count(unread, 'file')} not read"] if unread else gaps)
+
+
+def _format_unresolved(coverage: AnalysisCoverage) -> str:
+    return ", ".join(format_count(number, kind) for kind, number in sorted(coverage.unresolved.items()) if number)
+
+
 def format_coverage(coverage: AnalysisCoverage) -> str:
     """Coverage as one clause: packages, files parsed of files, what stayed unresolved."""
-    unresolved = [format_count(number, kind) for kind, number in sorted(coverage.unresolved.items()) if number]
+    unresolved = _format_unresolved(coverage)
     files = format_count(coverage.files, "file")
     read = f"all of {files} read" if coverage.parsed == coverage.files else f"{coverage.parsed:,} of {files} read"
     return ", ".join([format_count(coverage.packages, "package"), read]) + (
-        f", unresolved: {', '.join(unresolved)}" if unresolved else ""
+        f", unresolved: {unresolved}" if unresolved else ""
     )

@@ -23,6 +23,31 @@ function whereOf(finding) {
   return [place, block];
 }
 
+// Findings of one cause together, which say the same of one package at several places.
+function alikeOf(findings) {
+  const groups = new Map();
+  for (const finding of findings) {
+    const key = [RULE, SEVERITY, PACKAGE, MESSAGE, HELP, TARGETS, NEW].map((index) => finding[index]).join("\n");
+    if (groups.has(key)) groups.get(key).push(finding);
+    else groups.set(key, [finding]);
+  }
+  return [...groups.values()];
+}
+
+// The places behind the first of a cause, folded; they are made when they are asked for.
+function morePlacesOf(others) {
+  if (!others.length) return [];
+  const more = make("details", { class: "places" }, make("summary", null, `and ${counted(others.length, "more place")}`));
+  more.addEventListener("toggle", () => { if (more.children.length === 1) more.append(...others.flatMap(whereOf)); });
+  return [more];
+}
+
+// `1 finding in 40 places`.
+const countedCauses = (groups, noun) => {
+  const places = groups.reduce((sum, group) => sum + group.length, 0);
+  return counted(groups.length, noun) + (places > groups.length ? ` in ${number(places)} places` : "");
+};
+
 // What the finding rests on, folded.
 function evidenceOf(finding) {
   if (!finding[EVIDENCE].length) return [];

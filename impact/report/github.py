@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 from ...edges.console import escape, escape_lines, format_count
 from ...edges.files import append_file
-from ..analysis.report import Report, count_by_severity, format_coverage, list_new, locate_in_excerpt
+from ..analysis.report import Report, count_by_severity, format_coverage, list_new, locate_in_excerpt, put_different_first
 from ..rules.rule import Finding
 from . import evidence, markdown, markdown_text
 
@@ -28,7 +28,7 @@ def render(report: Report, prefix: str = "") -> str:
     used = dict.fromkeys(_COMMAND, 0)
     rank = tuple(_COMMAND)
     findings = sorted(list_new(report), key=lambda finding: rank.index(finding.severity))
-    for finding in _put_different_first(findings):
+    for finding in put_different_first(findings):
         if used[finding.severity] < SHOWN:
             used[finding.severity] += 1
             commands.append(_format_command(report, finding, folder))
@@ -66,17 +66,6 @@ def write_step_summary(report: Report, environment: Mapping[str, str]) -> None:
     path = environment.get("GITHUB_STEP_SUMMARY")
     if path:
         append_file(path, render_step_summary(report).encode("utf-8", "replace"))
-
-
-def _put_different_first(findings: list[Finding]) -> list[Finding]:
-    """Findings with those first that say something not said yet, since only ten of a level are shown."""
-    said: set[tuple[str, str]] = set()
-    first, again = [], []
-    for finding in findings:
-        key = (finding.rule, finding.message)
-        (again if key in said else first).append(finding)
-        said.add(key)
-    return first + again
 
 
 def _format_command(report: Report, finding: Finding, folder: str) -> str:

@@ -4,11 +4,21 @@ import re
 from collections.abc import Callable
 
 from ...edges.console import format_count
-from ..analysis.report import Report, count_by_severity, format_coverage, format_severities, list_new
+from ..analysis.report import (
+    Report,
+    count_by_severity,
+    format_causes,
+    format_coverage,
+    format_gaps,
+    group_alike,
+    list_new,
+    put_different_first,
+)
 from ..rules.rule import Finding
 from .markdown_text import _LONGEST, escape_markdown, quote
 
 _LINES = 10
+_PLACES = 3
 _SYMBOL = {"error": "❌", "warning": "⚠️", "note": "💡"}
 
 
@@ -18,26 +28,25 @@ def render(report: Report) -> str:
     head = [f"**rosimpact** {format_verdict(report)}", ""]
     tail = ["", f"<sub>{_render_tail(report, findings)}</sub>"]
     order = {"error": 0, "warning": 1}
-    told = sorted((each for each in findings if each.severity in order), key=lambda each: order[each.severity])
+    told = [finding for finding in put_different_first(findings) if finding.severity in order]
+    told.sort(key=lambda finding: order[finding.severity])
     if report.impact is not None and report.impact.effects:
         from .impact import summarize
 
         tail.insert(0, f"\nMessage flow: {escape_markdown(summarize(report.impact))}")
     room = _LINES - len(head) - len("\n".join(tail).split("\n"))
-    alike: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
-    for finding in told:
-        alike.setdefault((finding.rule, finding.severity, finding.message, finding.targets), []).append(finding)
-    groups = list(alike.values())
+    groups = group_alike(told)
     left = groups[room - 1 :] if len(groups) > room else []
     rows = [_render_row(report, group) for group in groups[: len(groups) - len(left)]]
     if left:
-        rows.append(f"- and {format_severities(finding for group in left for finding in group)} more")
+        rows.append(f"- and {format_causes(finding for group in left for finding in group)} more")
     return "\n".join([*head, *rows, *tail] if rows else [head[0], *tail]) + "\n"
 
 
 def format_verdict(report: Report, written: Callable[[str], str] | None = None, strong: str = "**") -> str:
     """`breaks on robot: 2; may break on rolling: 1; safe on: humble, jazzy`.
 
+    Where something was not read or not resolved, nothing is safe: `no known break on: humble; 1 include unresolved`.
     written: how names and the failure are written, as in Markdown by default. strong: what stands around what breaks.
     """
     written = written or escape_markdown
@@ -45,8 +54,9 @@ def format_verdict(report: Report, written: Callable[[str], str] | None = None, 
         return f"failed: {written(report.failure)}"
     if not report.coverage.parsed:
         return "analysed nothing"
+    causes = [finding for finding, *_ in group_alike(list_new(report))]
     by_target = {
-        target.name: count_by_severity(f for f in list_new(report) if not f.targets or target.name in f.targets)
+        target.name: count_by_severity(f for f in causes if not f.targets or target.name in f.targets)
         for target in report.targets
     }
     bad = [f"{strong}{written(name)}{strong}: {cell['error']}" for name, cell in by_target.items() if cell["error"]]
@@ -58,19 +68,24 @@ def format_verdict(report: Report, written: Callable[[str], str] | None = None, 
     good = [written(name) for name, cell in by_target.items() if not cell["error"] and not cell["warning"]]
     parts = [f"breaks on {', '.join(bad)}"] if bad else []
     parts += [f"may break on {', '.join(doubtful)}"] if doubtful else []
-    parts += [f"safe on: {', '.join(good)}"] if good else []
+    gaps = format_gaps(report.coverage)
+    if good:
+        parts += [f"no known break on: {', '.join(good)}", gaps] if gaps else [f"safe on: {', '.join(good)}"]
     return "; ".join(parts) or "found no target to check"
 
 
 def _render_row(report: Report, alike: list[Finding]) -> str:
-    """One line for findings that say the same, with the first place of them."""
+    """One line for findings that say the same, with the first few places of them."""
     finding = alike[0]
-    place = finding.path + (f":{finding.line}" if finding.line else "")
-    others = f" and {format_count(len(alike) - 1, 'more place')}:" if len(alike) > 1 else ""
+    places = [quote(each.path + (f":{each.line}" if each.line else "")) for each in alike[: _PLACES + 1]]
+    others = ""
+    if len(alike) > 1:
+        named = ", ".join([*places[1:], "…"] if len(alike) > len(places) else places[1:])
+        others = f" and {format_count(len(alike) - 1, 'more place')} ({named}):"
     told = set(re.split(r"[\s,;()]+", finding.message)).issuperset(finding.targets)
     everywhere = len(finding.targets) == len(report.targets)
     names = "" if told or everywhere else f" ({escape_markdown(', '.join(finding.targets))})"
-    text = f"- {_SYMBOL[finding.severity]} {quote(place)}{others} {escape_markdown(_shorten(finding.message))}{names}"
+    text = f"- {_SYMBOL[finding.severity]} {places[0]}{others} {escape_markdown(_shorten(finding.message))}{names}"
     return text + (f"; {escape_markdown(_shorten(finding.help))}" if finding.help else "")
 
 
@@ -80,8 +95,8 @@ def _shorten(text: str) -> str:
 
 def _render_tail(report: Report, findings: list[Finding]) -> str:
     parts = [format_coverage(report.coverage)]
-    notes = count_by_severity(findings)["note"]
-    parts += [format_count(notes, "note")] if notes else []
+    notes = format_causes(finding for finding in findings if finding.severity == "note")
+    parts += [notes] if notes else []
     parts += [f"new against {quote(report.base)}"] if report.base else []
     parts += [f"{len(report.suppressed):,} suppressed"] if report.suppressed else []
     parts += [f"{len(report.known):,} in the baseline"] if report.known else []

@@ -10,14 +10,12 @@ _COLOURS = {"error": "1;31", "warning": "1;33", "note": "1;36", "dim": "2", "bol
 
 class Style(NamedTuple):
     """How to write. symbols: error, warning, ok, arrow, dot of matrix and separators. colours: terminal codes by role,
-    empty for none. severities: those whose findings are written out; the rest is counted. width: columns.
-    excerpts: how many findings with one message are shown with their code; further ones are listed by place."""
+    empty for none. severities: those whose findings are written out; the rest is counted. width: columns."""
 
     symbols: tuple[str, str, str, str, str] = ("✗", "!", "·", "→", "·")
     colours: Mapping[str, str] = {}
     severities: tuple[str, ...] = ("error", "warning")
     width: int = 120
-    excerpts: int = 3
 
 
 ASCII_SYMBOLS = ("x", "!", ".", "->", "-")

@@ -1,6 +1,7 @@
 """The report for a person at a terminal: targets, findings by package with code excerpts, matrix, one summary line."""
 
-from collections import Counter, defaultdict
+from collections import defaultdict
+from collections.abc import Sequence
 
 from ...edges.console import cut_visibly, escape, format_count
 from ..analysis.report import (
@@ -9,7 +10,9 @@ from ..analysis.report import (
     Shown,
     count_by_severity,
     count_by_target,
+    format_causes,
     format_coverage,
+    group_alike,
     list_new,
     locate_in_excerpt,
     measure,
@@ -19,6 +22,7 @@ from . import evidence
 from .style import PLAIN, Style, paint
 
 _TAB = "    "
+_PLACES = 5
 
 
 def render(report: Report, style: Style = PLAIN) -> str:
@@ -71,25 +75,10 @@ def _render_packages(report: Report, findings: list[Finding], style: Style) -> l
         by_package[finding.package].append(finding)
     rank = {name: index for index, name in enumerate(("error", "warning", "note"))}
     lines: list[str] = []
-    shown: Counter[tuple[str, str]] = Counter()
     for name, group in by_package.items():
         lines += ["", render_heading(name, folders.get(name, ""), style)]
-        # What is said too often is listed where it first was: errors stay before warnings.
-        more: dict[tuple[str, str, str, tuple[str, ...]], list[Finding]] = {}
-        parts: list[Finding | list[Finding]] = []
-        for finding in sorted(group, key=lambda finding: rank.get(finding.severity, 3)):
-            key = (finding.rule, finding.message)
-            if shown[key] < style.excerpts:
-                shown[key] += 1
-                parts.append(finding)
-                continue
-            alike = more.setdefault((*key, finding.severity, finding.targets), [])
-            if not alike:
-                parts.append(alike)
-            alike.append(finding)
-        for part in parts:
-            several = isinstance(part, list)
-            lines += ["", *(_render_repeated(report, part, style) if several else render_finding(report, part, style))]
+        for alike in group_alike(sorted(group, key=lambda finding: rank.get(finding.severity, 3))):
+            lines += ["", *render_alike(report, alike, style)]
     return lines
 
 
@@ -115,8 +104,9 @@ def format_place(finding: Finding) -> str:
     return ":".join((escape(finding.path), *(str(number) for number in numbers if number)))
 
 
-def render_finding(report: Report, finding: Finding, style: Style) -> list[str]:
-    """A finding with its place, its code and its help."""
+def render_alike(report: Report, alike: Sequence[Finding], style: Style) -> list[str]:
+    """Findings of one cause: the first with its place, its code and its help, and the places of the others."""
+    finding = alike[0]
     lines = [_render_head(report, finding, style), f"  {paint(style, 'dim', style.symbols[3])} {format_place(finding)}"]
     excerpt = report.excerpt(finding.path, finding.line) if finding.line else []
     _, shown = locate_in_excerpt(finding, excerpt)
@@ -127,6 +117,7 @@ def render_finding(report: Report, finding: Finding, style: Style) -> list[str]:
         if width:
             caret = paint(style, finding.severity, "^" * width)
             lines.append(f"  {' ' * margin} {paint(style, 'dim', '|')} {' ' * offset}{caret}")
+    lines += [f"  {line}" for line in render_more_places(alike[1:])]
     for label, text in evidence.format_lines(finding):
         shown, room = escape(text), style.width - len(label) - 4
         # Declarations can be long; what they were called comes first.
@@ -163,14 +154,13 @@ def _clip_line(shown: Shown, room: int) -> tuple[str, int, int]:
     return before + under + after, measure(before), measure(under)
 
 
-def _render_repeated(report: Report, findings: list[Finding], style: Style) -> list[str]:
-    """Findings whose message was shown often enough already: their places only."""
-    places = [f"{escape(finding.path)}:{finding.line}" for finding in findings]
-    limit = max(3, style.excerpts)
-    lines = [_render_head(report, findings[0], style), *(f"  {style.symbols[3]} {place}" for place in places[:limit])]
-    if len(places) > limit:
-        lines.append(f"  and {format_count(len(places) - limit, 'more place')}")
-    return lines
+def render_more_places(findings: Sequence[Finding]) -> list[str]:
+    """The places behind the first of a cause, in a line: a few of them, then `...`; no line without any."""
+    if not findings:
+        return []
+    places = [escape(f"{finding.path}:{finding.line}" if finding.line else finding.path) for finding in findings[:_PLACES]]
+    named = ", ".join([*places, "..."] if len(findings) > _PLACES else places)
+    return [f"and {format_count(len(findings), 'more place')}: {named}"]
 
 
 def _render_matrix(report: Report, style: Style) -> list[str]:
@@ -214,12 +204,10 @@ def _render_matrix(report: Report, style: Style) -> list[str]:
 def _format_summary(report: Report, style: Style) -> str:
     """One line: what was found, what is hidden, what was covered, how long it took."""
     findings = list_new(report)
-    counts = count_by_severity(findings)
     found = [
-        paint(style, severity, format_count(number, severity))
-        + ("" if severity in style.severities else f" (shown with --{severity}s)")
-        for severity, number in counts.items()
-        if number
+        paint(style, severity, causes) + ("" if severity in style.severities else f" (shown with --{severity}s)")
+        for severity in count_by_severity(())
+        if (causes := format_causes(finding for finding in findings if finding.severity == severity))
     ]
     if report.failure:
         text = paint(style, "error", "failed") + f": {escape(report.failure)}"

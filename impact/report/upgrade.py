@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import escape, format_count
-from ..analysis.report import count_by_severity, format_coverage, format_severities
+from ..analysis.report import count_by_severity, format_causes, format_coverage, format_gaps, format_severities
 from ..analysis.target_compare import UpgradeItem
 from ..analysis.upgrade import Upgrade
+from ..rules.rule import Finding
 from . import html, json
 from .items import build_data, render_item, render_short_item
 from .page import render_page
@@ -18,19 +19,33 @@ SCHEMA = 1
 
 
 def format_verdict(found: Upgrade) -> str:
-    """One line: safe, or what breaks.
+    """One line: safe, or what breaks, or why neither is said.
 
     `humble → jazzy breaks 3 of 46 packages: 3 errors and 1 warning to fix, in 9 places`
     """
     way = f"{escape(found.old.name)} → {escape(found.new.name)}"
     total = format_count(len(found.packages), "package")
     if not found.breaks:
-        return f"{way} is safe: no known break in {total}"
+        if is_safe(found):
+            return f"{way} is safe: no known break in {total}"
+        old = format_causes(_list_old_errors(found))
+        rest = [f"{old} already on {escape(found.old.name)}"] if old else []
+        gaps = format_gaps(found.report.coverage)
+        return "; ".join([f"{way}: no {'new' if old else 'known'} break in {total}", *rest, *([gaps] if gaps else [])])
     broken = {item.package for item in found.breaks if item.severity == "error"}
     touched = broken or {item.package for item in found.breaks}
     what = format_severities(found.breaks, " and ")
     places = format_count(sum(len(item.findings) for item in found.breaks), "place")
     return f"{way} {'breaks' if broken else 'may break'} {len(touched):,} of {total}: {what} to fix, in {places}"
+
+
+def is_safe(found: Upgrade) -> bool:
+    """True where nothing breaks on the new target, and everything was read and resolved."""
+    return not found.breaks and not _list_old_errors(found) and not format_gaps(found.report.coverage)
+
+
+def _list_old_errors(found: Upgrade) -> list[Finding]:
+    return [finding for finding in found.both if finding.severity == "error"]
 
 
 def describe_fixable(found: Upgrade) -> str:
@@ -50,15 +65,15 @@ def describe_rest(found: Upgrade) -> list[str]:
     clauses = []
     if found.both:
         them = "it" if len(found.both) == 1 else "them"
-        clauses.append(f"{format_severities(found.both)} already on {old}: {found.check_old} lists {them}")
+        clauses.append(f"{format_causes(found.both)} already on {old}: {found.check_old} lists {them}")
     if found.over:
-        clauses.append(f"{format_severities(found.over)} only on {old}, not on {new}")
+        clauses.append(f"{format_causes(found.over)} only on {old}, not on {new}")
     return clauses
 
 
 def render_text(found: Upgrade, style: Style) -> str:
     """The list of work for people at a terminal."""
-    role = "good" if not found.breaks else _find_worst_severity(found.breaks)
+    role = "good" if is_safe(found) else _find_worst_severity(found.breaks)
     lines = [paint(style, role, format_verdict(found).replace("→", style.symbols[3]))]
     fixes = describe_fixable(found)
     lines += [f"  {paint(style, 'help', escape(fixes))}"] if fixes else []
@@ -108,7 +123,7 @@ def render_json(found: Upgrade) -> str:
         "from": json.build_target_data(found.old) | json.build_notes(found.old),
         "to": json.build_target_data(found.new) | json.build_notes(found.new),
         "verdict": {
-            "safe": not found.breaks,
+            "safe": is_safe(found),
             "text": format_verdict(found),
             "packages": len(broken),
             "errors": counts["error"],
@@ -158,7 +173,7 @@ def _build_data(found: Upgrade) -> Mapping[str, Any]:
         "data": report.data,
         "root": report.root,
         "verdict": format_verdict(found),
-        "bad": _find_worst_severity(found.breaks) if found.breaks else "",
+        "bad": "" if is_safe(found) else _find_worst_severity(found.breaks),
         "facts": [*describe_rest(found), format_coverage(report.coverage)],
         "fixes": describe_fixable(found).partition(": ")[0],
         "command": found.command,

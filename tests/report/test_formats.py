@@ -249,7 +249,8 @@ def test_markdown_says_a_thing_once(quiet):
     gone = [Finding("r", "error", "ui", f"{n}.cpp", 1, 0, "x", ("jazzy",), "`x` is gone", "use `z`") for n in range(9)]
     others = [Finding("r", "error", "ui", "a.cpp", n, 0, f"y{n}", ("jazzy",), f"`y{n}` is gone") for n in range(8)]
     rows = markdown.render(quiet._replace(findings=(*gone, *others))).splitlines()[2:-2]
-    assert rows[0] == "- ❌ `0.cpp:1` and 8 more places: `x` is gone (jazzy); use `z`"
+    shown = "- ❌ `0.cpp:1` and 8 more places (`1.cpp:1`, `2.cpp:1`, `3.cpp:1`, …): `x` is gone (jazzy); use `z`"
+    assert rows[0] == shown
     assert rows[-1] == "- and 4 errors more"
 
 
@@ -260,7 +261,10 @@ def test_markdown_counts_what_it_leaves_out(large):
 @pytest.mark.parametrize(
     ("changes", "verdict"),
     [
-        ({}, "safe on: humble, jazzy, rolling, robot"),
+        ({}, "no known break on: humble, jazzy, rolling, robot; 3 includes, 1 topic unresolved, 1 file not read"),
+        ({"coverage": AnalysisCoverage(1, 3, 3, {"import": 0})}, "safe on: humble, jazzy, rolling, robot"),
+        ({"coverage": AnalysisCoverage(1, 3, 3, {"import": 1})}, "no known break on: humble, jazzy, rolling, robot; 1 import "
+         "unresolved"),
         ({"coverage": AnalysisCoverage(1, 3, 0)}, "analysed nothing"),
         ({"failure": "no *such* folder"}, "failed: no \\*such\\* folder"),
         ({"targets": ()}, "found no target to check"),

@@ -2,9 +2,11 @@
 
 import json
 import re
+import time
 
 import pytest
 from rosimpact.impact.report import html
+from rosimpact.impact.rules.rule import Finding
 
 
 @pytest.fixture
@@ -124,9 +126,26 @@ def test_five_thousand_findings_can_all_be_reached(page, large):
     assert texts(browser, "#list .message") == ["h4999.hpp is gone"]
 
 
+def test_one_cause_is_one_card_with_its_places_folded(page, quiet):
+    gone = [Finding("r", "error", "ui", f"{n}.cpp", 1, 0, "x", ("jazzy",), "`x` is gone") for n in range(9)]
+    other = Finding("r", "error", "arm", "9.cpp", 1, 0, "x", ("jazzy",), "`x` is gone")
+    browser = page(quiet._replace(findings=(*gone, other)))
+    assert texts(browser, "#list .place") == ["0.cpp:1", "9.cpp:1"]
+    assert texts(browser, "#count") == ["2 findings in 10 places"]
+    assert texts(browser, "#matrix td.error") == ["✗ 1", "✗ 1"]
+    browser.find_element("css selector", "#list .places summary").click()
+    wait = time.monotonic() + 5
+    while len(texts(browser, "#list .place")) < 10 and time.monotonic() < wait:
+        time.sleep(0.02)
+    assert texts(browser, "#list .place")[:3] == ["0.cpp:1", "1.cpp:1", "2.cpp:1"]
+    choose(browser, "search", "3.cpp")
+    assert texts(browser, "#list .place") == ["3.cpp:1"]
+    assert texts(browser, "#count") == ["1 of 2 findings in 10 places"]
+
+
 def test_nothing_found(page, quiet):
     browser = page(quiet)
-    assert texts(browser, "#verdict") == ["safe on: humble, jazzy, rolling, robot"]
+    assert texts(browser, "#verdict")[0].startswith("no known break on: humble, jazzy, rolling, robot; 3 includes, ")
     assert texts(browser, "#count") == ["0 findings"]
     assert browser.get_log("browser") == []
 

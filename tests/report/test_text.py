@@ -102,15 +102,27 @@ def test_notes_about_targets_follow_the_first_line(quiet):
     ]
 
 
-def test_an_equal_message_is_excerpted_three_times_then_listed(quiet):
+def test_an_equal_message_is_shown_once_with_its_places(quiet):
     findings = tuple(
         Finding("r", "error", "ui", f"src/ui/{number}.cpp", 1, 0, "x", ("jazzy",), "`x` is gone") for number in range(9)
     )
     lines = text.render(quiet._replace(findings=findings)).splitlines()
-    assert lines.count("error[r] jazzy: `x` is gone") == 4
-    assert sum(line.startswith("  → src/ui/") for line in lines) == 6
-    assert "  and 3 more places" in lines
-    assert lines[-1].startswith("9 errors · ")
+    assert lines[4:7] == [
+        "error[r] jazzy: `x` is gone",
+        "  → src/ui/0.cpp:1",
+        "  and 8 more places: src/ui/1.cpp:1, src/ui/2.cpp:1, src/ui/3.cpp:1, src/ui/4.cpp:1, src/ui/5.cpp:1, ...",
+    ]
+    assert [line for line in lines if "✗" in line] == ["  ui                ·       ✗ 1    ·        ·"]
+    assert lines[-1].startswith("1 error in 9 places · ")
+    text_of_three = text.render(quiet._replace(findings=findings[:3]))
+    assert "\n  and 2 more places: src/ui/1.cpp:1, src/ui/2.cpp:1\n" in text_of_three
+
+
+def test_each_package_has_its_own_cause(quiet):
+    findings = tuple(Finding("r", "error", p, f"{p}/a.cpp", n, 0, "x", (), "`x` is gone") for p in "ab" for n in (1, 2))
+    lines = text.render(quiet._replace(findings=findings)).splitlines()
+    assert lines.count("error[r]: `x` is gone") == 2
+    assert lines[-1].startswith("2 errors in 4 places · ")
 
 
 def test_what_is_listed_stands_before_what_is_milder(quiet):
@@ -118,7 +130,7 @@ def test_what_is_listed_stands_before_what_is_milder(quiet):
     warning = Finding("s", "warning", "ui", "0.cpp", 1, 0, "y", ("jazzy",), "`y` may go")
     lines = text.render(quiet._replace(findings=(warning, *errors))).splitlines()
     assert [line for line in lines if line.startswith(("error", "warning"))] == [
-        *["error[r] jazzy: `x` is gone"] * 4, "warning[s] jazzy: `y` may go"]  # fmt: skip
+        "error[r] jazzy: `x` is gone", "warning[s] jazzy: `y` may go"]  # fmt: skip
 
 
 def test_nothing_of_the_workspace_reaches_the_terminal_raw(hostile):
