@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Annotated
@@ -20,7 +20,6 @@ _Format = Annotated[str, typer.Option("--format", "-f", help="text or json.")]
 
 
 def triage(
-    context: typer.Context,
     report: Annotated[
         str, typer.Argument(help="The report: its text, a file, the address of an issue or question, or - for input.")
     ],
@@ -35,17 +34,16 @@ def triage(
 
     A text's first line is the title. Input whose first line is JSON with `title` or `body` is taken as JSON Lines.
     """
-    commands = frozenset(getattr(context.find_root().command, "commands", ()))
 
     def work() -> None:
         _format(format)
         with _convert_errors():
-            _triage(report, format, jsonl, model, commands)
+            _triage(report, format, jsonl, model)
 
     _end(work, "interrupted")
 
 
-def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: Collection[str]) -> None:
+def _triage(report: str, format: str, jsonl: bool, file: Path | None) -> None:
     from itertools import chain
 
     from ..edges.files import make_size_error
@@ -80,7 +78,7 @@ def _triage(report: str, format: str, jsonl: bool, file: Path | None, commands: 
         raise ClassifierError("--jsonl: needs a file or - for standard input; leave it out for one report")
     if not (found.title or found.body):
         raise ClassifierError("the report is empty; give a text, a file, an address or - for standard input")
-    answer = judge(model, found, commands)
+    answer = judge(model, found)
     _print(render_json(answer) if format == "json" else render_triage(answer), format)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -20,14 +20,14 @@ GITHUB_API = "ROSIMPACT_GITHUB_API"
 STACK_API = "ROSIMPACT_STACK_EXCHANGE_API"
 """Environment variables that name other servers than the public ones."""
 
-CHECKS: dict[str, tuple[tuple[str, str], ...]] = {
-    "library-update": (("check", "rosimpact check{targets}"),),
-    "dependency": (("check", "rosimpact check{targets}"),),
-    "inconsistency": (("values", "rosimpact values"), ("graph", "rosimpact graph")),
-    "message-logic": (("logic", "rosimpact logic"),),
+CHECKS: dict[str, tuple[str, ...]] = {
+    "library-update": ("rosimpact check{targets}",),
+    "dependency": ("rosimpact check{targets}",),
+    "inconsistency": ("rosimpact graph", "rosimpact check{targets}"),
+    "message-logic": ("rosimpact logic",),
     "other": (),
 }
-"""By label, what looks into such a report: the command it needs, and how it is called. Only what exists is named."""
+"""By label, the commands that look into such a report."""
 
 _ISSUE = re.compile(r"/([\w.-]+)/(?!\.{1,2}/)([\w.-]+)/(?:issues|pull)/(\d{1,12})(?:/.*)?\Z", re.ASCII)
 _QUESTION = re.compile(r"/(?:questions|q)/(\d{1,12})(?:/.*)?\Z", re.ASCII)
@@ -54,7 +54,7 @@ class Post(NamedTuple):
 
 
 class Triage(NamedTuple):
-    """What is said of a report. checks: commands to run next, those that exist."""
+    """What is said of a report. checks: commands to run next."""
 
     id: str
     verdict: ModelVerdict
@@ -63,8 +63,8 @@ class Triage(NamedTuple):
     checks: list[str]
 
 
-def triage(model: Model, post: Post, commands: Collection[str]) -> Triage:
-    """Judges a report. commands: those that the command line has."""
+def triage(model: Model, post: Post) -> Triage:
+    """Judges a report."""
     reading = read(post.title, post.body)
     verdict = model.judge(reading)
     return Triage(
@@ -72,7 +72,7 @@ def triage(model: Model, post: Post, commands: Collection[str]) -> Triage:
         verdict,
         model.list_reasons(reading, verdict.label),
         model.find_nearest(reading),
-        list_checks(verdict.label, post, commands),
+        list_checks(verdict.label, post),
     )
 
 
@@ -87,11 +87,11 @@ def _load_shipped() -> Model:
     return load()
 
 
-def list_checks(label: str, post: Post, commands: Collection[str]) -> list[str]:
+def list_checks(label: str, post: Post) -> list[str]:
     """The commands that look into a report of this label, with the distros it names as targets."""
     named = dict.fromkeys(name.lower() for name in _DISTRO.findall(f"{post.title}\n{post.body}"))
     targets = "".join(f" --target {name}" for name in named if name in _TARGETED)
-    return [call.format(targets=targets) for command, call in CHECKS.get(label, ()) if command in commands]
+    return [call.format(targets=targets) for call in CHECKS.get(label, ())]
 
 
 def render_json(found: Triage) -> str:
@@ -130,10 +130,8 @@ def render_triage(found: Triage) -> str:
     lines.append("")
     if found.checks:
         lines += ["run next:", *(f"  {call}" for call in found.checks)]
-    elif verdict.label == "other":
-        lines.append("no check looks into reports of this label")
     else:
-        lines.append(f"no command of this version looks into reports of the label {verdict.label} yet")
+        lines.append("no check looks into reports of this label")
     return "\n".join(map(escape, lines)) + "\n"
 
 

@@ -104,35 +104,31 @@ class TestOneReport:
 
 class TestChecks:
     @pytest.mark.parametrize(
-        ("label", "text", "commands", "calls"),
+        ("label", "text", "calls"),
         [
-            ("dependency", "fails on jazzy", {"check"}, ["rosimpact check --target jazzy"]),
-            ("dependency", "no distro named", {"check"}, ["rosimpact check"]),
-            ("dependency", "on hydro and Noetic", {"check"}, ["rosimpact check --target noetic"]),
-            ("inconsistency", "", {"check"}, []),
-            ("inconsistency", "", {"check", "graph"}, ["rosimpact graph"]),
-            ("inconsistency", "", {"values", "graph"}, ["rosimpact values", "rosimpact graph"]),
-            ("message-logic", "", {"logic"}, ["rosimpact logic"]),
-            ("other", "", {"check", "logic"}, []),
+            ("dependency", "fails on jazzy", ["rosimpact check --target jazzy"]),
+            ("dependency", "no distro named", ["rosimpact check"]),
+            ("dependency", "on hydro and Noetic", ["rosimpact check --target noetic"]),
+            ("inconsistency", "", ["rosimpact graph", "rosimpact check"]),
+            ("message-logic", "", ["rosimpact logic"]),
+            ("other", "", []),
         ],
     )
-    def test_only_commands_that_exist_are_named(self, label, text, commands, calls):
-        assert list_checks(label, Post("", text, ""), commands) == calls
+    def test_what_to_run(self, label, text, calls):
+        assert list_checks(label, Post("", text, "")) == calls
 
     def test_the_command_line_has_what_it_names(self):
         from typer.main import get_command
 
         commands = set(get_command(app).commands)
         for label in CHECKS:
-            for call in list_checks(label, Post("", "", ""), commands):
+            for call in list_checks(label, Post("", "", "")):
                 assert call.split()[1] in commands
 
-    def test_without_a_command_it_says_so(self):
-        from rosimpact.classifier.triage import render_triage
-
-        found = triage(load(), make_post("wrong frame_id: values in degrees, radians expected"), frozenset())
-        assert found.verdict.label == "inconsistency"
-        assert "no command of this version looks into reports of the label inconsistency yet" in render_triage(found)
+    def test_the_command_alone_says_what_to_run(self, say):
+        """The program builds no more commands than the one that runs."""
+        said = say("triage", "undefined symbol since the upgrade to jazzy")
+        assert said.out.endswith("run next:\n  rosimpact check --target jazzy\n")
 
 
 class TestStream:
