@@ -164,6 +164,14 @@ def test_the_exit_status(say, ws, arguments, status):
     assert say("upgrade", ws, "--from", "humble", *arguments).status == status
 
 
+def test_an_error_about_all_packages_counts_for_each(say, ws):
+    said = say("upgrade", ws, "--from", "humble", "--to", "noetic")
+    assert said.out.splitlines()[0] == "humble → noetic breaks 4 of 4 packages: 1 error to fix, in 1 place"
+    said = say("upgrade", ws, "--from", "humble", "--to", "noetic", "--packages", "zoom")
+    assert said.out.splitlines()[0] == "humble → noetic breaks 1 of 1 package: 1 error to fix, in 1 place"
+    assert say("check", ws, "--target", "noetic").out.count("  ✗ 1\n") == 4
+
+
 def test_a_warning_fails_when_asked_to(say, tmp_path):
     ws = written(tmp_path / "ws", package("a"))
     manifest = ws / "a/package.xml"
@@ -203,11 +211,12 @@ def test_what_cannot_be_done_is_told_in_a_line(say, ws, arguments, words):
     ("include", "verdict"),
     [
         ("<vector>", "humble → jazzy is safe: no known break in 1 package"),
-        ("<nowhere/known.h>", "humble → jazzy: no known break in 1 package; 1 include unresolved"),
+        ('"zoom/own.h"', "humble → jazzy: no known break in 1 package; 1 cmake, 1 include unresolved"),
     ],
 )
 def test_safe_is_only_what_was_resolved(say, tmp_path, include, verdict):
-    ws = written(tmp_path / "ws", package("a", run=f"#include {include}\n"))
+    private = ("zoom",) if "zoom" in include else ()
+    ws = written(tmp_path / "ws", package("a", "rclcpp", *private, run=f"#include {include}\n"))
     asked = ("upgrade", ws, "--from", "humble", "--to", "jazzy")
     assert say(*asked).out.splitlines()[0] == verdict
     assert json.loads(say(*asked, "-f", "json").out)["verdict"]["safe"] == ("is safe" in verdict)
@@ -276,6 +285,25 @@ def finding(
 )
 def test_a_finding_is_new_unless_the_other_side_has_it_as_gravely(other, new):
     assert [len(group) for group in compare_findings([finding()], other)] == ([1, 0] if new else [0, 1])
+
+
+def undeclared(key: str, line: int = 1, used: str = "cv2") -> Finding:
+    said = f"`{used}` is imported, but `a` does not depend on `{key}`"
+    return Finding("undeclared-package", "warning", "a", "a/a.py", line, 8, key, (), said)
+
+
+@pytest.mark.parametrize(
+    ("now", "then", "new"),
+    [
+        ([undeclared("python3-opencv")], [undeclared("python-opencv")], 0),
+        ([undeclared("python3-opencv"), undeclared("python3-numpy")], [undeclared("python-opencv")], 1),
+        ([undeclared("python3-opencv")], [undeclared("python-opencv", line=2)], 1),
+        ([undeclared("python3-opencv")], [undeclared("python-opencv", used="cv")], 1),
+        ([undeclared("b"), undeclared("a")], [undeclared("a")], 1),
+    ],
+)
+def test_a_subject_that_has_another_name_there_is_the_same_fault(now, then, new):
+    assert len(compare_findings(now, then).new) == new
 
 
 def test_one_cause_in_a_package_is_one_item():

@@ -170,6 +170,7 @@ def _make_finding(
         evidence=next((each.evidence for each in diagnostics if each.evidence is not None), None),
         repeated=all(Doubt.REPEATED in each.doubts for each in diagnostics),
         ahead=first.ahead,
+        also=tuple(dict.fromkeys(name for each in diagnostics for name in each.also)),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping
+from itertools import product
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...edges.console import format_count
@@ -242,9 +243,8 @@ def count_by_target(report: Report) -> dict[str, dict[str, dict[str, int]]]:
         package.name: {name: {} for name in names} for package in report.packages
     }
     for finding, *_ in group_alike(list_new(report)):
-        row = table.setdefault(finding.package, {name: {} for name in names})
-        for name in finding.targets or names:
-            cell = row.setdefault(name, {})
+        for package, name in product(finding.packages, finding.targets or names):
+            cell = table.setdefault(package, {name: {} for name in names}).setdefault(name, {})
             cell[finding.severity] = cell.get(finding.severity, 0) + 1
     return table
 

@@ -54,19 +54,32 @@ class Compared(NamedTuple):
 
 def compare_findings(findings: Iterable[Finding], other: Iterable[Finding]) -> Compared:
     """Findings of one side against those of the other, by rule, package, path, line and subject, and by whether they
-    hold already."""
+    hold already. A subject that has another name there, as rosdep keys do, is known by the rest of the message."""
+    findings, other = list(findings), list(other)
     there: dict[tuple, int] = {}
     for finding in other:
         there[_make_key(finding)] = max(there.get(_make_key(finding), 0), rank(finding.severity))
+    here = {_make_key(finding) for finding in findings}
+    renamed: dict[tuple, list[int]] = defaultdict(list)
+    for finding in other:
+        if _make_key(finding) not in here:
+            renamed[_make_nameless_key(finding)].append(rank(finding.severity))
     result = Compared([], [])
     for finding in findings:
-        as_grave = there.get(_make_key(finding), -1) >= rank(finding.severity)
-        (result.both if as_grave else result.new).append(finding)
+        old = there.get(_make_key(finding), -1)
+        if old < 0 and (others := renamed[_make_nameless_key(finding)]):
+            old = others.pop()
+        (result.both if old >= rank(finding.severity) else result.new).append(finding)
     return result
 
 
 def _make_key(finding: Finding) -> tuple[str, str, str, int, str, bool]:
     return finding.rule, finding.package, finding.path, finding.line, finding.subject, finding.ahead
+
+
+def _make_nameless_key(finding: Finding) -> tuple[str, str, str, int, int, str, bool]:
+    said = finding.message.replace(f"`{finding.subject}`", "``")
+    return finding.rule, finding.package, finding.path, finding.line, finding.column, said, finding.ahead
 
 
 class UpgradeItem(NamedTuple):

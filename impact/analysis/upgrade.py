@@ -78,7 +78,10 @@ def compare_upgrade(
     def is_late(finding: Finding) -> bool:
         return finding.ahead or finding.rule in warning
 
-    now, then = ([finding for finding in side.report.findings if finding.package in wanted] for side in (after, before))
+    now, then = (
+        [finding for finding in side.report.findings if not wanted.isdisjoint(finding.packages)]
+        for side in (after, before)
+    )
     told, lost = compare_findings(now, then), compare_findings(then, now)
     return Upgrade(
         old=before.report.targets[0],

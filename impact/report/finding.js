@@ -1,5 +1,5 @@
 // A finding as html.py writes it: its fields, and how its place, its lines of code, its evidence and its help are shown.
-const [RULE, SEVERITY, PACKAGE, PATH, LINE, COLUMN, SUBJECT, TARGETS, MESSAGE, HELP, NEW, CODE, EVIDENCE] = Array(13).keys();
+const [RULE, SEVERITY, PACKAGE, PATH, LINE, COLUMN, SUBJECT, TARGETS, MESSAGE, HELP, NEW, CODE, EVIDENCE, ALSO] = Array(14).keys();
 const SEVERITIES = ["error", "warning", "note"];
 
 const placeOf = (finding) => finding[PATH] + (finding[LINE] ? `:${finding[LINE]}` + (finding[COLUMN] ? `:${finding[COLUMN]}` : "") : "");

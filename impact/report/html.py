@@ -68,7 +68,7 @@ def _build_impact(report: Report) -> dict[str, Any] | None:
 
 def build_row(report: Report, finding: Finding, names: list[str]) -> list[Any]:
     """Rule, severity, package, path, line, column, subject, target numbers, message, help, new, excerpt, evidence as
-    (label, text) pairs."""
+    (label, text) pairs, further packages."""
     code = None
     if finding.line:
         lines = report.excerpt(finding.path, finding.line)
@@ -83,5 +83,5 @@ def build_row(report: Report, finding: Finding, names: list[str]) -> list[Any]:
     return [
         finding.rule, finding.severity, finding.package, finding.path, finding.line, finding.column, finding.subject,
         numbers, finding.message, finding.help, finding.new, code,
-        [*evidence.format_lines(finding), *([("source", source)] if source else [])],
+        [*evidence.format_lines(finding), *([("source", source)] if source else [])], finding.also,
     ]  # fmt: skip

@@ -82,4 +82,4 @@ def build_finding_data(finding: Finding) -> dict[str, Any]:
     return data | ({"evidence": evidence.make_object(finding.evidence)} if finding.evidence is not None else {})
 
 
-_NOT_TOLD = frozenset(("fix", "evidence", "repeated", "ahead"))
+_NOT_TOLD = frozenset(("fix", "evidence", "repeated", "ahead", "also"))

@@ -32,11 +32,17 @@ def format_verdict(found: Upgrade) -> str:
         rest = [f"{old} already on {escape(found.old.name)}"] if old else []
         gaps = format_gaps(found.report.coverage)
         return "; ".join([f"{way}: no {'new' if old else 'known'} break in {total}", *rest, *([gaps] if gaps else [])])
-    broken = {item.package for item in found.breaks if item.severity == "error"}
-    touched = broken or {item.package for item in found.breaks}
+    broken = _count_packages(found, (item for item in found.breaks if item.severity == "error"))
+    touched = broken or _count_packages(found, found.breaks)
     what = format_severities(found.breaks, " and ")
     places = format_count(sum(len(item.findings) for item in found.breaks), "place")
-    return f"{way} {'breaks' if broken else 'may break'} {len(touched):,} of {total}: {what} to fix, in {places}"
+    return f"{way} {'breaks' if broken else 'may break'} {touched:,} of {total}: {what} to fix, in {places}"
+
+
+def _count_packages(found: Upgrade, items: Iterable[UpgradeItem]) -> int:
+    """How many of the packages asked for items are about."""
+    asked = {"", *(package.name for package in found.packages)}
+    return len(asked & {package for item in items for finding in item.findings for package in finding.packages})
 
 
 def is_safe(found: Upgrade) -> bool:
@@ -115,7 +121,6 @@ def _format_title(number: str, package: str, found: Upgrade, style: Style) -> st
 
 def render_json(found: Upgrade) -> str:
     """The list of work for programs."""
-    broken = {item.package for item in found.breaks}
     counts = count_by_severity(found.breaks)
     return json.dump_json({
         "schema": SCHEMA,
@@ -125,7 +130,7 @@ def render_json(found: Upgrade) -> str:
         "verdict": {
             "safe": is_safe(found),
             "text": format_verdict(found),
-            "packages": len(broken),
+            "packages": _count_packages(found, found.breaks),
             "errors": counts["error"],
             "warnings": counts["warning"],
             "places": sum(len(item.findings) for item in found.breaks),

@@ -61,7 +61,8 @@ class Diagnostic(NamedTuple):
     of the rule's texts describes it, where there are several. doubts: what speaks against the rule's usual severity, as
     severity() takes it. together: with which others it is worth one warning.
     fix: actions that repair it, see fix_actions.py; kept only when every target asked for yields the same. evidence:
-    the change that it rests on, without targets; check.py adds how each target stands to it.
+    the change that it rests on, without targets; check.py adds how each target stands to it. also: further packages
+    that it is about.
     """
 
     at: Any
@@ -73,6 +74,7 @@ class Diagnostic(NamedTuple):
     fix: tuple[FixAction, ...] = ()
     evidence: Evidence | None = None
     together: tuple[Together, ...] = ()
+    also: tuple[str, ...] = ()
 
     @property
     def fact(self) -> object:
@@ -93,7 +95,7 @@ class Diagnostic(NamedTuple):
 
 class Finding(NamedTuple):
     """A finding as reported, see docs/findings.md. repeated: it is a note only since another one is the warning.
-    ahead: it holds on what the targets are going to be, not yet on them."""
+    ahead: it holds on what the targets are going to be, not yet on them. also: further packages that it is about."""
 
     rule: str
     severity: str
@@ -111,6 +113,12 @@ class Finding(NamedTuple):
     evidence: Evidence | None = None
     repeated: bool = False
     ahead: bool = False
+    also: tuple[str, ...] = ()
+
+    @property
+    def packages(self) -> tuple[str, ...]:
+        """All packages that it is about; an empty name where it is about none."""
+        return self.package, *self.also
 
 
 class Rule(NamedTuple):
