@@ -96,6 +96,13 @@ def test_json_to_a_file(ws: Path, say, tmp_path: Path):
     assert document["base"] == "HEAD"
 
 
+@pytest.mark.parametrize("asked", [("--node", "hear"), ("--topic", "bell"), ("--package", "bell")])
+def test_what_is_there_may_be_asked_for(ws: Path, say, asked: tuple[str, str]):
+    assert "tightened  /bell" in say("impact", ws, "--base", "HEAD", *asked).out
+    said = say("impact", ws, "--rev", "HEAD", "--base", "HEAD", *asked)
+    assert (said.status, said.out) == (0, "no change that message flow knows of\n")
+
+
 def test_a_revision_against_itself_reaches_nothing(ws: Path, say):
     said = say("impact", ws, "--rev", "HEAD", "--base", "HEAD")
     assert (said.status, said.out) == (0, "no change that message flow knows of\n")
@@ -106,6 +113,9 @@ def test_a_revision_against_itself_reaches_nothing(ws: Path, say):
     [
         ((), "--base: missing"),
         (("--base", "nowhere"), "nowhere"),
+        (("--base", "HEAD", "--node", "hera"), "`hera`: no node of this name; there is `hear`"),
+        (("--base", "HEAD", "--topic", "/bel"), "`/bel`: no topic, service or action of this name; there is `bell`"),
+        (("--base", "HEAD", "--package", "ball"), "`ball`: no package of this name; there is `bell`"),
         (("--base", "HEAD", "-f", "dot"), "--format dot: unknown; choose one of text, json, markdown"),
     ],
 )

@@ -22,7 +22,7 @@ from ..model.flow.callers import Led
 from ..model.flow.connections import Edge, list_edges
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
 from ..model.flow.reach import EVERYWHERE, DownstreamSearch, Step
-from ..model.flow.select import get_kind
+from ..model.flow.select import check_names, get_kind
 from ..model.flow.workspace import get_flow, link_for_flow
 from ..model.workspace import Workspace
 from .message_changes import find_containing_types, list_message_changes
@@ -265,7 +265,7 @@ class _Reading:
             if edge.mark != "changed" and (self.may_be_unnamed(edge) or (edge.role == "publisher" and
                                                                  (edge.node, edge.name) in named)):  # fmt: skip
                 continue
-            yield self.make_topic_effect(edge, endpoint, why)
+            yield self.make_topic_effect(edge, endpoint, why.replace("type", _describe_type(edge)))
 
     def make_topic_effect(self, edge: Edge, endpoint: Endpoint, why: str) -> Effect:
         gone = edge.mark == "removed"
@@ -381,6 +381,13 @@ class _Reading:
         return max(owner, key=lambda one: len(one.path)).name if owner else ""
 
 
+def _describe_type(edge: Edge) -> str:
+    """`type (`a/Now` instead of `a/Before`)`, as far as both are known."""
+    before = edge.before.types if edge.before is not None else ()
+    old, new = (" or ".join(f"`{each}`" for each in types) for types in (before, edge.types))
+    return f"type ({new} instead of {old})" if old and new else "type"
+
+
 def _describe_trigger(led: Sequence[Led]) -> str:
     """What makes a function run, in a clause."""
     if not led:
@@ -444,12 +451,14 @@ class ImpactResult(NamedTuple):
 
 def analyze_impact(
     path: Path, base: Sequence[str], *, rev: str = "", jobs: int | None = None,
-    progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
+    progress: Callable[[int, int], None] | None = None, follow_links: bool = False, packages: Sequence[str] = (),
+    topics: Sequence[str] = (), nodes: Sequence[str] = (),
 ) -> ImpactResult:  # fmt: skip
     """What the changes since the base reach in the workspace at a path.
 
     base, rev, jobs, follow_links: as for check. progress: called with (done, total) bytes while files are
-    parsed. Raises CheckError, TreeError and BaseError with a text for the user.
+    parsed. packages, topics, nodes: as for select_effects(). Raises CheckError, TreeError and BaseError with a text for
+    the user, and NothingSelected where neither the workspace nor its base has what is asked for.
     """
     from .revision_compare import open_base_tree
 
@@ -458,4 +467,9 @@ def analyze_impact(
         old_tree, notes = open_base_tree(tree, tuple(base))
         now = link_flow(path, tree, store, jobs, progress)
         before = link_for_flow(old_tree, store, jobs)
-        return ImpactResult(compute_impact(now, before), os.fspath(path), rev, " ".join(base), (*notes, *store.notes))
+        if packages or topics or nodes:
+            graphs = [get_flow(workspace).graph for workspace in (now, before)]
+            known = now.packages.keys() | before.packages.keys()
+            check_names(graphs, nodes=nodes, topics=topics, packages=packages, known=known)
+        impact = select_effects(compute_impact(now, before), packages, topics, nodes)
+        return ImpactResult(impact, os.fspath(path), rev, " ".join(base), (*notes, *store.notes))

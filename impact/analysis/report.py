@@ -236,8 +236,8 @@ def format_places(groups: Iterable[list[Finding]]) -> str:
 
 
 def count_by_target(report: Report) -> dict[str, dict[str, dict[str, int]]]:
-    """package → target → severity → count of causes, of what is new. Every package and target is there; findings that name no
-    package stand under the empty name, findings that name no target count for all."""
+    """package → target → severity → count of causes, of what is new. Every package and target is there; findings that
+    name no package stand under the empty name, findings that name no target count for all."""
     names = [target.name for target in report.targets]
     table: dict[str, dict[str, dict[str, int]]] = {
         package.name: {name: {} for name in names} for package in report.packages

@@ -14,13 +14,17 @@ def impact(
     """What the changes since a base reach."""
     if not base:
         raise UserError("--base: missing; give the revision to compare with, such as origin/main")
-    from ..analysis.downstream import analyze_impact, select_effects
+    from ..analysis.downstream import analyze_impact
     from ..report import impact as report
 
     progress = None if quiet else make_progress_bar()
-    found = analyze_impact(path, base, rev=rev, jobs=jobs, progress=progress, follow_links=follow_links)
+    found = analyze_impact(
+        path, base, rev=rev, jobs=jobs, progress=progress, follow_links=follow_links, packages=package, topics=topic,
+        nodes=node,
+    )  # fmt: skip
     say_notes(found.notes)
-    part = select_effects(found.impact, package, topic, node)
     if format == "json":
-        return report.render_json(part, found, __version__)
-    return report.render_markdown(part) if format == "markdown" else report.render_text(part, all, find_style(output))
+        return report.render_json(found, __version__)
+    if format == "markdown":
+        return report.render_markdown(found.impact)
+    return report.render_text(found.impact, all, find_style(output))

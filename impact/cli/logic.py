@@ -26,7 +26,7 @@ def logic(
             raise UserError(f"--since: {error}") from None
         say_notes(store.notes)
     all_of_it, found = found, history.select(found, package, topic, all)
-    missed = logic_report.describe_missed(all_of_it, found, package, topic)
+    missed = logic_report.describe_missed(all_of_it, package, topic, all)
     say_notes([missed] if missed else [])
     if format == "html":
         return timeline.render(found, __version__)

@@ -8,7 +8,14 @@ from collections.abc import Mapping
 
 from ...edges.console import escape, escape_lines, format_count
 from ...edges.files import append_file
-from ..analysis.report import Report, count_by_severity, format_coverage, list_new, locate_in_excerpt, put_different_first
+from ..analysis.report import (
+    Report,
+    count_by_severity,
+    format_coverage,
+    list_new,
+    locate_in_excerpt,
+    put_different_first,
+)
 from ..rules.rule import Finding
 from . import evidence, markdown, markdown_text
 

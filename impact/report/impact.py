@@ -178,9 +178,9 @@ def render_markdown(impact: Impact) -> str:
     return "\n".join([*rows, "", f"<sub>{escape_markdown(summarize(impact))}</sub>"]) + "\n"
 
 
-def render_json(impact: Impact, found: ImpactResult, version: str) -> str:
-    """All of it, or of the part that was chosen, as JSON; docs/impact.schema.json describes it. found: what is
-    compared."""
+def render_json(found: ImpactResult, version: str) -> str:
+    """All of it, or of the part that was chosen, as JSON; docs/impact.schema.json describes it."""
+    impact = found.impact
     document: dict[str, Any] = {
         "schema": SCHEMA,
         "tool": {"name": "rosimpact", "version": version},

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
@@ -11,7 +11,7 @@ import msgspec
 from ...edges.console import escape, format_count, format_json
 from ..logic.changes import KINDS, LogicChange
 from ..logic.history import Commit
-from ..logic.repository import Logic
+from ..logic.repository import Logic, select
 from .columns import UNBROKEN, LinePart, lay_out
 from .style import PLAIN, Style
 
@@ -81,13 +81,19 @@ def trim_common_ends(old: str, new: str) -> tuple[str, str]:
     return cut_middle(before), cut_middle(after)
 
 
-def describe_missed(logic: Logic, chosen: Logic, packages: Sequence[str], topics: Sequence[str]) -> str:
+def describe_missed(logic: Logic, packages: Sequence[str], topics: Sequence[str], everything: bool) -> str:
     """Where nothing of what was asked for changed, and something else did: what that is of, for a name written wrongly
-    to be seen. Empty otherwise."""
-    if chosen.changes or not logic.changes:
+    to be seen. Empty otherwise. everything: as for select()."""
+    if select(logic, packages, topics, everything).changes or not logic.changes:
         return ""
-    asked = [(f"--package {', '.join(packages)}", lambda change: change.package)] if packages else []
-    asked += [(f"--topic {', '.join(topics)}", lambda change: change.topic)] if topics else []
+    options = (f"--package {', '.join(packages)}", f"--topic {', '.join(topics)}")
+    asked: list[tuple[str, Callable[[LogicChange], str]]] = []
+    if packages and not select(logic, packages, (), everything).changes:
+        asked.append((options[0], lambda change: change.package))
+    if topics and not select(logic, (), topics, everything).changes:
+        asked.append((options[1], lambda change: change.topic))
+    if not asked and packages and topics:
+        return escape(f"{' '.join(options)}: changes match each of them, but nothing matches both")
     clauses = []
     for option, name_of in asked:
         names = sorted({name_of(change) or "?" for _, change in logic.changes})

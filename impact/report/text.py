@@ -158,7 +158,7 @@ def render_more_places(findings: Sequence[Finding]) -> list[str]:
     """The places behind the first of a cause, in a line: a few of them, then `...`; no line without any."""
     if not findings:
         return []
-    places = [escape(f"{finding.path}:{finding.line}" if finding.line else finding.path) for finding in findings[:_PLACES]]
+    places = [escape(f"{each.path}:{each.line}" if each.line else each.path) for each in findings[:_PLACES]]
     named = ", ".join([*places, "..."] if len(findings) > _PLACES else places)
     return [f"and {format_count(len(findings), 'more place')}: {named}"]
 

@@ -10,8 +10,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
-from rosimpact.classifier.model import load
-from rosimpact.classifier.triage import CHECKS, Post, is_address, list_checks, make_post, parse_post, triage
+from rosimpact.classifier.triage import CHECKS, Post, is_address, list_checks, parse_post
 from rosimpact.corpus.polite import Clock
 from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner

@@ -199,6 +199,11 @@ ROWS = {
         edited("harbour/harbour/horn.py", ("        self.create_subscription(Bool, 'alarm', self.on_alarm, 10)\n", "")),
         [("topic", "removed", "/alarm", "no subscriber any more", [])],
     ),
+    "another type": Row(
+        edited("harbour/harbour/horn.py", ("(Bool, 'alarm'", "(Empty, 'alarm'"), ("import Bool", "import Bool, Empty")),
+        [("topic", "changed", "/alarm",
+          "the subscriber has another type (`std_msgs/Empty` instead of `std_msgs/Bool`)", [])],
+    ),
     "another quality": Row(
         edited(PY, ("'level', self.on_level, 10", "'level', self.on_level, rclpy.qos.qos_profile_sensor_data")),
         [("topic", "changed", "/level", "the subscriber has another QoS", [("", "horn")])],
@@ -273,7 +278,7 @@ def test_json_is_as_its_schema_says(between: Between):
     page = Path(__file__).parents[2] / "docs/impact.schema.json"
     assert page.read_text() == impact_report.render_schema(), "rosimpact impact --schema > docs/impact.schema.json"
     impact = between(ROWS["a condition"].files)
-    document = json.loads(impact_report.render_json(impact, ImpactResult(impact, "ws", "", "main", ()), "1.2"))
+    document = json.loads(impact_report.render_json(ImpactResult(impact, "ws", "", "main", ()), "1.2"))
     jsonschema.validate(document, schema)
     (change,) = document["changes"]
     assert (change["kind"], change["line"], len(change["reaches"])) == ("condition", 13, 2)

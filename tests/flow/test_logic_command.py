@@ -66,6 +66,19 @@ def typed(tmp_path, monkeypatch):
     return lambda *arguments: CliRunner().invoke(app, ["logic", *map(str, arguments), "--quiet"])
 
 
+def test_names_that_match_apart_but_not_together(tmp_path, typed) -> None:
+    def both(change: tuple[str, str]) -> dict[str, str | bytes]:
+        hum = {**beep(change, ("beeps", "hums")), "package.xml": MANIFEST.replace(">beep<", ">hum<")}
+        trees = {"beep": beep(change), "hum": hum}
+        return {f"{name}/{path}": data for name, tree in trees.items() for path, data in tree.items()}
+
+    repository = history(tmp_path / "repo", both(("True)", "True)")), both(("True)", "True) and ready()")))
+    shown = typed(repository, "--package", "beep", "--topic", "hums")
+    assert "--package beep --topic hums: changes match each of them, but nothing matches both" in shown.stderr
+    shown = typed(repository, "--package", "beep", "--topic", "hmus")
+    assert "--topic hmus: nothing of it changed" in shown.stderr and "--package" not in shown.stderr
+
+
 @pytest.mark.parametrize(
     ("asked", "said"),
     [

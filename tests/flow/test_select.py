@@ -57,7 +57,7 @@ def test_what_is_near(around, hops, packages):
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        ({"nodes": ["plannr"]}, "`plannr`: no node of this name; there is `planner/planner`"),
+        ({"nodes": ["plannr"]}, "`plannr`: no node of this name; there is `planner`, `planner/planner`"),
         ({"topics": ["scam"]}, "no topic, service or action of this name; there is `scan`"),
         ({"around": "nowhere-near"}, "no node or topic"),
         ({"packages": ["none"]}, "`none`: no package with nodes of this name; there is `planner`"),

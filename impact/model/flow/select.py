@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
@@ -78,6 +78,22 @@ def select_graph(
     return Selection(extract_part(graph, kept_nodes, kept_names), len(hidden), asked)
 
 
+def check_names(
+    graphs: Sequence[Graph], *, nodes: Sequence[str], topics: Sequence[str], packages: Sequence[str],
+    known: Collection[str],
+) -> None:  # fmt: skip
+    """Raises NothingSelected where what is asked for, as for select_graph(), is in none of the graphs, or is no package
+    of those known."""
+    every = [node for graph in graphs for node in graph.nodes]
+    names = {each.topic for graph in graphs for each in (*graph.endpoints, *graph.publishes)}
+    if packages and not any(_fits(name, packages, ("",)) for name in known):
+        raise NothingSelected(_explain("package", packages, known))
+    if topics and not any(name and _fits(name, topics, ("", "/")) for name in names):
+        raise NothingSelected(_explain("topic, service or action", topics, names))
+    if nodes and not any(name and _fits(name, nodes, ("",)) for node in every for name in _get_names(node)):
+        raise NothingSelected(_explain("node", nodes, _list_names(every)))
+
+
 def extract_part(graph: Graph, nodes: Collection[str], names: Collection[str]) -> Graph:
     """What a graph has of some nodes, by their ids, and of some names."""
     return structs.replace(
@@ -98,10 +114,14 @@ def _get_names(node: Node) -> tuple[str, ...]:
     return (node.id, node.name, node.name.lstrip("/"), node.name.rpartition("/")[2], node.executable, node.plugin)
 
 
+def _list_names(nodes: Iterable[Node]) -> list[str]:
+    return [name for node in nodes for name in _get_names(node)]
+
+
 def _select_nodes(graph: Graph, patterns: Sequence[str]) -> set[str]:
     found = {node.id for node in graph.nodes if any(name and _fits(name, patterns, ("",)) for name in _get_names(node))}
     if not found:
-        raise NothingSelected(_explain("node", patterns, [node.id for node in graph.nodes]))
+        raise NothingSelected(_explain("node", patterns, _list_names(graph.nodes)))
     return found
 
 
