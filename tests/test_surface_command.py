@@ -154,6 +154,9 @@ def test_without_clones_what_is_shipped_answers():
         (("diff", "REPOS/ros2+rclcpp", "16.0.0", "28.1.0", "--packages", "x"), "--packages x: "),
         (("diff", "rclcpp", "a", "b", "--format", "x"), "--format x: unknown; choose one of text, json, markdown"),
         (("show", "rclcpp", "--repos", "REPOS/none"), "no such folder"),
+        (("show", "rclcpp@/opt/ros/nowhere"), "/opt/ros/nowhere: no such file or folder; give an installed prefix"),
+        (("diff", "rclcpp", "/opt/ros/nowhere", "jazzy"), "/opt/ros/nowhere: no such file or folder"),
+        (("diff", "/nowhere/rclcpp", "16.0.0", "28.1.0"), "/nowhere/rclcpp: no such folder; give a package"),
         (("show", "nothing_like_it", "--repos", "REPOS"), "no distro ever had `nothing_like_it`"),
     ],
 )

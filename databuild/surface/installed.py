@@ -77,12 +77,14 @@ class InstalledFiles(NamedTuple):
 
 def is_installed(asked: str) -> bool:
     """Whether a user means an installed prefix, a Debian package or a folder of those, not a version."""
-    return os.sep in asked and os.path.exists(asked)
+    return os.sep in asked
 
 
 def read_surface(package: str, asked: str) -> tuple[Surface, RepositorySurfaces]:
     """What a package offers that is installed in a prefix, or in a .deb or a folder of them. Raises VersionError."""
     place = Path(asked)
+    if not place.exists():
+        raise VersionError(f"{asked}: no such file or folder; give an installed prefix, a .deb or a folder of those")
     try:
         parts = load([place]) if place.is_file() else load(found) if (found := sorted(place.glob("*.deb"))) else None
         if parts is None:

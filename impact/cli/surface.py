@@ -43,6 +43,8 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format,
                 raise UserError(f"--packages {unknown[0]}: {clone.name} has no such package at {old} or {new}")
             changes = {name: each for name, each in changes.items() if (name in packages if packages else each)}
             sources = [report.VersionSource(revision, "", clone.name, revision) for revision in (old, new)]
+        elif os.sep in what and not os.path.isdir(what):
+            raise UserError(f"{what}: no such folder; give a package, or the path of a clone")
         else:
             (first, before), (second, after) = (_find_surface(what, asked, repos, store, jobs) for asked in (old, new))
             changes = {what: compare(before.surfaces[what], after.surfaces[what], before, after)}
