@@ -156,6 +156,9 @@ UNTRACKED = {
     "tracked products": ({"log/p.xml": "", "build/x": ""}, {"log/y": ""}, ["build/x", "log/p.xml", "log/y"]),
     "new files count": ({"a": ""}, {"b": "", "new_package/package.xml": ""}, ["a", "b", "new_package/package.xml"]),
     "hidden folders": ({".github/x": "", ".docker/x": ""}, {".cache/y": ""}, [".docker/x", ".github/x"]),
+    "hidden folders that people write in": (
+        {"a": ""}, {".devcontainer/Dockerfile": "", ".vscode/b": ""}, [".devcontainer/Dockerfile", "a"]
+    ),
     "virtual environments": ({"a": "", "env/x": ""}, {"venv/pyvenv.cfg": "", "venv/x.py": ""}, ["a", "env/x"]),
     "a folder called env is none": ({"a": ""}, {"env/package.xml": ""}, ["a", "env/package.xml"]),
 }  # fmt: skip

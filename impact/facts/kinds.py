@@ -92,7 +92,7 @@ BY_ENDING = {
 # Templates that configure_file() fills in; what they mention is mentioned all the same.
 TEMPLATES = {"cmake", "h", "hpp", "cpp", "cc", "launch", "urdf", "xacro", "world", "sdf", "sh", "bash"}
 VARIANT = re.compile(r"package[._-][\w.-]*\.xml$|package\.xml[._-]?ros[\w.-]*$")
-DOCKERFILE = re.compile(r"(?:.*\.)?dockerfile(?:\..*)?\Z")
+DOCKERFILE = re.compile(r"(?:(?:.*\.)?dockerfile(?:\..*|[_-][^.]*)?|.*[_-]dockerfile)\Z")
 CI = re.compile(
     r"(?:^|/)(?:\.github/workflows/[^/]+|\.gitlab-ci|\.gitlab/[^/]+|\.travis|\.circleci/config|azure-pipelines)"
     r"\.ya?ml\Z"

@@ -248,7 +248,7 @@ def _parse_docker(text: str, data: Snapshot | None) -> DistroTarget:
 _CI_FILE = re.compile(
     r"(?:^|/)(?:\.github/workflows/[^/]+\.ya?ml|\.gitlab-ci\.ya?ml|\.gitlab/[^/]+\.ya?ml|\.travis\.ya?ml"
     r"|\.circleci/config\.ya?ml|azure-pipelines\.ya?ml|Jenkinsfile|\.devcontainer/(?:[^/]+/)?devcontainer\.json"
-    r"|(?:[^/]*\.)?[Dd]ockerfile(?:\.[^/]*)?|(?:docker-)?compose\.ya?ml|pixi\.toml)$"
+    r"|(?:(?:[^/]*\.)?[Dd]ockerfile(?:\.[^/]*|[_-][^/.]*)?|[^/]*[_-][Dd]ockerfile)|(?:docker-)?compose\.ya?ml|pixi\.toml)$"
 )
 _AT_ROOT = re.compile(r"(?:\.github|\.gitlab-ci|\.gitlab|\.travis|\.circleci|azure-pipelines|Jenkinsfile)(?=[/.]|$)")
 """What CI services read at the root of a repository alone."""

@@ -32,6 +32,8 @@ PRODUCTS = frozenset(("build", "install", "devel", "log"))
 # A file whose time stamp is this close to the moment it was read may change once more without its time stamp showing
 # it (FAT keeps two seconds), so its id is not remembered. Git calls such entries racy.
 RACY_NS = 2_000_000_000
+# Hidden folders of files that people write, such as those that name the workspace's distro.
+_SETTINGS = frozenset((".circleci", ".devcontainer", ".docker", ".github", ".gitlab"))
 LINKED_FILES_AT_MOST = 20_000
 _INDEX_FORMAT = 1
 
@@ -186,7 +188,7 @@ class WorkingTree(Walked):
             return ""
         if path in PRODUCTS:
             why = "looks like a product of the build, and git tracks nothing in it"
-        elif name[0] == "." and name != ".github":
+        elif name[0] == "." and name not in _SETTINGS:
             why = "hidden, and git tracks nothing in it"
         elif name == "node_modules" or (name.endswith(("env", "ENV")) and os.path.lexists(f"{real}/pyvenv.cfg")):
             why = "holds installed packages, and git tracks nothing in it"
