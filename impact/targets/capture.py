@@ -45,6 +45,13 @@ def strip_version(version: str) -> str:
     return re.split(r"[-+~]", version.split(":", 1)[-1], maxsplit=1)[0]
 
 
+def _find_library_version(version: str) -> str:
+    """The library's version that a Debian package's tells. One without a revision is of a package that is Debian's own,
+    such as boost-defaults 1.74.0.3ubuntu7: behind the library's three numbers it counts its own changes."""
+    own = re.fullmatch(r"(?:\d+:)?(\d+\.\d+\.\d+)\.[^-]*", version)
+    return own[1] if own else strip_version(version)
+
+
 def read_dpkg_rows(rows: Iterable[tuple[str, str]]) -> tuple[str, dict[str, str], dict[str, str], dict[str, str]]:
     """(distro, ROS packages, libraries, system packages that matter) from (Debian name, version) pairs.
 
@@ -64,7 +71,7 @@ def read_dpkg_rows(rows: Iterable[tuple[str, str]]) -> tuple[str, dict[str, str]
     for library, names in DEBIAN_PACKAGES.items():
         for name in names:
             if name in installed:
-                libraries[library] = strip_version(installed[name])
+                libraries[library] = _find_library_version(installed[name])
                 matter[name] = installed[name]
                 break
     return distro, by_distro.get(distro, {}), libraries, matter

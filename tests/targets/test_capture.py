@@ -154,7 +154,16 @@ def test_plain_versions(version, expected):
 def test_the_first_package_that_tells_a_library_counts():
     rows = [("libvtk7-dev", "7.1.1"), ("libvtk9-dev", "9.1.0"), ("libboost-dev", "1.74.0.3ubuntu7")]
     _, _, libraries, matter = read_dpkg_rows(rows)
+    assert libraries["boost"] == "1.74.0" and matter["libboost-dev"] == "1.74.0.3ubuntu7"
     assert libraries["vtk"] == "9.1.0" and matter["libvtk9-dev"] == "9.1.0" and "libvtk7-dev" not in matter
+
+
+@pytest.mark.parametrize(
+    ("version", "expected"),
+    [("1.74.0.3", "1.74.0"), ("1.71.0.0ubuntu2", "1.71.0"), ("1.46.1", "1.46.1"), ("0.9.8.1-3", "0.9.8.1")],
+)
+def test_debians_own_count_is_no_part_of_a_librarys_version(version, expected):
+    assert read_dpkg_rows([("libboost-dev", version)])[2]["boost"] == expected
 
 
 def test_packages_of_ros_in_debian_are_of_no_distro():
