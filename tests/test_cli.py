@@ -376,6 +376,21 @@ def test_explain_lists_the_rules_and_knows_no_others(say):
     assert said.status == 2 and "did you mean `removed-header`" in said.err
 
 
+def test_explain_knows_families(say):
+    said = say("explain", "qos")
+    assert said.status == 0
+    assert said.out.startswith("qos: a family of rules.\n\nThe name stands for\n")
+    assert "did you mean `packages`?" in say("explain", "pakages").err
+
+
+def test_an_unknown_name_to_select_gets_the_nearest_and_all_families(say, tmp_path):
+    families = "families are api, general, graph, interfaces, logic, packages, qos, sources, versions"
+    said = say("check", tmp_path, "--select", "zzzz")
+    assert (said.status, said.err.partition("; ")[2]) == (2, families + "\n")
+    said = say("check", tmp_path, "--select", "grpah")
+    assert said.err.partition("; ")[2] == f"did you mean `graph`? {families}\n"
+
+
 def test_explain_knows_groups(say):
     assert "  changed-constant           changed-constant, removed-constant\n" in say("explain").out
     said = say("explain", "changed-constant").out

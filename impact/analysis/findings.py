@@ -279,7 +279,7 @@ def choose_rules(
     known = _list_known_names(rules.values())
     for name in (*select, *ignore):
         if name not in known and name not in EVERYTHING:
-            raise SettingsError(_describe_unknown_rule(name, known))
+            raise SettingsError(_describe_unknown_rule(name, rules))
     return {
         name: rule
         for name, rule in rules.items()
@@ -303,12 +303,13 @@ def _rank_specificity(settings: Collection[str], names: Sequence[str]) -> int:
     return int(any(name in settings for name in EVERYTHING))
 
 
-def _describe_unknown_rule(name: str, known: Sequence[str]) -> str:
+def _describe_unknown_rule(name: str, rules: Mapping[str, Rule]) -> str:
     from difflib import get_close_matches
 
-    close = get_close_matches(name, known, n=1)
-    hint = f"did you mean `{close[0]}`?" if close else f"families are {', '.join(known[-5:])}"
-    return f"no rule or family is called `{name}`; {hint}"
+    close = get_close_matches(name, _list_known_names(rules.values()), n=1)
+    hint = f"did you mean `{close[0]}`? " if close else ""
+    families = sorted({rule.family for rule in rules.values()})
+    return f"no rule or family is called `{name}`; {hint}families are {', '.join(families)}"
 
 
 def verify_settings(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) -> Sequence[PathSetting]:
@@ -321,7 +322,7 @@ def verify_settings(settings: Sequence[PathSetting], rules: Mapping[str, Rule]) 
         where = f'[paths."{entry.pattern}"]'
         for name in (*entry.select, *entry.ignore, *entry.severity):
             if name not in known and name not in EVERYTHING:
-                raise SettingsError(f"{where}: {_describe_unknown_rule(name, known)}")
+                raise SettingsError(f"{where}: {_describe_unknown_rule(name, rules)}")
         for name, value in entry.severity.items():
             if value not in (*SEVERITIES, "off"):
                 raise SettingsError(f"{where}: severity of `{name}` is `{value}`; write note, warning, error or off")

@@ -260,7 +260,7 @@ def logic(
 
 @_add_command(app)
 def explain(
-    rule: str | None = _make_argument("Name of a rule or group; default: list all rules."),
+    rule: str | None = _make_argument("Name of a rule, group or family; default: list all rules."),
 ) -> None:
     """Explain what a rule does, why it matters, and how to fix its findings."""
 

@@ -6,7 +6,7 @@ from .output import make_command
 
 @make_command()
 def explain(rule: str | None) -> str:
-    """The documentation of a rule or group, or the list of them."""
+    """The documentation of a rule, group or family, or the list of them."""
     from ..rules import explain as pages
     from ..rules.rule import load_rules
 

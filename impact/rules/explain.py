@@ -45,8 +45,7 @@ def describe_precision(judged: list[BatchPrecision]) -> str:
 def list_rules(rules: Mapping[str, Rule]) -> str:
     """All rules by family, and the groups."""
     lines = []
-    ordered = sorted(rules.values(), key=lambda rule: (rule.family, rule.name))
-    for family, members in groupby(ordered, key=lambda rule: rule.family):
+    for family, members in group_by_family(rules).items():
         lines.append(f"{family}:")
         lines += [f"  {rule.name:26s} {rule.severity:8s} {rule.summary}" for rule in members]
     found = group_rules(rules)
@@ -56,8 +55,16 @@ def list_rules(rules: Mapping[str, Rule]) -> str:
     return "\n".join(lines)
 
 
+def group_by_family(rules: Mapping[str, Rule]) -> dict[str, list[Rule]]:
+    """The rules of every family, by its name."""
+    ordered = sorted(rules.values(), key=lambda rule: (rule.family, rule.name))
+    return {family: list(members) for family, members in groupby(ordered, key=lambda rule: rule.family)}
+
+
 def explain(name: str, rules: Mapping[str, Rule]) -> str:
-    """The documentation of a rule or a group. Raises KeyError for a name that is neither; its text says what is."""
+    """The documentation of a rule, a group or a family. Raises KeyError for a name that is none; its text says what
+    is."""
+    families = group_by_family(rules)
     members = group_rules(rules).get(name, [])
     others = [rule for rule in members if rule.name != name]
     listed = "\n".join(f"    {rule.name}: {rule.summary}" for rule in others)
@@ -67,6 +74,9 @@ def explain(name: str, rules: Mapping[str, Rule]) -> str:
         return f"{documentation}\n\nThe name also stands for\n{listed}" if others else documentation
     if others:
         return f"{name}: a group of rules.\n\nThe name stands for\n{listed}"
-    close = get_close_matches(name, [*rules, *group_rules(rules)], 1)
+    if name in families:
+        listed = "\n".join(f"    {rule.name}: {rule.summary}" for rule in families[name])
+        return f"{name}: a family of rules.\n\nThe name stands for\n{listed}"
+    close = get_close_matches(name, [*rules, *group_rules(rules), *families], 1)
     hint = f"did you mean `{close[0]}`?" if close else "`rosimpact explain` lists them"
-    raise KeyError(f"no rule is called `{name}`; {hint}")
+    raise KeyError(f"no rule, group or family is called `{name}`; {hint}")
