@@ -167,6 +167,17 @@ def test_errors_are_one_line(repos, arguments, said):
     assert said in result.stderr
 
 
+def test_counts_of_kinds_are_plural():
+    from rosimpact.impact.report.surface import SurfaceDifference, VersionSource, render_diff_text
+    from rosimpact.impact.report.style import PLAIN
+    from rosimpact.impact.targets.surface.changes import PARAMETER, VersionChange
+
+    changes = tuple(VersionChange("arm", "build", "added", PARAMETER, name, breaks=False) for name in "ab")
+    source = VersionSource("a", "1.0.0", "arm", "")
+    shown = render_diff_text(SurfaceDifference(source, source, {"arm": changes}), PLAIN, False)
+    assert "New: 2 (2 parameters of a node)" in shown
+
+
 def test_hashes_of_messages():
     assert "\n  hash  std_msgs/msg/String  992ce8a1687cec8c8bd883ec73ca41d1\n" in run("show", "std_msgs@noetic").stdout
     # A version alone does not tell what other packages' messages were at that time.

@@ -417,8 +417,15 @@ def test_no_merge_base(tmp_path):
         GitTree(tmp_path).merge_base(str(lone))
 
 
+def test_a_folder_above_repositories_names_them(tmp_path):
+    for name in ("one", "two"):
+        commit(write(tmp_path / "src" / name, {"a": ""}))
+    with pytest.raises(TreeError, match=r"one of a single repository: .*src/one`, `.*src/two`\)"):
+        GitTree(tmp_path)
+
+
 def test_no_such_revision_or_repository(tmp_path):
-    with pytest.raises(TreeError, match="not in a git repository"):
+    with pytest.raises(TreeError, match="not in a git repository; give a folder that is in one"):
         GitTree(tmp_path)
     with pytest.raises(TreeError, match="git"):
         GitTree(tmp_path / "nowhere")

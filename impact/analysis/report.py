@@ -145,8 +145,13 @@ class Shown(NamedTuple):
     width: int
 
 
+# A word with the substitutions in it, or what stands in quotes or angle brackets.
+_TOKEN = re.compile(r"""(?:\$\([^()]*\)|\$\{[^{}]*\}|[\w./:+$-])+|<[^<>]*>|"[^"]*"|'[^']*'|.""")
+
+
 def locate_subject(line: str, column: int, subject: str) -> Shown:
-    """Where in a source line the finding points: the subject at its column, else the word there.
+    """Where in a source line the finding points: the subject at its column, else the word or quoted
+    text there.
 
     column counts characters from 1; 0 means the whole line, then the subject is looked for.
     """
@@ -160,7 +165,7 @@ def locate_subject(line: str, column: int, subject: str) -> Shown:
         near = line.find(subject, start, start + len(subject) + 2)
         if near >= 0:
             return Shown(line, near, len(subject))
-    word = re.compile(r"[\w./:+$-]+|.").match(line, start)
+    word = _TOKEN.match(line, start)
     return Shown(line, start, len(word.group()) if word else 1)
 
 

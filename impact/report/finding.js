@@ -6,6 +6,7 @@ const placeOf = (finding) => finding[PATH] + (finding[LINE] ? `:${finding[LINE]}
 
 // Place and code, which several findings of one cause have each for itself.
 function whereOf(finding) {
+  if (!finding[PATH]) return [];
   const place = make("div", { class: "place" }, placeOf(finding));
   if (!finding[CODE]) return [place];
   const [first, lines, start, width] = finding[CODE];

@@ -77,7 +77,7 @@ def format_verdict(report: Report, written: Callable[[str], str] | None = None, 
 def _render_row(report: Report, alike: list[Finding]) -> str:
     """One line for findings that say the same, with the first few places of them."""
     finding = alike[0]
-    places = [quote(each.path + (f":{each.line}" if each.line else "")) for each in alike[: _PLACES + 1]]
+    places = [_quote_place(each) for each in alike[: _PLACES + 1]]
     others = ""
     if len(alike) > 1:
         named = ", ".join([*places[1:], "…"] if len(alike) > len(places) else places[1:])
@@ -85,8 +85,13 @@ def _render_row(report: Report, alike: list[Finding]) -> str:
     told = set(re.split(r"[\s,;()]+", finding.message)).issuperset(finding.targets)
     everywhere = len(finding.targets) == len(report.targets)
     names = "" if told or everywhere else f" ({escape_markdown(', '.join(finding.targets))})"
-    text = f"- {_SYMBOL[finding.severity]} {places[0]}{others} {escape_markdown(_shorten(finding.message))}{names}"
+    where = f"{places[0]}{others} " if finding.path else ""
+    text = f"- {_SYMBOL[finding.severity]} {where}{escape_markdown(_shorten(finding.message))}{names}"
     return text + (f"; {escape_markdown(_shorten(finding.help))}" if finding.help else "")
+
+
+def _quote_place(finding: Finding) -> str:
+    return quote(finding.path + (f":{finding.line}" if finding.line else ""))
 
 
 def _shorten(text: str) -> str:

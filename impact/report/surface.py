@@ -145,7 +145,9 @@ def describe_remedy(change: VersionChange) -> str:
 def _pluralize(what: str, number: int) -> str:
     if number == 1:
         return what
-    return f"{what[:-1]}ies" if what.endswith("y") else f"{what}es" if what.endswith(("s", "sh")) else f"{what}s"
+    noun, *rest = what.partition(" of ")
+    plural = f"{noun[:-1]}ies" if noun.endswith("y") else f"{noun}es" if noun.endswith(("s", "sh")) else f"{noun}s"
+    return "".join((plural, *rest))
 
 
 def render_diff_markdown(found: SurfaceDifference) -> str:

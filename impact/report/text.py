@@ -107,7 +107,8 @@ def format_place(finding: Finding) -> str:
 def render_alike(report: Report, alike: Sequence[Finding], style: Style) -> list[str]:
     """Findings of one cause: the first with its place, its code and its help, and the places of the others."""
     finding = alike[0]
-    lines = [_render_head(report, finding, style), f"  {paint(style, 'dim', style.symbols[3])} {format_place(finding)}"]
+    lines = [_render_head(report, finding, style)]
+    lines += [f"  {paint(style, 'dim', style.symbols[3])} {format_place(finding)}"] if finding.path else []
     excerpt = report.excerpt(finding.path, finding.line) if finding.line else []
     _, shown = locate_in_excerpt(finding, excerpt)
     margin = len(str(finding.line))

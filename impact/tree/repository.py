@@ -24,6 +24,7 @@ DAMAGED = "its object is damaged"
 _SMALL_FILE = 64 * KB
 _ALTERNATES_DEEP = 5
 _INCLUDES_DEEP = 10
+_MOST_NAMED = 3
 _TREE, _BLOB = 2, 3
 # Folders of a repository that libgit2 opens files in.
 _FOLDERS = frozenset(("refs", "objects", "info", "logs", "reftable"))
@@ -52,7 +53,7 @@ def open_repository(place: str) -> OpenedRepository:
         if found is None:
             if not os.path.exists(place):
                 raise TreeError(f"`{shown(place)}` does not exist; give a git repository, or a folder in one")
-            raise TreeError(f"`{shown(place)}` is not in a git repository; give a folder that is in one")
+            raise TreeError(f"`{shown(place)}` is not in a git repository; {_suggest_inner(place)}")
         check.check_repository(os.path.realpath(found))
         return OpenedRepository(pygit2.Repository(found), frozenset(check.refused), check.loose)
     except (pygit2.GitError, KeyError, ValueError, OSError) as error:
@@ -60,6 +61,18 @@ def open_repository(place: str) -> OpenedRepository:
         named = f"`{shown(str(error.filename))}`: " if isinstance(error, OSError) and error.filename else ""
         text = f"the git repository `{shown(place)}` cannot be opened: {named}{shown(str(reason))}; repair or remove it"
         raise TreeError(text) from None
+
+
+def _suggest_inner(place: str) -> str:
+    """What to give instead of a folder that is in no repository: one of those in it, or any."""
+    from .working import WorkingTree
+
+    inner = [os.path.join(place, folder) for folder in sorted(WorkingTree(place).repositories)]
+    if not inner:
+        return "give a folder that is in one"
+    named = ", ".join(f"`{shown(folder)}`" for folder in inner[:_MOST_NAMED])
+    more = f" and {len(inner) - _MOST_NAMED:,} more" if len(inner) > _MOST_NAMED else ""
+    return f"a revision is one of a single repository: give one of those in it ({named}{more})"
 
 
 class _Check:

@@ -254,6 +254,12 @@ def test_markdown_says_a_thing_once(quiet):
     assert rows[-1] == "- and 4 errors more"
 
 
+def test_markdown_of_what_has_no_place(quiet):
+    finding = Finding("r", "error", "", "", 0, 0, "x", (), "nothing is there", "add it")
+    rows = markdown.render(quiet._replace(findings=(finding,), targets=quiet.targets[:1])).splitlines()
+    assert rows[2] == "- ❌ nothing is there; add it"
+
+
 def test_markdown_counts_what_it_leaves_out(large):
     assert markdown.render(large).splitlines()[7] == "- and 3,745 errors more"
 

@@ -88,6 +88,12 @@ def test_summary(quiet, changes, start):
     assert last(quiet._replace(**changes)).startswith(start)
 
 
+def test_what_has_no_place_has_no_line_for_it(quiet):
+    finding = Finding("r", "error", "", "", 0, 0, "x", (), "nothing is there", "add it")
+    lines = text.render(quiet._replace(findings=(finding,))).splitlines()
+    assert lines[4:6] == ["error[r]: nothing is there", "  help: add it"]
+
+
 def test_notes_are_shown_when_asked_for(team):
     lines = text.render(team, PLAIN._replace(severities=("error", "warning", "note")))
     assert "note[unused-dependency] all targets: `tf2` is declared and not used" in lines
@@ -151,6 +157,11 @@ POINTED = [
     ("", 1, "x", (0, 0)),
     ("x = (1)", 5, "q", (4, 1)),
     ("a b a b", 7, "b", (6, 1)),
+    ("#include <pcap.h>  // <", 10, "libpcap", (9, 8)),
+    ('#include "a/b.h"', 10, "c", (9, 7)),
+    ("'$(find arm)/arm.xacro' -x", 2, "arm_urdf", (1, 21)),
+    ("add_executable(${PROJECT_NAME}_map map.cpp)", 16, "map", (15, 19)),
+    ("a <b", 3, "q", (2, 1)),
 ]
 
 
