@@ -168,8 +168,8 @@ def test_errors_are_one_line(repos, arguments, said):
 
 
 def test_counts_of_kinds_are_plural():
-    from rosimpact.impact.report.surface import SurfaceDifference, VersionSource, render_diff_text
     from rosimpact.impact.report.style import PLAIN
+    from rosimpact.impact.report.surface import SurfaceDifference, VersionSource, render_diff_text
     from rosimpact.impact.targets.surface.changes import PARAMETER, VersionChange
 
     changes = tuple(VersionChange("arm", "build", "added", PARAMETER, name, breaks=False) for name in "ab")

@@ -6,7 +6,8 @@ same folders, so whatever is known about a file's bytes holds for both.
 Skipped, as colcon 0.21 and colcon-ros 0.5 do: folders that hold COLCON_IGNORE, AMENT_IGNORE, CATKIN_IGNORE, or the
 _setup_util.py and _order_isolated_packages.py of an install space. Beyond colcon: the database folders of version
 control; build, install, devel and log at the root, hidden folders other than those of CI services and containers, and
-virtual environments, each only where git governs the folder and tracks nothing below it. Without git every file counts as tracked.
+virtual environments, each only where git governs the folder and tracks nothing below it. Without git every file counts
+as tracked.
 
 A link to a file counts as that file. A link to a folder is followed once per target, never into its own parents. A link
 that leaves the tree, or leads into a database of version control, is named and not followed: what it leads to belongs

@@ -269,8 +269,10 @@ def test_markdown_counts_what_it_leaves_out(large):
     [
         ({}, "no known break on: humble, jazzy, rolling, robot; 3 includes, 1 topic unresolved, 1 file not read"),
         ({"coverage": AnalysisCoverage(1, 3, 3, {"import": 0})}, "safe on: humble, jazzy, rolling, robot"),
-        ({"coverage": AnalysisCoverage(1, 3, 3, {"import": 1})}, "no known break on: humble, jazzy, rolling, robot; 1 import "
-         "unresolved"),
+        (
+            {"coverage": AnalysisCoverage(1, 3, 3, {"import": 1})},
+            "no known break on: humble, jazzy, rolling, robot; 1 import unresolved",
+        ),
         ({"coverage": AnalysisCoverage(1, 3, 0)}, "analysed nothing"),
         ({"failure": "no *such* folder"}, "failed: no \\*such\\* folder"),
         ({"targets": ()}, "found no target to check"),
