@@ -616,7 +616,8 @@ _SEED_FOLDERS = {
     "manifest": "manifest", "manifest_variant": "manifest", "cmake": "cmake", "msg": "interface", "srv": "interface",
     "action": "interface", "idl": "interface", "cpp": "cpp", "flow_cpp": "cpp", cpp.__name__: "cpp",
     declared.make_kind("cpp"): "cpp", "launch_xml": "launch_xml", "xacro": "launch_xml", "plugin_xml": "launch_xml",
-    "xml": "launch_xml", "launch_yaml": "launch_yaml", "params": "launch_yaml", declared.make_kind("yaml"): "launch_yaml",
+    "xml": "launch_xml", "launch_yaml": "launch_yaml", "params": "launch_yaml",
+    declared.make_kind("yaml"): "launch_yaml",
     "shell": "shell", "script": "shell", "flow_script": "shell", "setup_cfg": "cfg", "pyproject": "toml",
 }  # fmt: skip
 
