@@ -408,15 +408,17 @@ class ApiUses:
             own = self.resolver.list_own_lineage(class_.name)
             if any(one.open for one in own):
                 continue
-            have = {name for one in own for name in one.members}
+            # A macro may declare it (`MOCK_METHOD1(cancel, void(int))`): where the word stands, it may be there.
+            names = [one.name.rpartition("::")[2] for one in own]
+            files = [file for file in self.resolver.files if any(map(file.list_classes, names))]
             for one in own:
                 for base in one.bases:
                     type_ = self.resolver.find_type(base, locate_class(one))
                     if type_ is None or type_.own or not type_.name:
                         continue
                     for name in self.vocabulary.list_pure(type_.name):
-                        package = self.vocabulary.names[name].package
-                        if name.rpartition("::")[2] not in have and package not in self.vocabulary.home:
+                        package, word = self.vocabulary.names[name].package, name.rpartition("::")[2]
+                        if package not in self.vocabulary.home and not any(file.mentions(word) for file in files):
                             yield FoundName(package, name, class_.offset, "implement", -1, (), False, True, ())
 
     def _find_first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
