@@ -200,7 +200,7 @@ def about_others(report: Report) -> list[dict]:
 
 
 @pytest.fixture(scope="module")
-def locate(tmp_path_factory) -> Path:
+def place(tmp_path_factory) -> Path:
     """A folder for the cache and, in a folder of its own to which links may lead, the workspace."""
     return tmp_path_factory.mktemp("unchanged")
 
