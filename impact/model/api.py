@@ -215,6 +215,12 @@ class PackageNames:
         return group_pairs((full.rpartition("::")[0], full) for full, name in self.names.items() if name.pure)
 
     @cached_property
+    def constructed(self) -> frozenset[str]:
+        """Last parts of the classes with constructors of which a use can matter."""
+        made = (full for full, name in self.names.items() if name.what == "constructor" and name.matters)
+        return frozenset(full.rpartition("::")[2] for full in made)
+
+    @cached_property
     def names_begin(self) -> frozenset[str]:
         """First parts of the names, empty for those without scopes."""
         return _begins(self.names)
@@ -485,8 +491,7 @@ class Vocabulary:
     @cached_property
     def constructed(self) -> frozenset[str]:
         """Last parts of the classes with changing constructors of which a use can matter."""
-        looked_for = self.select_wanted(self.words)
-        return frozenset(word for word in looked_for if self.list_constructors(word))
+        return frozenset().union(*(known.constructed for known in self._wanted))
 
     @cache_method
     def is_member(self, word: str) -> bool:

@@ -942,27 +942,29 @@ class PackageJoin:
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.changing, ros, self.home)
         assigning = vocabulary.select_wanted(vocabulary.words & ASSIGNING.keys())
         exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
-        if any(not words.isdisjoint(vocabulary.speakers_of_pure) for words in spoken.values()):
-            exported.update(name for path in spoken for name in find_instantiated(self.read(path)))
-        exported_words = {name.rpartition("::")[2] for name in exported}
+        # Of the classes that are not exported, those count of which objects are made and whose base is named beside them.
+        deriving = {path for path, words in spoken.items() if not words.isdisjoint(vocabulary.speakers_of_pure)}
+        made = {name for path in spoken for name in find_instantiated(self.read(path))} if deriving else set[str]()
         for path, (role, _, targets, conditions) in roles.items():
             words = vocabulary.select_wanted(vocabulary.words & spoken[path]) | assigning if path in spoken else set()
             # Words of a file are at least four characters long.
-            has_exported = path in spoken and any(len(word) < 4 or word in spoken[path] for word in exported_words)
+            asked = exported | made if path in deriving else exported
+            asked_words = {name.rpartition("::")[2] for name in asked}
+            has_asked = path in spoken and any(len(word) < 4 or word in spoken[path] for word in asked_words)
             initializes = path in spoken and INITIALIZES.search(self.read(path)) is not None
-            if not words and not has_exported and not initializes:
+            if not words and not has_asked and not initializes:
                 continue
             reached = sorted(to for to in self.list_reached(path) if to != path and to in spoken)
             reached += self.list_offered(path)
             near = [spoken[path], *map(self.list_words, reached)]
-            has_exported = (
-                has_exported
+            has_asked = (
+                has_asked
                 and any(not one.isdisjoint(vocabulary.speakers_of_pure) for one in near)
-                and not exported_words.isdisjoint(self.load(path).code.like_classes)
+                and not asked_words.isdisjoint(self.load(path).code.like_classes)
             )
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
-            built = vocabulary.constructed.intersection(frozenset().union(*near)) if initializes else frozenset()
-            if not words and not has_exported and not built:
+            built = frozenset().union(*map(vocabulary.constructed.intersection, near if initializes else ()))
+            if not words and not has_asked and not built:
                 continue
             code = self.load(path).code
             seen = set()
@@ -971,7 +973,7 @@ class PackageJoin:
             uses = ApiUses(resolver, heads)
             every = (
                 uses.find_uses(words),
-                uses.find_unimplemented(exported) if has_exported else (),
+                uses.find_unimplemented(asked) if has_asked else (),
                 uses.find_initialized(built) if built else (),
             )
             for found in itertools.chain(*every):

@@ -129,6 +129,14 @@ class KnownFile:
         """Names that it declares in any way, outside of functions."""
         return frozenset((*self.classes, *self.names, *self.members, *self.code.file.macros))
 
+    @cache_method
+    def list_like_members(self, class_: str) -> frozenset[str]:
+        """What looks like the declaration of a member of a type, without parsing the file. class_: the last part of the
+        type."""
+        if not self.mentions(class_):
+            return frozenset()
+        return frozenset(re.findall(rf"{class_}\b(?:<[^;{{}}()]{{0,200}}>)?\s+(\w+)\s*[;={{]", self.code.text))
+
     def list_aliases(self, name: str) -> Iterator[Declaration]:
         """What a name stands for, outside of classes."""
         if self.mentions(name) and name in self.code.like_aliases:

@@ -257,13 +257,12 @@ class ApiUses:
         return FoundName(self.vocabulary.names[name].package, name, use.offset, "call", count, given,
                      use.template is not None, True, ())  # fmt: skip
 
-    def find_initialized(self, classes: Collection[str]) -> Iterator[FoundName]:
+    def find_initialized(self, classes: frozenset[str]) -> Iterator[FoundName]:
         """Constructors of other packages' classes that initializer lists of the file call by the name of a member.
         classes: last parts of the classes that may be meant."""
         code, home = self.resolver.known.code, self.vocabulary.home
-        declared = re.compile(rf"\b(?:{'|'.join(sorted(classes))})(?:\s*<[^;{{}}]{{0,200}}>)?\s+(\w+)\s*[;={{]")
-        texts = (file.code.text for file in self.resolver.files if file.mentions_any(frozenset(classes)))
-        members = {name for text in texts for name in declared.findall(text) if code.mentions(name)}
+        declared = (name for file in self.resolver.files for class_ in classes for name in file.list_like_members(class_))
+        members = {name for name in declared if code.mentions(name)}
         for use in code.list_uses(sorted(members), self._may_initialize):
             type_ = self.resolver.resolve_variable(use.word, use.place) if use.form == "initializer" else None
             if type_ is None or type_.own or not type_.plain or use.call is None:
