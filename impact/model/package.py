@@ -39,6 +39,7 @@ from ..targets.providers.message_headers import parse_type
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .cmake.installed import HEADER_ENDINGS
+from .cpp.offered_headers import OfferedHeaders, collect_words
 from .macros import Macros
 from .python.undefined import (
     PythonOffer,
@@ -54,7 +55,6 @@ if TYPE_CHECKING:
     from ..facts.extract import ExtractedFacts
     from ..targets.asked_versions import AskedVersions
     from .api import Changes
-    from .cpp.offered_headers import OfferedHeaders
     from .cpp.resolver import KnownFile
     from .discovery import PackagePlace
     from .members import FoundField
@@ -942,7 +942,7 @@ class PackageJoin:
         vocabulary = Vocabulary(sorted(packages - {self.name}), self.name, self.changing, ros, self.home)
         assigning = vocabulary.select_wanted(vocabulary.words & ASSIGNING.keys())
         exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
-        # Of the classes that are not exported, those count of which objects are made and whose base is named beside them.
+        # Of classes that are not exported, those count of which objects are made and whose base is named beside them.
         deriving = {path for path, words in spoken.items() if not words.isdisjoint(vocabulary.speakers_of_pure)}
         made = {name for path in spoken for name in find_instantiated(self.read(path))} if deriving else set[str]()
         for path, (role, _, targets, conditions) in roles.items():
@@ -954,27 +954,30 @@ class PackageJoin:
             initializes = path in spoken and INITIALIZES.search(self.read(path)) is not None
             if not words and not has_asked and not initializes:
                 continue
-            reached = sorted(to for to in self.list_reached(path) if to != path and to in spoken)
-            reached += self.list_offered(path)
-            near = [spoken[path], *map(self.list_words, reached)]
+            own = [path, *sorted(to for to in self.list_reached(path) if to != path and to in spoken)]
+            offered = self.list_offered(path)
+            near = [*(spoken[at] for at in own if at in spoken), *map(self.list_words, offered)]
             has_asked = (
                 has_asked
                 and any(not one.isdisjoint(vocabulary.speakers_of_pure) for one in near)
                 and not asked_words.isdisjoint(self.load(path).code.like_classes)
             )
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
-            built = frozenset().union(*map(vocabulary.constructed.intersection, near if initializes else ()))
+            # What a class initializes is its own, so that its package declares it.
+            sources = [spoken[at] for at in own if at in spoken] if initializes else []
+            built = frozenset().union(*map(vocabulary.constructed.intersection, sources))
             if not words and not has_asked and not built:
                 continue
             code = self.load(path).code
             seen = set()
-            resolver = Resolver([self.load(path), *(self.load(to) for to in reached)], vocabulary, None)
+            files = [self.load(at) for at in own]
+            resolver = Resolver([*files, *map(self.load, offered)], vocabulary, None)
             heads = {include.partition("/")[0] for include in self.list_reaching_paths(path)}
             uses = ApiUses(resolver, heads)
             every = (
                 uses.find_uses(words),
                 uses.find_unimplemented(asked) if has_asked else (),
-                uses.find_initialized(built) if built else (),
+                uses.find_initialized(built, files) if built else (),
             )
             for found in itertools.chain(*every):
                 around = code.find_conditions(found.offset)
@@ -998,9 +1001,9 @@ class PackageJoin:
     @cache_method
     def list_words(self, path: str) -> frozenset[str]:
         """Every word of a C++ file that has four letters or more, and all parts of its qualified names."""
-        facts = self.cpp[path] if path in self.cpp else self.facts(path).facts
-        parts = (part for name in facts.qualified for part in name.text.split("::"))
-        return frozenset((*facts.words.split(" "), *parts, *facts.using))
+        if path not in self.cpp and self.offered is not None:
+            return self.offered.list_words(path)
+        return collect_words(self.cpp[path])
 
     def list_python_member_uses(self, files: dict[str, PythonFile]) -> Iterator[MemberUse]:
         """The same in Python files."""

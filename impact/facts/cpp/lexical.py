@@ -511,7 +511,7 @@ def extract(data: bytes) -> CppFile:
         references=_find_references(scanned.text, visible, locate),
         types=list_defined_types(visible, tokens_text) if "namespace" in tokens_text else (),
         variables=_list_variable_types(visible),
-        code=hashlib.sha1(" ".join(visible.split()).encode()).hexdigest()[:16],
+        code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
     )
 
 

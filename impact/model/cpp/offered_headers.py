@@ -37,6 +37,12 @@ class OfferedHeaders:
         return path if path and self._owners[path] != folder else ""
 
     @cache_method
+    def list_words(self, header: str) -> frozenset[str]:
+        """Every word of a header, as collect_words() has them."""
+        facts = self._get_facts(header)
+        return collect_words(facts) if facts is not None else frozenset()
+
+    @cache_method
     def list_with(self, header: str) -> frozenset[str]:
         """A header, and all that it includes, directly or not, and that packages of the workspace offer."""
         return frozenset(at for at in walk([header], self._list_included) if self._get_facts(at) is not None)
@@ -67,3 +73,9 @@ class OfferedHeaders:
         content, _, code = described.partition(" ")
         now = self.gathered.ids.get(header, "")
         return now == content or (header in self._owners and self.describe(header).partition(" ")[2] == code)
+
+
+def collect_words(facts: CppFile) -> frozenset[str]:
+    """Every word of a C++ file that has four letters or more, and all parts of its qualified names."""
+    parts = (part for name in facts.qualified for part in name.text.split("::"))
+    return frozenset((*facts.words.split(" "), *parts, *facts.using))

@@ -257,11 +257,11 @@ class ApiUses:
         return FoundName(self.vocabulary.names[name].package, name, use.offset, "call", count, given,
                      use.template is not None, True, ())  # fmt: skip
 
-    def find_initialized(self, classes: frozenset[str]) -> Iterator[FoundName]:
+    def find_initialized(self, classes: frozenset[str], files: Iterable[KnownFile]) -> Iterator[FoundName]:
         """Constructors of other packages' classes that initializer lists of the file call by the name of a member.
-        classes: last parts of the classes that may be meant."""
+        classes: last parts of the classes that may be meant. files: where members may be declared."""
         code, home = self.resolver.known.code, self.vocabulary.home
-        declared = (name for file in self.resolver.files for class_ in classes for name in file.list_like_members(class_))
+        declared = (name for file in files for class_ in classes for name in file.list_like_members(class_))
         members = {name for name in declared if code.mentions(name)}
         for use in code.list_uses(sorted(members), self._may_initialize):
             type_ = self.resolver.resolve_variable(use.word, use.place) if use.form == "initializer" else None
