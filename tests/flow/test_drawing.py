@@ -92,6 +92,14 @@ def test_nodes_without_edges_are_named_in_text():
     assert "\n1 node with none of these: /lone\n" in draw(structs.replace(NOW, nodes=(*NOW.nodes, lone)), "text")
 
 
+def test_nodes_whose_names_are_not_known_are_said_apart_in_text():
+    lone, lost = (structs.replace(NOW.nodes[0], id=f"{name}/{name}", name=f"/{name}") for name in ("lone", "lost"))
+    unnamed = structs.replace(NOW.endpoints[0], node="lost/lost", topic="", how="unresolved")
+    graph = structs.replace(NOW, nodes=(*NOW.nodes, lone, lost), endpoints=(*NOW.endpoints, unnamed))
+    text = draw(graph, "text")
+    assert "\n1 node that talks under names that are not known: /lost\n\n1 node with none of these: /lone\n" in text
+
+
 def test_the_answer_to_a_question_lists_what_is_not_resolved_where_it_looked():
     assert "planner/planner.cpp:7:  publisher name" in draw(NOW, "text", topics=["scan"])
     text = draw(NOW, "text", nodes=["driver"], topics=["scan"])

@@ -31,10 +31,14 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
         groups.setdefault((edge.name, edge.kind), []).append(edge)
     for group in groups.values():
         lines += [*_render_name(group, names, style), ""]
-    alone = sorted({names[node.id] for node in graph.nodes} - {names.get(edge.node, "") for edge in found})
-    if alone:
-        said = f"{format_count(len(alone), 'node')} with none of these: {', '.join(alone)}"
-        lines += [*lay_out([LinePart(said)], style, 0, 2), ""]
+    alone = {names[node.id] for node in graph.nodes} - {names.get(edge.node, "") for edge in found}
+    lost = alone & {names.get(each.node, "") for each in (*graph.endpoints, *graph.publishes) if not each.topic}
+    verb = "talks" if len(lost) == 1 else "talk"
+    unknown = f"that {verb} under names that are not known"
+    for what, which in ((unknown, lost), ("with none of these", alone - lost)):
+        if which:
+            said = f"{format_count(len(which), 'node')} {what}: {', '.join(sorted(which))}"
+            lines += [*lay_out([LinePart(said)], style, 0, 2), ""]
     near = graph.coverage.unresolved
     if selection.asked and not everything:
         paths = {each.path for each in (*graph.endpoints, *graph.publishes)}
