@@ -945,11 +945,12 @@ class PackageJoin:
         # Of classes that are not exported, those count of which objects are made and whose base is named beside them.
         deriving = {path for path, words in spoken.items() if not words.isdisjoint(vocabulary.speakers_of_pure)}
         made = {name for path in spoken for name in find_instantiated(self.read(path))} if deriving else set[str]()
+        asked_of = {True: exported | made, False: exported}
+        last_parts = {derives: {name.rpartition("::")[2] for name in names} for derives, names in asked_of.items()}
         for path, (role, _, targets, conditions) in roles.items():
             words = vocabulary.select_wanted(vocabulary.words & spoken[path]) | assigning if path in spoken else set()
+            asked, asked_words = asked_of[path in deriving], last_parts[path in deriving]
             # Words of a file are at least four characters long.
-            asked = exported | made if path in deriving else exported
-            asked_words = {name.rpartition("::")[2] for name in asked}
             has_asked = path in spoken and any(len(word) < 4 or word in spoken[path] for word in asked_words)
             initializes = path in spoken and INITIALIZES.search(self.read(path)) is not None
             if not words and not has_asked and not initializes:

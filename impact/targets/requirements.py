@@ -33,7 +33,7 @@ def find_refused_python(target: DistroTarget, specifier: str) -> str:
 def find_refused_library(target: DistroTarget, requirement: Requirement) -> str:
     """The version of a library on the target's platform, under the name that it has on PyPI too, where a requirement
     that counts there does not accept it; empty in all other cases."""
-    name = canonicalize_name(requirement.name)
+    name = normalize_name(requirement.name)
     if name not in PYTHON_LIBRARIES or not target.python or not _counts(target, requirement):
         return ""
     version = target.find_library(name) or ""

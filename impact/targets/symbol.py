@@ -25,7 +25,7 @@ class Symbol(NamedTuple):
 class Horizon(NamedTuple):
     """What a target is going to be. name: as a message has it. platform: the newest distro, of which only the platform
     counts (libraries and Python), packages that it lacks, and what is deprecated here already. What its packages change
-    otherwise is told by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two long-term
+    otherwise is shown by `rosimpact upgrade`, since nobody gets them without moving on. far: more than two long-term
     distros ahead, which is worth no warning."""
 
     target: DistroTarget

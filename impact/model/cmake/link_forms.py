@@ -60,7 +60,7 @@ def _read_released(view: TargetView, name: str, build: BuildSurface) -> LinkForm
     unknown = {part for part, _ in build.unknown}
     generated = "targets" in unknown and any(target.kind == "generated" for target in build.targets)
     if generated and build.build_type == "ament_cmake":
-        # Which type supports there are is told by the installation alone.
+        # Which type supports there are depends on what is installed.
         return LinkForm((f"${{{name}_TARGETS}}",))
     if "targets" in unknown or not all(target.sure for target in build.targets):
         return None

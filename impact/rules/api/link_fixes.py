@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from itertools import pairwise
 
+from ....edges.groups import group_pairs
 from ...model.cmake.build import At, BuildTarget, DependencyCall
 from ...model.cmake.link_forms import LinkForm, find_link_form
 from ..vocabulary import FixAction, Insert, Package, Replace, TargetView
@@ -27,10 +28,8 @@ def tell_replacement(view: TargetView, package: Package, call: DependencyCall) -
 
 def make_link_fix(view: TargetView, package: Package) -> tuple[FixAction, ...]:
     """Actions that replace every call that counts on the target; none where one of them cannot be replaced."""
-    calls: dict[At, list[DependencyCall]] = {}
-    for call in package.build.dependency_calls:
-        if view.applies(call.conditions):
-            calls.setdefault(call.at, []).append(call)
+    counting = (call for call in package.build.dependency_calls if view.applies(call.conditions))
+    calls = group_pairs((call.at, call) for call in counting)
     actions: list[FixAction] = []
     for several in calls.values():
         made = _replace_call(view, package, several[0]) if len(several) == 1 else ()

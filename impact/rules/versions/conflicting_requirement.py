@@ -27,7 +27,7 @@ from collections.abc import Iterable, Iterator
 
 from ...model.package import find_folder_role
 from ...targets.platform import PYTHON_LIBRARIES
-from ...targets.requirements import find_refused_library, read_requirement
+from ...targets.requirements import find_refused_library, normalize_name, read_requirement
 from ..vocabulary import At, Diagnostic, TargetView, Text, list_place_doubts, rule
 
 
@@ -57,7 +57,7 @@ def _list_conflicts(
         version = find_refused_library(view.target, requirement) if requirement is not None else ""
         if requirement is None or not version:
             continue
-        name = requirement.name.lower()
+        name = normalize_name(requirement.name)
         if installed.isdisjoint(view.target.find_keys(PYTHON_LIBRARIES[name])):
             continue
         role = find_folder_role(at.path[len(folder) :].lstrip("/")) or "run"

@@ -16,6 +16,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ....edges.console import UserError
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...conditions import Environment
@@ -561,11 +562,11 @@ class DistroTarget:
     def python_keys(self) -> dict[str, tuple[str, ...]]:
         """Rosdep keys that install a Python package here, by pip or as the platform's own, by the name that PyPI or
         Debian has for it, in lower case with `-`."""
-        found: dict[str, list[str]] = {}
-        for key, resolution in self._resolve_keys().items():
-            for name in resolution.packages:
-                plain = re.sub(r"[-_.]+", "-", re.split(r"[=<>!~\[ ]", name)[0].lower())
-                found.setdefault(plain.removeprefix("python3-"), []).append(key)
+        from packaging.utils import canonicalize_name  # few checks read requirements
+
+        installed = ((name, key) for key, resolution in self._resolve_keys().items() for name in resolution.packages)
+        plain = ((canonicalize_name(re.split(r"[=<>!~\[ ]", name)[0]), key) for name, key in installed)
+        found = group_pairs((name.removeprefix("python3-"), key) for name, key in plain)
         return {name: tuple(sorted(keys)) for name, keys in found.items()}
 
     @cache_method
