@@ -50,6 +50,9 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("searches", "SearchedCpp", ("searched_cpp",)),
     ("searches", "SearchedText", ("searched_text",)),
     ("searches", "CalledCpp", ("called_cpp",)),
+    ("cpp.syntax", "FileDeclarations", ("declared_cpp",)),
+    ("cpp.syntax", "MentionedCpp", ("mentioned_cpp",)),
+    ("cpp.syntax", "UsedCpp", ("used_cpp",)),
 )  # fmt: skip
 EXTRACTORS = {kind: (module, struct) for module, struct, kinds in _READ_BY for kind in kinds}
 """kind: (module, struct). A kind is stored under the key of its module\'s code.
@@ -58,7 +61,9 @@ A kind with a dot is the full name of a module of another room that makes facts,
 `rosimpact.room.module:variant`. It needs no entry here: such a module has `extract`, which is given the variant where
 there is one, `Facts`, its struct, and `LIMITS`, by variant the name of the limit that the size of its files has."""
 WITH_KIND = frozenset({"colcon", "distros", "interface", "launch.flow", "launch.references", "setup"})
-SEARCHES = frozenset(kind for kind, (module, _) in EXTRACTORS.items() if module == "searches")
+SEARCHES = frozenset((
+    *(kind for kind, (module, _) in EXTRACTORS.items() if module == "searches"), "mentioned_cpp", "used_cpp",
+))  # fmt: skip
 """Kinds that are made of a file's first facts too, and of a table that says what to look for; see search()."""
 _OTHERS_READ_TOO = {
     "script": ("python", "shell"),

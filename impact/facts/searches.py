@@ -84,15 +84,6 @@ class CalledCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
     problems: tuple[Problem, ...] = ()
 
 
-_FAR = 300
-_NAMED = re.compile(rb"(?!\w)\s*[;:{=<]")
-_DECLARING = re.compile(rb"(?<![a-zA-Z0-9])(?:class|struct|enum|typedef|using)(?![a-zA-Z0-9])[^;{}=]*\Z")
-# The macro of ros/message_forward.h that announces a message.
-_MESSAGE = re.compile(rb"ROS_DECLARE_MESSAGE\s*\(\s*(\w+)")
-_SPACE = re.compile(rb"namespace\s+(\w+)")
-# tf2's namespace up to its end or that of the file, and a special form of one of its templates from outside.
-_OF_TF2 = (re.compile(rb"namespace\s+tf2\s*\{.*", re.DOTALL), re.compile(rb"template\s*<\s*>[^;{}]*"))
-_WORD = re.compile(rb"\w+")
 # An expression that starts with a literal is found at the speed of one; what stands before it is looked at after.
 _FUNCTION = re.compile(rb"(::(?<=\w::)[A-Za-z]\w{2,100})\s?(\([^;{}]{0,1000})\{")
 _SCOPE = re.compile(rb"\w+\Z")
@@ -102,29 +93,6 @@ _FREE = re.compile(rb"\n(?!static|inline|template|else|return|typedef|using|exte
 _CALLED = re.compile(rb" ?(?:(\w{3,100}[A-Za-z])(?![\w.>])|(\w{2}[A-Za-z])[.>])")
 _BRACKET = re.compile(rb"[()]")
 _AFTER_PARAMETERS = re.compile(rb"\s*(?:\Z|[a-z/&]|:(?!:)|->)")
-
-
-def declares_type(data: bytes, name: str) -> bool:
-    """Whether the text of a C++ file announces or defines a class, enum or alias of a name, or announces a message."""
-    word = name.encode()
-    at = data.find(word)
-    while at >= 0:
-        end, before = at + len(word), data[at - 1 : at]
-        sign = _NAMED.match(data, end) if not (before.isalnum() or before == b"_") else None
-        if sign is not None and _DECLARING.search(data, max(0, sign.end() - 1 - _FAR), at) is not None:
-            return True
-        at = data.find(word, end)
-    return word in _MESSAGE.findall(data)
-
-
-def opens_namespace(data: bytes, name: str) -> bool:
-    """Whether the text of a C++ file opens a namespace, itself or around others."""
-    return name.encode() in _SPACE.findall(data)
-
-
-def declares_in_tf2(data: bytes, name: str) -> bool:
-    """Whether the text of a C++ file has a word in namespace tf2, or in a special form of a template."""
-    return any(name.encode() in _WORD.findall(part[0]) for form in _OF_TF2 for part in form.finditer(data))
 
 
 def called_cpp(data: bytes, facts: CppFile, table: None) -> CalledCpp:

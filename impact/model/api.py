@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
 from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
+from ..facts.cpp.schema import CodeSpot
+from ..facts.cpp.syntax import ASSIGNING
 from ..targets.surface.offers import Standing, find_standing
 from ..targets.surface.offers_cpp import (
     compare_defaults,
@@ -31,14 +33,12 @@ T = TypeVar("T")
 CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))
 """Kinds of names that are called."""
 CLASSES = frozenset(("class", "struct", "union"))
-ASSIGNING = {f"operator{sign}=": f"{sign}=" for sign in "+-*/"}
-"""Operators by name that are looked for where they stand behind an object, to the sign that they are written with."""
 
 
 class FoundName(NamedTuple):
     """A use of such a name in a text.
 
-    package, name, offset: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments:
+    package, name, at: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments:
     how many a call gives, or an override takes; -1: not to be told. given: of a call, what each argument shows itself
     to be (see ApiUses.shown); of an override, the types of its parameters, then `const` and `override` where they
     stand. templated: template arguments are written. sure: the name is written with its scopes, or the type of the
@@ -47,7 +47,7 @@ class FoundName(NamedTuple):
 
     package: str
     name: str
-    offset: int
+    at: CodeSpot
     how: str
     arguments: int
     given: tuple[str, ...]

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..facts.cpp.schema import CodeSpot
 from ..targets.surface.fields import ROS1_SUFFIXES, Definition, FieldMember, Fields
 
 if TYPE_CHECKING:
@@ -37,12 +38,12 @@ class MemberType(NamedTuple):
 
 
 class FoundField(NamedTuple):
-    """A use of a member. offset: where its name stands. sure: the receiver's type shows."""
+    """A use of a member. at: where its name stands, of C++ alone. sure: the receiver's type shows."""
 
     interface: NamedInterface
     section: str
     member: str
-    offset: int
+    at: CodeSpot | None
     sure: bool
 
 

@@ -9,7 +9,7 @@ import itertools
 import posixpath
 import re
 from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -21,8 +21,10 @@ from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
+from ..facts.cpp.schema import CodeSpot
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
+from ..facts.kinds import make_empty
 from ..facts.launch.actions import LaunchFile
 from ..facts.launch.references import PluginClass
 from ..facts.manifest import Manifest
@@ -31,7 +33,7 @@ from ..facts.python.reader import Import
 from ..facts.python.source import PythonFile
 from ..facts.python.uses import PythonUse
 from ..facts.requirements import RequirementsFile
-from ..facts.searches import SearchedCpp, WordUse, declares_in_tf2, declares_type, opens_namespace
+from ..facts.searches import SearchedCpp, WordUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
@@ -421,15 +423,14 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
 
 
 class PackageJoin:
-    """Joins the facts of a package's files. build: what its CMake says. files: all its paths. read: path to bytes, used
-    only to find members and changing names of C++. home: packages of the same workspace, which are not looked for in
-    what changed elsewhere. asked: the versions of other packages that uses may be wrong in, all when None. changing:
-    C++ names of other packages that are not alike in those. offered: headers of other packages of the workspace.
-    offered_read: those that were looked into."""
+    """Joins the facts of a package's files. build: what its CMake says. files: all its paths. home: packages of the
+    same workspace, which are not looked for in what changed elsewhere. asked: the versions of other packages that
+    uses may be wrong in, all when None. changing: C++ names of other packages that are not alike in those. offered:
+    headers of other packages of the workspace. offered_read: those that were looked into."""
 
     def __init__(
         self, place: PackagePlace, manifest: Manifest, build: Build, build_type: str, files: Iterable[str],
-        gathered: ExtractedFacts, read: Callable[[str], bytes], watched: Watched, home: Collection[str] = frozenset(),
+        gathered: ExtractedFacts, watched: Watched, home: Collection[str] = frozenset(),
         asked: AskedVersions | None = None, changing: Changes | None = None, offered: OfferedHeaders | None = None,
     ):  # fmt: skip
         self.name, self.path, self.manifest_path = place.name or manifest.name, place.path, place.manifest_path
@@ -438,7 +439,6 @@ class PackageJoin:
         self.kinds, self.facts, self.look = gathered.kinds, gathered.get_facts, gathered.look
         self.watched, self.home, self.asked, self.changing, self.offered = watched, home, asked, changing, offered
         self.offered_read: set[str] = set()
-        self.read = cache(read)  # a file is looked into for several reasons
         self.prefix = f"{self.path}/" if self.path else ""
         self.cpp: dict[str, CppFile] = {}
         self.searched: Mapping[str, SearchedCpp] = {}
@@ -772,7 +772,7 @@ class PackageJoin:
     def spaces(self) -> frozenset[str]:
         """First parts of the qualified names and namespaces in C++ files."""
         names = {name.text for facts in self.cpp.values() for name in facts.qualified}
-        names.update(name for facts in self.cpp.values() for name in (*facts.using, *facts.types))
+        names.update(name for facts in self.cpp.values() for name in (*facts.using, *facts.opened, *facts.types))
         return frozenset(name.removeprefix("::").partition("::")[0] for name in names)
 
     @cache_method
@@ -891,15 +891,12 @@ class PackageJoin:
         ).changing
         if not changing:
             return
-        short = {name for name in changing if len(name) < 4}
         scopes: dict[frozenset[Meant], InterfaceScope] = {}
         for path, (role, _, targets, conditions) in roles.items():
             facts = self.cpp.get(path)
             if facts is None:
                 continue
-            spoken = set(facts.words.split(" "))
-            spoken.update(name.text.rpartition("::")[2] for name in facts.qualified)
-            spoken.update(short)  # words of a file are at least four characters long
+            spoken = self.list_words(path)
             if not changing & spoken:
                 continue
             included, unknown = find_included_interfaces(sorted(self.list_reaching_paths(path)), table)
@@ -910,18 +907,16 @@ class PackageJoin:
                 scope = scopes[key] = InterfaceScope(key, table, asked, self.home)
             if not scope.changing & spoken:
                 continue
-            words = [word for word in sorted(scope.changing & spoken) if self.load(path).code.may_have_member(word)]
-            if not words:
-                continue
+            words = sorted(scope.changing & spoken)
             headers = [self.load(to) for to in sorted(self.list_reached(path)) if to != path]
-            code = self.load(path).code
             seen = set()
             for found in MemberUses(Resolver((self.load(path), *headers), None, scope)).find_uses(words, not unknown):
-                around = self.macros.resolve_conditions(code.find_conditions(found.offset) or (), targets)
+                assert found.at is not None
+                around = self.macros.resolve_conditions(found.at.conditions or (), targets)
                 key = (found.interface, found.section, found.member, around)
                 if key not in seen:
                     seen.add(key)
-                    at = At(path, *code.locate(found.offset))
+                    at = At(path, found.at.line, found.at.column)
                     yield _make_member_use(found, at, role, "cpp", conditions + around)
 
     def list_cpp_api_uses(self, roles) -> Iterator[CppApiUse]:
@@ -929,7 +924,7 @@ class PackageJoin:
         are compiled."""
         from .api import ASSIGNING, Vocabulary
         from .cpp.resolver import Resolver
-        from .cpp.uses import INITIALIZES, ApiUses, find_instantiated
+        from .cpp.uses import ApiUses
 
         if self.changing is None:
             return
@@ -944,15 +939,14 @@ class PackageJoin:
         exported = {name.removeprefix("::") for facts in self.cpp.values() for name in facts.exports}
         # Of classes that are not exported, those count of which objects are made and whose base is named beside them.
         deriving = {path for path, words in spoken.items() if not words.isdisjoint(vocabulary.speakers_of_pure)}
-        made = {name for path in spoken for name in find_instantiated(self.read(path))} if deriving else set[str]()
+        made = {name for path in spoken for name in self.cpp[path].made} if deriving else set[str]()
         asked_of = {True: exported | made, False: exported}
         last_parts = {derives: {name.rpartition("::")[2] for name in names} for derives, names in asked_of.items()}
         for path, (role, _, targets, conditions) in roles.items():
             words = vocabulary.select_wanted(vocabulary.words & spoken[path]) | assigning if path in spoken else set()
             asked, asked_words = asked_of[path in deriving], last_parts[path in deriving]
-            # Words of a file are at least four characters long.
-            has_asked = path in spoken and any(len(word) < 4 or word in spoken[path] for word in asked_words)
-            initializes = path in spoken and INITIALIZES.search(self.read(path)) is not None
+            has_asked = path in spoken and not asked_words.isdisjoint(spoken[path])
+            initializes = path in spoken and self.cpp[path].initializes
             if not words and not has_asked and not initializes:
                 continue
             own = [path, *sorted(to for to in self.list_reached(path) if to != path and to in spoken)]
@@ -961,7 +955,7 @@ class PackageJoin:
             has_asked = (
                 has_asked
                 and any(not one.isdisjoint(vocabulary.speakers_of_pure) for one in near)
-                and not asked_words.isdisjoint(self.load(path).code.like_classes)
+                and not asked_words.isdisjoint(self.load(path).type_names)
             )
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
             # What a class initializes is its own, so that its package declares it.
@@ -969,7 +963,6 @@ class PackageJoin:
             built = frozenset().union(*map(vocabulary.constructed.intersection, sources))
             if not words and not has_asked and not built:
                 continue
-            code = self.load(path).code
             seen = set()
             files = [self.load(at) for at in own]
             resolver = Resolver([*files, *map(self.load, offered)], vocabulary, None)
@@ -981,27 +974,30 @@ class PackageJoin:
                 uses.find_initialized(built, files) if built else (),
             )
             for found in itertools.chain(*every):
-                around = code.find_conditions(found.offset)
+                line, column, around = found.at
                 # Every call is a use of its own.
-                key = (*(found if found.how == "call" else found._replace(offset=0)), around)
+                key = (*(found if found.how == "call" else found._replace(at=CodeSpot(0, 0))), around)
                 if around is not None and key not in seen:
                     seen.add(key)
                     yield CppApiUse(found.package, found.name, found.how, found.arguments, found.given,
-                                    At(path, *code.locate(found.offset)), role, found.sure, found.through,
+                                    At(path, line, column), role, found.sure, found.through,
                                     found.templated, conditions + around, targets)  # fmt: skip
             self.unresolved_receivers += len(uses.unresolved)
 
     @cache_method
     def load(self, path: str) -> KnownFile:
         """What a file declares and uses."""
-        from ..facts.cpp.code import CppCode
         from .cpp.resolver import KnownFile
 
-        return KnownFile(CppCode(self.read(path)), self.list_words(path) if path in self.kinds else frozenset())
+        return KnownFile(self.facts(path).facts, self.list_words(path), partial(self.look_into, path))
+
+    def look_into(self, path: str, kind: str, table: Any) -> Any:
+        """Facts of another kind of a file, empty ones where it cannot be read any more."""
+        return self.look((path,), kind, table).get(path) or make_empty(kind)
 
     @cache_method
     def list_words(self, path: str) -> frozenset[str]:
-        """Every word of a C++ file that has four letters or more, and all parts of its qualified names."""
+        """Every word of a C++ file, and all parts of its qualified names."""
         if path not in self.cpp and self.offered is not None:
             return self.offered.list_words(path)
         return collect_words(self.cpp[path])
@@ -1129,25 +1125,12 @@ class PackageJoin:
         head = space.partition("::")[0]
         if head in ("", "std"):
             return False
+        reached = [self.load(at) for at in self.list_reached(path)]
         if parse_type(name) is not None:  # tf2 has a Quaternion too
-            texts = (self.read(at) for at in self.list_reached(path) if self.may_open(at, head))
-            return any(opens_namespace(text, head) and declares_type(text, word) for text in texts)
-        declares = declares_in_tf2 if space == "tf2" and word[0].islower() else declares_type
-        speaking = (at for at in self.list_reached(path) if len(word) < 4 or word in self.list_words(at))
-        return any(declares(self.read(at), word) for at in speaking)
-
-    def may_open(self, path: str, space: str) -> bool:
-        """Whether a C++ file may open a namespace: its name stands there alone, or before another part that makes no
-        type of an interface of it."""
-        return len(space) < 4 or space in self.list_opened_words(path)
-
-    @cache_method
-    def list_opened_words(self, path: str) -> frozenset[str]:
-        """Every word of a C++ file that has four letters or more, and the first parts of its qualified names, those of
-        types of interfaces aside."""
-        facts = self.cpp[path]
-        heads = (name.text.partition("::")[0] for name in facts.qualified if parse_type(name.text) is None)
-        return frozenset((*facts.words.split(" "), *heads))
+            return any(head in file.facts.namespaces and file.declares_type(word) for file in reached)
+        if space == "tf2" and word[0].islower():
+            return any(word in file.words and file.declares_in(space, word) for file in reached)
+        return any(file.declares_type(word) for file in reached)
 
     def collect_python(self, files: dict[str, PythonFile]):
         """Imports, watched names and syntax of Python files, and the modules that the package has itself."""

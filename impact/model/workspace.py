@@ -722,7 +722,7 @@ class _Linker:
             return before.digest, {**read, **before.headers}
         build_type = _detect_build_type(build, build_type_of(manifest, self.ros))
         joined = PackageJoin(
-            *(place, manifest, build, build_type, files, gathered, self.tree.read),
+            *(place, manifest, build, build_type, files, gathered),
             *(self.watched, self.home, self.asked, self.changing, self.offered),
         )
         digest = joined.build_digest()

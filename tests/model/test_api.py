@@ -9,11 +9,13 @@ from rosimpact.databuild.surface_changes import Lines
 from rosimpact.impact.facts.cpp.code import CppCode
 from rosimpact.impact.facts.surface import Entity, list_offered
 from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
-from rosimpact.impact.model.cpp.resolver import KnownFile, Resolver
+from rosimpact.impact.model.cpp.resolver import Resolver
 from rosimpact.impact.model.cpp.uses import ApiUses, normalise_parameter
 from rosimpact.impact.targets.surface.changes import Line
 from rosimpact.impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
 from rosimpact.impact.targets.unpacked import read_packed
+
+from tests.model.known_files import make_known
 
 # `went` and `Old` are in the first version alone; `f` takes one argument, then two; `tick` is virtual and changes.
 ARM = (
@@ -92,7 +94,7 @@ def changes() -> Changes:
 
 
 def resolver(text: str, vocabulary: Vocabulary, *headers: str) -> Resolver:
-    return Resolver([KnownFile(CppCode(one.encode())) for one in (text, *headers)], vocabulary, None)
+    return Resolver([make_known(one) for one in (text, *headers)], vocabulary, None)
 
 
 def uses(text: str, changes: Changes, *headers: str) -> list[str]:
@@ -100,7 +102,7 @@ def uses(text: str, changes: Changes, *headers: str) -> list[str]:
     words = [word for word in sorted(vocabulary.select_wanted(vocabulary.words)) if word in text or word in ASSIGNING]
     found = ApiUses(resolver(text, vocabulary, *headers), {"arm", "leg"}).find_uses(words)
     told = []
-    for use in sorted(found, key=lambda use: use.offset):
+    for use in sorted(found, key=lambda use: use.at):
         arguments = "" if use.how == "name" else f"/{use.arguments}"
         told.append(("" if use.sure else "?") + use.name + arguments + ("!" if use.how == "override" else ""))
     return told
@@ -289,7 +291,7 @@ def test_names_of_the_workspace_are_known_but_not_looked_for(changes):
 def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
     vocabulary = Vocabulary(["arm"], "mine", changes)
     found = resolver(f"class C {{ void g() {{ call({argument}); }} }};", vocabulary)
-    (use,) = found.known.code.list_uses(["call"])
+    (use,) = found.known.list_uses(found.known.list_mentions(["call"]))
     assert ApiUses(found).classify(use.call[0], use.place) == shown
 
 
@@ -304,7 +306,7 @@ def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
 def test_what_a_variable_shows_itself_to_be(before, shown, changes):
     vocabulary = Vocabulary(["arm"], "mine", changes)
     found = resolver(f"class C {{ rmw_qos_profile_t v; void g() {{\n{before} call(v); }} }};", vocabulary)
-    (use,) = found.known.code.list_uses(["call"])
+    (use,) = found.known.list_uses(found.known.list_mentions(["call"]))
     assert ApiUses(found).classify(use.call[0], use.place) == shown
 
 
@@ -314,7 +316,7 @@ def test_what_a_variable_shows_itself_to_be(before, shown, changes):
      ("std::vector< A > v", "std::vector<A>"), ("A * const * p", "A*const*"), ("const A", "const A")],
 )  # fmt: skip
 def test_the_type_of_a_parameter(parameter, type_):
-    (function,) = CppCode(f"void f({parameter});".encode()).file.names
+    (function,) = CppCode(f"void f({parameter});".encode()).declarations.names
     assert [normalise_parameter(one) for one in function.parameters] == [type_]
 
 
@@ -329,7 +331,7 @@ def test_the_type_of_a_parameter(parameter, type_):
     ],
 )  # fmt: skip
 def test_enumerators_stand_beside_an_enum_or_in_it(text, names, members):
-    file = CppCode(text.encode()).file
+    file = CppCode(text.encode()).declarations
     inside = [one for cls in file.classes for those in cls.members.values() for one in those]
     assert [[(one.kind, one.scope, one.name) for one in those] for those in (file.names, inside)] == [names, members]
 

@@ -3,13 +3,14 @@
 import msgspec
 import pytest
 import zstandard
-from rosimpact.impact.facts.cpp.code import CppCode
 from rosimpact.impact.facts.python.source import extract
-from rosimpact.impact.model.cpp.resolver import KnownFile, Resolver
+from rosimpact.impact.model.cpp.resolver import Resolver
 from rosimpact.impact.model.cpp.uses import MemberUses
 from rosimpact.impact.model.members import InterfaceScope, find_included_interfaces, find_interface
 from rosimpact.impact.model.python.members import find_changing_members, list_used
 from rosimpact.impact.targets.surface.fields import Fields
+
+from tests.model.known_files import make_known
 
 # Two states: of each pair, the first member is in the old one alone, the second in the new one.
 TEXT = """1.0.0 2.0.0
@@ -42,9 +43,9 @@ ROS1 = ("arm_msgs/Arm.h", "arm_msgs/Start.h", "arm_msgs/MoveAction.h")
 
 
 def found_in(text: str, scope: InterfaceScope, headers=(), guess=False):
-    known = [KnownFile(CppCode(each.encode())) for each in (text, *headers)]
+    known = [make_known(each) for each in (text, *headers)]
     found = MemberUses(Resolver(known, None, scope)).find_uses(sorted(scope.changing), guess)
-    return sorted(found, key=lambda use: use.offset)
+    return sorted(found, key=lambda use: use.at)
 
 
 def cpp(text: str, fields: Fields, includes=ROS2, headers=()) -> list[str]:

@@ -1,18 +1,17 @@
-"""A closer look at one C++ file, by its syntax: what it declares, and what stands where certain words are used.
+"""A closer look at one C++ file, by its syntax: what it declares, and what stands at certain places.
 
 The file is parsed when the first question comes, and only as much of it is walked as the question needs. What a name
 means inside a function is found here; all that crosses files is the resolver's.
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 from tree_sitter import Node
 
 from ....edges.memory import cache_method
-from ..condition import Condition
 from .flow_clean import clean_further, clean_source
 from .flow_grammar import (
     DECLARED_TYPES,
@@ -27,9 +26,19 @@ from .flow_grammar import (
     get_kind,
     get_kinds,
 )
-from .lexical import Scan, decode_source, find_at_line_starts, find_words, scan
+from .lexical import Scan, scan
 from .names import join_scope, strip_templates
-from .schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations, Local, WrittenParameter
+from .schema import (
+    CodePlace,
+    CodeSpot,
+    CppClass,
+    CppUse,
+    Declaration,
+    Expr,
+    FileDeclarations,
+    Local,
+    WrittenParameter,
+)
 
 _LEAVES = get_kinds("identifier", "field_identifier", "type_identifier", "namespace_identifier")
 _TEMPLATES = get_kinds("template_function", "template_method", "template_type")
@@ -61,17 +70,8 @@ _NAMES = NAMES - get_kinds("template_method", "namespace_identifier")
 _WRAPPED = get_kinds("parenthesized_declarator", "array_declarator", "attributed_declarator", "variadic_declarator")
 _MARKS = {KIND.pointer_declarator: "*", KIND.reference_declarator: "&"}
 _TRAITS = frozenset(("virtual", "override", "final", "const", "static", "friend"))
-# What these find in comments too does no harm: it is one more name that nobody asks for.
-_LIKE_USING = re.compile(r"using\s+(?:typename\s+)?(?:::\s*)?([A-Za-z_]\w*(?:\s*::\s*\w+)+)\s*;")
-_LIKE_OPENED = re.compile(r"using\s+namespace\s+(?:::\s*)?([A-Za-z_][\w:]*)\s*;")
-_LIKE_ALIAS = (re.compile(r"using(?<!\wusing)\s+(\w+)[^=;]{0,200}="),
-               re.compile(r"typedef(?<!\wtypedef)\b[^;]{0,1000}?(\w+)\s*;"))  # fmt: skip
-_LIKE_CLASS = [re.compile(rf"{word}(?<!\w{word})\b((?:[^;{{}}<>=:]|::)*)") for word in ("class", "struct", "union")]
-_IDENTIFIERS = re.compile(r"[A-Za-z_]\w*")
-_LIKE_DERIVED = [
-    re.compile(rb"%b(?<!\w%b)\s[^;{}()]{0,400}[^:]:(?!:)[^;{}()]" % (word, word)) for word in (b"class", b"struct")
-]
-_LIKE_SPACE = re.compile(r"namespace\s+(\w+)\s*=\s*(?:::\s*)?([\w:]+)\s*;")
+_DIRECTIVE = re.compile(r"^[ \t]*#", re.M)
+_DECLARED_END = re.compile(r"[;{]|\Z")
 _DEEPEST = 60
 
 
@@ -116,121 +116,48 @@ class CppCode:
     def _scanned(self) -> Scan:
         return scan(self._data)
 
-    def locate(self, offset: int) -> tuple[int, int]:
-        """Line and column of an offset, from 1."""
-        return self._scanned.locate(offset)
+    def _find_spot(self, offset: int) -> CodeSpot:
+        return CodeSpot(*self._scanned.locate(offset), self._scanned.find_conditions(offset))
 
-    def find_conditions(self, offset: int) -> tuple[Condition, ...] | None:
-        """The preprocessor conditions around an offset; None in a directive."""
-        return self._scanned.find_conditions(offset)
+    def _is_split(self, at: int) -> bool:
+        """Whether a directive stands in the declaration at an offset."""
+        return self._has_directive(at, next(_DECLARED_END.finditer(self._parsed[0], at)).start())
+
+    def _has_directive(self, begin: int, end: int) -> bool:
+        return _DIRECTIVE.search(self._parsed[0], begin, end) is not None
 
     @cached_property
-    def file(self) -> FileDeclarations:
+    def declarations(self) -> FileDeclarations:
         """What the file declares outside of functions."""
         return _Declarations(self).read(self._parsed[2])
 
-    @cache_method
-    def mentions(self, word: str) -> bool:
-        """Whether a word may stand in the file, in comments too."""
-        return word.encode() in self._data
-
-    @cached_property
-    def text(self) -> str:
-        """The text of the file, comments and literals included."""
-        return decode_source(self._data)
-
-    @cached_property
-    def using(self) -> dict[str, str]:
-        """Names that `using a::b;` makes known outside of functions or in them, in full, without parsing the file."""
-        found = {}
-        for match in find_at_line_starts(_LIKE_USING, self.text):
-            full = "".join(match.group(1).split())
-            outer, _, last = full.rpartition("::")
-            if outer and outer.rpartition("::")[2] != last:  # not the constructors of a base class
-                found[last] = full
-        return found
-
-    @cached_property
-    def opened(self) -> tuple[str, ...]:
-        """Namespaces that `using namespace` opens, without parsing the file."""
-        found = ("".join(match.group(1).split()) for match in find_at_line_starts(_LIKE_OPENED, self.text))
-        return tuple(dict.fromkeys(found))
-
-    @cached_property
-    def spaces(self) -> dict[str, str]:
-        """Other names of namespaces, without parsing the file."""
-        return {m.group(1): "".join(m.group(2).split()) for m in find_at_line_starts(_LIKE_SPACE, self.text)}
-
-    @cached_property
-    def like_aliases(self) -> frozenset[str]:
-        """Names that may be given to types."""
-        return frozenset(name for pattern in _LIKE_ALIAS for name in pattern.findall(self.text))
-
-    @cached_property
-    def like_classes(self) -> frozenset[str]:
-        """Names that may be those of classes which are defined."""
-        found: set[str] = set()
-        for pattern in _LIKE_CLASS:
-            for heads in pattern.findall(self.text):
-                found.update(_IDENTIFIERS.findall(heads))
-        return frozenset(found)
-
-    @cached_property
-    def may_derive(self) -> bool:
-        """Whether something like `class A : public B` may stand in the file."""
-        return any(pattern.search(self._data) for pattern in _LIKE_DERIVED)
-
-    def may_declare(self, word: str) -> bool:
-        """Whether a word may stand behind a type and before a parenthesis."""
-        if not self.mentions(word):
-            return False
-        data = self._data
-        for match in _compile_call_pattern(word).finditer(data):
-            at = match.start()
-            if data[at - 1 : at] in (b"*", b"&") or _TYPE_AHEAD.search(data, max(0, at - _FAR), at) is not None:
-                return True
-        return False
-
-    def may_have_member(self, word: str) -> bool:
-        """Whether a word may stand behind `.`, `->` or `::` and not be called; comments count too."""
-        return self.mentions(word) and _compile_member_pattern(word).search(self._data) is not None
-
-    def list_uses(self, words: Iterable[str], wanted: Callable[[str, int], bool] | None = None) -> Iterator[CppUse]:
-        """The places where these words are used; of `operator+=` and its like, where the operator is. wanted: whether a
-        word may be of interest at an offset of the text, asked before the file is parsed."""
-        for word in words:
+    def list_uses(self, places: Iterable[tuple[str, int]]) -> Iterator[CppUse]:
+        """What stands at places of the file. places: words with their offsets; of `operator+=` and its like, that of
+        the operator. Where a word is declared, or is none of the code, there is no use."""
+        for word, at in places:
+            path = self._find_path(at)
+            leaf = path[-1]
             if word.startswith("operator"):
-                yield from self._list_assignments(word, wanted)
-                continue
-            if not self.mentions(word):
-                continue
-            for at in find_words(word, self.text):
-                if wanted is not None and not wanted(word, at):
-                    continue
-                path = self._find_path(at)
-                leaf = path[-1]
-                if leaf.kind_id in _LEAVES and leaf.start_byte == at and leaf.end_byte == at + len(word):
-                    use = self._use(word, at, path)
-                    if use is not None:
-                        yield use
+                use = self._find_assigned(word, at, path)
+            elif leaf.kind_id in _LEAVES and leaf.start_byte == at and leaf.end_byte == at + len(word):
+                use = self._use(word, at, path)
+            else:
+                use = None
+            if use is not None and use.at.conditions is not None:
+                yield use
 
-    def _list_assignments(self, word: str, wanted: Callable[[str, int], bool] | None) -> Iterator[CppUse]:
-        sign = word.removeprefix("operator")
-        at = self.text.find(sign)
-        while at >= 0:
-            if wanted is None or wanted(word, at):
-                path = self._find_path(at)
-                node = path[-2] if len(path) > 1 else path[-1]
-                if path[-1].start_byte == at and node.kind_id == KIND.assignment_expression:
-                    left = node.child_by_field_name("left")
-                    if left is not None:
-                        yield CppUse(
-                            word, at, "assigned", word, self._find_place(path), self._make_expr(left, path[:-1])
-                        )
-            at = self.text.find(sign, at + len(sign))
+    def _find_assigned(self, word: str, at: int, path: list[Node]) -> CppUse | None:
+        node = path[-2] if len(path) > 1 else path[-1]
+        if path[-1].start_byte != at or node.kind_id != KIND.assignment_expression:
+            return None
+        left = node.child_by_field_name("left")
+        if left is None:
+            return None
+        object_ = self._make_expr(left, path[:-1])
+        return CppUse(word, self._find_spot(at), "assigned", word, self._find_place(path), object_)
 
     def _use(self, word: str, at: int, path: list[Node]) -> CppUse | None:
-        level = len(path) - 1
+        spot, level = self._find_spot(at), len(path) - 1
         node = path[level]
         template = None
         last = True
@@ -260,31 +187,31 @@ class CppCode:
         outer = path[:level]
         form = "scoped" if "::" in written else "bare"
         if not last:
-            return CppUse(word, at, form, written, self._find_place(path), template=template, last=False)
+            return CppUse(word, spot, form, written, self._find_place(path), template=template, last=False)
         if number == KIND.field_expression:
             object_ = parent.child_by_field_name("argument")
             if object_ is None or object_ == node:
-                return self._make_use(word, at, form, written, template, None, False, path, outer)
+                return self._make_use(word, at, spot, form, written, template, None, False, path, outer)
             call = self._find_args(path, level - 1)
             operator = parent.child_by_field_name("operator")
             arrow = operator is not None and operator.end_byte - operator.start_byte == 2
             if "::" in written:
                 return None
-            return CppUse(word, at, "member", written, self._find_place(path), self._make_expr(object_, outer), arrow,
+            return CppUse(word, spot, "member", written, self._find_place(path), self._make_expr(object_, outer), arrow,
                        call, template=template)  # fmt: skip
         if number == KIND.field_initializer:
             call = self._list_arguments(parent.named_children[-1], outer)
-            return CppUse(word, at, "initializer", written, self._find_place(path), call=call, template=template)
+            return CppUse(word, spot, "initializer", written, self._find_place(path), call=call, template=template)
         if number == KIND.call_expression:
-            return self._make_use(word, at, form, written, template, self._find_args(path, level), False, path, outer)
+            return self._make_use(word, at, spot, form, written, template, self._find_args(path, level), False, path, outer)
         if self._is_declared(node, parent):
             return None
         made, call = self._find_construction(node, parent, path, level)
-        return self._make_use(word, at, form, written, template, call, made, path, outer)
+        return self._make_use(word, at, spot, form, written, template, call, made, path, outer)
 
-    def _make_use(self, word, at, form, written, template, call, made, path, outer) -> CppUse:
+    def _make_use(self, word, at, spot, form, written, template, call, made, path, outer) -> CppUse:
         local = self._find_local(word, at, outer) if form == "bare" else None
-        return CppUse(word, at, form, written, self._find_place(path), None, False, call, made, template, local)
+        return CppUse(word, spot, form, written, self._find_place(path), None, False, call, made, template, local)
 
     def _find_args(self, path: Sequence[Node], level: int) -> tuple[Expr, ...] | None:
         """The arguments where the node at a level is what a call calls."""
@@ -406,7 +333,8 @@ class CppCode:
                     if other == name and how not in ("opened", "used"):
                         found = offset, node, how
                 if found is not None:
-                    return self._make_local(*found, path[: level + 1], depth)
+                    local = self._make_local(*found, path[: level + 1], depth)
+                    return local._replace(apart=True) if local and self._has_directive(found[0], at) else local
             elif number in _CLASSES and any(node.kind_id == KIND.function_definition for node in path[level:]):
                 members = path[level].child_by_field_name("body")
                 if members is not None and self._is_member(members, name):
@@ -695,20 +623,6 @@ _SCOPED = _STATEMENTS_WITH_HEAD | get_kinds(
 )  # fmt: skip
 
 
-@lru_cache(maxsize=4096)
-def _compile_call_pattern(word: str) -> re.Pattern[bytes]:
-    return re.compile(re.escape(word.encode()) + rb"\s*\(")
-
-
-_TYPE_AHEAD = re.compile(rb"[\w&*>\]]\s+\Z")
-_FAR = 120
-
-
-@lru_cache(maxsize=4096)
-def _compile_member_pattern(word: str) -> re.Pattern[bytes]:
-    return re.compile(rb"(?:\.|->|::)\s*" + re.escape(word.encode()) + rb"(?!\w|\s*\(|\s*::)")
-
-
 class _Declarations:
     """Reads what a file declares outside of functions."""
 
@@ -814,18 +728,21 @@ class _Declarations:
                     inner.add("pure")
                 if re.match(r"[^{;]*=\s*delete\b", behind):
                     inner.add("deleted")
+                method = members is not None and not outer
+                if method and code._is_split(name.start_byte):
+                    inner.add("split")
                 self._add(members if not outer else None,
-                          Declaration("function", last, around, name.start_byte, result,
-                                   self._list_parameters(function), frozenset(inner), template))  # fmt: skip
+                          Declaration("function", last, around, result, self._list_parameters(function),
+                                      frozenset(inner), template,
+                                      at=code._find_spot(name.start_byte) if method else None))  # fmt: skip
             else:
                 value = None
                 if "auto" in type_ and declarator.kind_id == KIND.init_declarator:
                     given = declarator.child_by_field_name("value")
                     value = code._parse_value(given, (), 0)
                 self._add(members if not outer else None,
-                          Declaration("variable", last, around, name.start_byte,
-                                   type_ + marks + ("[]" if array else ""),
-                                   (), frozenset(traits), template, value))  # fmt: skip
+                          Declaration("variable", last, around, type_ + marks + ("[]" if array else ""), (),
+                                      frozenset(traits), template, value))  # fmt: skip
 
     def _list_parameters(self, function: Node) -> tuple[WrittenParameter, ...]:
         code = self.code
@@ -876,10 +793,11 @@ class _Declarations:
         open_ = any(child.kind_id == KIND.ERROR or child.is_missing for child in body.children) or any(
             each.type.isupper() for those in inside.values() for each in those
         )
-        one = CppClass(full, name.start_byte, tuple(bases), inside, template, "<" in written, open_, node.end_byte)
+        spot = code._find_spot(name.start_byte)
+        one = CppClass(full, spot, tuple(bases), inside, template, "<" in written, open_)
         self.classes.insert(place, one)
         if members is not None:
-            self._add(members, Declaration("type", strip_templates(written), scope, name.start_byte))
+            self._add(members, Declaration("type", strip_templates(written), scope))
 
     def _add_enum(self, node: Node, scope: str, members) -> None:
         code = self.code
@@ -890,11 +808,11 @@ class _Declarations:
         if name is not None:
             last = strip_templates(code._read(name))
             full = join_scope(scope, last)
-            self._add(members, Declaration("type", last, scope, name.start_byte))
+            self._add(members, Declaration("type", last, scope))
         for each in body.named_children if body is not None else ():
             inner = each.child_by_field_name("name")
             if inner is not None:
-                one = Declaration("enumerator", code._read(inner), full if scoped else scope, inner.start_byte, full)
+                one = Declaration("enumerator", code._read(inner), full if scoped else scope, full)
                 if scoped:
                     self.names.append(one)
                 else:
@@ -905,8 +823,8 @@ class _Declarations:
         if node.kind_id == KIND.alias_declaration:
             name, type_ = node.child_by_field_name("name"), node.child_by_field_name("type")
             if name is not None and type_ is not None:
-                self._add(members, Declaration("alias", code._read(name), scope, name.start_byte, code._read(type_),
-                                            template=template))  # fmt: skip
+                one = Declaration("alias", code._read(name), scope, code._read(type_), template=template)
+                self._add(members, one)
             return
         type_ = node.child_by_field_name("type")
         if type_ is not None and type_.kind_id in _CLASSES:
@@ -914,8 +832,8 @@ class _Declarations:
         for declarator in node.children_by_field_name("declarator"):
             name, marks, function, array = code._split_declarator(declarator)
             if name is not None and function is None:
-                self._add(members, Declaration("alias", code._read(name), scope, name.start_byte,
-                                            code._read_type(node) + marks + ("[]" if array else "")))  # fmt: skip
+                meant = code._read_type(node) + marks + ("[]" if array else "")
+                self._add(members, Declaration("alias", code._read(name), scope, meant))
 
     def _add_using(self, node: Node, scope: str) -> None:
         full = self.code._read(node).removeprefix("using").strip(" ;")

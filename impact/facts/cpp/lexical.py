@@ -46,25 +46,41 @@ class NameUseInFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """includes in order; qualified: distinct qualified names; words: distinct bare identifiers (not keywords) with at
     least four characters, space-joined and sorted (positions are found again in the bytes when a finding needs them);
-    defined: macros and include guards the file defines; using: namespaces named by `using namespace` and `using a::b`.
+    short: the shorter ones, sorted; defined: macros and include guards the file defines; using: full names in lines
+    `using a::b`; opened: namespaces of lines `using namespace`; spaces: (name, namespace) of other names of namespaces.
     exports: classes given to macros of pluginlib, rclcpp_components and Gazebo, as written without spaces; references:
     packages and files named by literals (`package://`, getPath, get_package_share_directory).
-    types: those that it defines in namespaces, with each namespace that the file opens, since which one encloses which
-    is not followed. variables: qualified types of which some line declares a variable or member itself, not a pointer
-    or reference. code: a digest of all but comments, literals, includes and blanks.
+    namespaces: those that it adds to. type_names: last parts of the types that it seems to define, aliases among them.
+    variables: qualified types of which some line declares a variable or member itself, not a pointer or reference.
+    made: classes of which it makes objects by `new`, make_shared() or make_unique(). derives: something like
+    `class A : public B` stands in it. initializes: a constructor may initialize members. code: a digest of all but
+    comments, literals, includes and blanks.
     """
 
     includes: tuple[Include, ...]
     qualified: tuple[NameUseInFile, ...]
     words: str
+    short: str = ""
     defined: tuple[str, ...] = ()
     using: tuple[str, ...] = ()
+    opened: tuple[str, ...] = ()
+    spaces: tuple[tuple[str, str], ...] = ()
     problems: tuple[Problem, ...] = ()
     exports: tuple[str, ...] = ()
     references: tuple[Reference, ...] = ()
-    types: tuple[str, ...] = ()
+    namespaces: tuple[str, ...] = ()
+    type_names: tuple[str, ...] = ()
     variables: tuple[str, ...] = ()
+    made: tuple[str, ...] = ()
+    derives: bool = False
+    initializes: bool = False
     code: str = ""
+
+    @property
+    def types(self) -> tuple[str, ...]:
+        """The types that it defines in namespaces, with each of these, since which encloses which is not followed."""
+        found = (f"{space}::{name}" for space in self.namespaces for name in self.type_names)
+        return tuple(sys.intern(name) for _, name in zip(range(_MOST_TYPES), found, strict=False))
 
 
 # Conditions beyond these are one unknown condition: hostile input must not cost quadratic memory.
@@ -121,7 +137,10 @@ _BEFORE_VARIABLE = re.compile(r"[ \t]*(?:(?:static|const|mutable)[ \t]+)*(?:([^\
 _TAIL = re.compile(r"::\s*([^\W\d]\w*)((?:\s*::\s*[^\W\d]\w*)*)")
 _SIMPLE_NAME = re.compile(r"([^\W\d]\w*)(?:::[^\W\d]\w*)+")
 _HEAD_BACKWARDS = re.compile(r"\s*(\w*[^\W\d])(?!\w)")
-_USING = re.compile(r"using\s+(?:namespace\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;")
+_USING = re.compile(
+    r"using\s+(?:(namespace)\s+|typename\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;"
+)
+_SPACE_NAME = re.compile(r"namespace\s+(\w+)\s*=\s*(?:::\s*)?([\w:\s]+?)\s*;")
 _EXPORT = re.compile(
     r"(?P<macro>PLUGINLIB_(?:EXPORT|REGISTER|DECLARE)_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODE(?:_\w+)?"
     r"|CLASS_LOADER_REGISTER_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODES"
@@ -499,24 +518,44 @@ def extract(data: bytes) -> CppFile:
     words |= scanned.tokens
     words -= with_colons
     words -= _KEYWORD_BYTES
-    long_words = sorted([word for word in words if len(word) > 3 and (word.isascii() or len(word.decode()) > 3)])
+    ordered = sorted(words)
+    ordered = ordered[bisect_right(ordered, _AFTER_NUMBERS) :]
+    long_words = [word for word in ordered if len(word) > 3 and (word.isascii() or len(word.decode()) > 3)]
+    using, opened = _list_using_names(visible) if "using" in tokens_text else ((), ())
+    has_namespace = "namespace" in tokens_text
     return CppFile(
         includes=collect_includes(scanned),
         qualified=tuple(qualified),
-        words=b" ".join(long_words[bisect_right(long_words, _AFTER_NUMBERS) :]).decode(),
+        words=b" ".join(long_words).decode(),
+        short=b" ".join([word for word in ordered if len(word) <= 3]).decode(),
         defined=tuple(scanned.defined),
-        using=_list_using_names(visible) if "using" in tokens_text else (),
+        using=using,
+        opened=opened,
+        spaces=_list_space_names(visible) if has_namespace else (),
         problems=tuple(sorted(scanned.problems, key=_get_line)),
         exports=list_exports(visible) if any(word in tokens_text for word in _EXPORTING) else (),
         references=_find_references(scanned.text, visible, locate),
-        types=list_defined_types(visible, tokens_text) if "namespace" in tokens_text else (),
+        namespaces=_list_namespaces(visible) if has_namespace else (),
+        type_names=_list_type_names(visible, tokens_text),
         variables=_list_variable_types(visible),
+        made=_list_made_classes(visible, tokens_text),
+        derives=any(pattern.search(visible) is not None for pattern in _DERIVED),
+        initializes=_INITIALIZES.search(visible) is not None,
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
     )
 
 
-def _list_using_names(visible: str) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(_SPACE.sub("", match.group(1)) for match in _USING.finditer(visible)))
+def _list_using_names(visible: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The names that `using a::b` makes known, and the namespaces that are opened."""
+    names: dict[str, None] = {}
+    opened: dict[str, None] = {}
+    for match in find_at_line_starts(_USING, visible):
+        (opened if match.group(1) else names)[sys.intern(_SPACE.sub("", match.group(2)))] = None
+    return tuple(names), tuple(opened)
+
+
+def _list_space_names(visible: str) -> tuple[tuple[str, str], ...]:
+    return tuple((match.group(1), _SPACE.sub("", match.group(2))) for match in _SPACE_NAME.finditer(visible))
 
 
 def _tie(visible: str) -> str:
@@ -577,25 +616,43 @@ def _list_variable_types(visible: str) -> tuple[str, ...]:
 _NAMESPACE = re.compile(r"namespace(?<!\wnamespace)\s+([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*\{")
 _TYPE = re.compile(
     r"(?:(?:struct|class|union|enum(?:\s+class|\s+struct)?)\s{1,20}"
-    r"(?:[A-Z_][A-Z_0-9]{1,40}\s{1,20})?([^\W\d]\w*)\s{0,20}(?:final\s{0,20})?(?::[^:;{}()][^;{}()]{0,400})?\{"
-    r"|using\s{1,20}([^\W\d]\w*)\s{0,20}=|typedef\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};)"
+    r"(?:[A-Za-z_]\w{0,60}(?:\([^(){};\n]{0,80}\))?\s{1,20}){0,3}?(?:\w{1,60}::){0,4}([^\W\d]\w*)\s{0,20}"
+    r"(?:final\s{0,20})?(?::[^:;{}()][^;{}()]{0,400})?\{"
+    r"|using\s{1,20}([^\W\d]\w*)\s{0,20}=|typedef\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};"
+    r"|ROS_DECLARE_MESSAGE\s*\(\s*([^\W\d]\w*)"  # the macro of ros/message_forward.h that announces a message
+    r"|typedef\s{1,20}(?=(?:struct|class|union|enum)[^;{}]{0,100}\{[^{}]{0,4000}\}\s*([^\W\d]\w*)))"
 )
-_TYPE_WORDS = ("struct", "class", "union", "enum", "using", "typedef")
+_TYPE_WORDS = ("struct", "class", "union", "enum", "using", "typedef", "ROS_DECLARE_MESSAGE")
 _BEGIN_TYPES = {word: re.compile(rf"{word}(?<!\w{word})") for word in _TYPE_WORDS}
 _MOST_TYPES = 400
+_DERIVED = [
+    re.compile(rf"{word}(?<!\w{word})\s[^;{{}}()]{{0,400}}[^:]:(?!:)[^;{{}}()]") for word in ("class", "struct")
+]
+_INITIALIZES = re.compile(r"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]")
+_MADE = [
+    re.compile(rf"{word}(?<!\w{word}){between}(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{{,)]")
+    for word, between in (("new", r"\s+"), ("make_shared", r"\s*<\s*"), ("make_unique", r"\s*<\s*"))
+]
 
 
-def list_defined_types(visible: str, tokens_text: str) -> tuple[str, ...]:
-    """The types that a file defines, with each of the namespaces that it opens. tokens_text: all of its words."""
-    spaces = dict.fromkeys(_SPACE.sub("", match) for match in _NAMESPACE.findall(visible))
-    if not spaces:
-        return ()
+def _list_namespaces(visible: str) -> tuple[str, ...]:
+    return tuple(sys.intern(name) for name in dict.fromkeys(_SPACE.sub("", m) for m in _NAMESPACE.findall(visible)))
+
+
+def _list_type_names(visible: str, tokens_text: str) -> tuple[str, ...]:
+    """The last parts of the types that a file seems to define. tokens_text: all of its words."""
     names: dict[str, None] = {}
     begins = [begin for word, begin in _BEGIN_TYPES.items() if word in tokens_text]
     for match in _matches(_TYPE, begins, visible):
-        names[match.group(match.lastindex or 0)] = None
-    found = (f"{space}::{name}" for space in spaces for name in names)
-    return tuple(sys.intern(name) for _, name in zip(range(_MOST_TYPES), found, strict=False))
+        names[sys.intern(match.group(match.lastindex or 0))] = None
+    return tuple(names)
+
+
+def _list_made_classes(visible: str, tokens_text: str) -> tuple[str, ...]:
+    """The classes of which a file makes objects on the heap."""
+    if "new" not in tokens_text and "make_" not in tokens_text:
+        return ()
+    return tuple(dict.fromkeys(sys.intern(name) for pattern in _MADE for name in pattern.findall(visible)))
 
 
 def _matches(pattern: re.Pattern[str], begins: Iterable[re.Pattern[str]], text: str) -> Iterator[re.Match[str]]:

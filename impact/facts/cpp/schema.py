@@ -1,11 +1,24 @@
 """What one C++ file declares and uses, as plain data: nothing here is resolved across files.
 
-Types and names are text as written, with single blanks. Offsets count the characters of the file as `text_of` gives it.
+Types and names are text as written, with single blanks.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
+
+import msgspec
+
+from ..condition import Condition
+from ..place import Problem
+
+
+class CodeSpot(NamedTuple):
+    """Where a name stands: line and column, from 1, and the preprocessor conditions around it; None in a directive."""
+
+    line: int
+    column: int
+    conditions: tuple[Condition, ...] | None = ()
 
 
 class WrittenParameter(NamedTuple):
@@ -17,40 +30,40 @@ class WrittenParameter(NamedTuple):
 
 
 class Declaration(NamedTuple):
-    """A function, method, variable, field, alias, enumerator or nested type.
+    """A function, method, variable, field, alias, enumerator or nested type. at: of a method, where its name stands.
 
     kind: `function`, `variable`, `alias`, `enumerator` or `type`. name: its last part. scope: the namespaces and
     classes around it, with those that are written before a name that is defined outside of them. type: result, type,
     or what an alias stands for. value: what a variable of type `auto` begins with. traits: those of virtual, pure,
-    override, final, const, static, deleted and template that hold. template: names of template parameters."""
+    override, final, const, static, deleted and template that hold, and split: a directive stands in it, so that which
+    parameters it has depends on that. template: names of template parameters."""
 
     kind: str
     name: str
     scope: str
-    offset: int
     type: str = ""
     parameters: tuple[WrittenParameter, ...] = ()
     traits: frozenset[str] = frozenset()
     template: tuple[str, ...] = ()
     value: Expr | None = None
+    at: CodeSpot | None = None
 
 
 class CppClass(NamedTuple):
-    """A class that is defined. name: in full. bases: as written. members: by name. template: names of template
-    parameters. specialised: template arguments stand behind its name. open: something in it was not understood, so
-    that it may have other members. end: where it ends."""
+    """A class that is defined. name: in full. at: where its name stands. bases: as written. members: by name. template:
+    names of template parameters. specialised: template arguments stand behind its name. open: something in it was not
+    understood, so that it may have other members."""
 
     name: str
-    offset: int
+    at: CodeSpot
     bases: tuple[str, ...]
     members: dict[str, list[Declaration]]
     template: tuple[str, ...] = ()
     specialised: bool = False
     open: bool = False
-    end: int = 0
 
 
-class FileDeclarations(NamedTuple):
+class FileDeclarations(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What a file declares outside of functions. classes, names: in the order of the file; aliases are among the
     names. using: (scope, full name) of each `using a::b`. opened: (scope, namespace) of each `using namespace`.
     spaces: (scope, name, namespace) of each other name of a namespace. added: full names of the namespaces it adds to.
@@ -64,16 +77,19 @@ class FileDeclarations(NamedTuple):
     added: tuple[str, ...] = ()
     announced: tuple[str, ...] = ()
     macros: tuple[str, ...] = ()
+    problems: tuple[Problem, ...] = ()
 
 
 class Local(NamedTuple):
     """What a name means inside a function: a variable or parameter. how: `variable`, `parameter`, `each` (of a loop
-    over value), `binding`, `function`, `alias` or `template`. value: what it begins with, where that is written."""
+    over value), `binding`, `function`, `alias` or `template`. value: what it begins with, where that is written.
+    apart: a directive stands between its declaration and its use, which may leave one of them out."""
 
     how: str
     type: str
     value: Expr | None
     offset: int
+    apart: bool = False
 
 
 class Expr(NamedTuple):
@@ -117,7 +133,7 @@ class CodePlace(NamedTuple):
 
 
 class CppUse(NamedTuple):
-    """A place where a word stands in code, and is not declared there.
+    """A place where a word stands in code, and is not declared there. at: where it is.
 
     form: `member` (object.word), `scoped` (a::word), `bare`, `initializer` (of a base class or member), or `assigned`
     (object += ...). name: qualified, as written, without template arguments. object: of a member. call: the arguments
@@ -126,7 +142,7 @@ class CppUse(NamedTuple):
     by `::`."""
 
     word: str
-    offset: int
+    at: CodeSpot
     form: str
     name: str
     place: CodePlace

@@ -76,6 +76,6 @@ class OfferedHeaders:
 
 
 def collect_words(facts: CppFile) -> frozenset[str]:
-    """Every word of a C++ file that has four letters or more, and all parts of its qualified names."""
+    """Every word of a C++ file, and all parts of its qualified names."""
     parts = (part for name in facts.qualified for part in name.text.split("::"))
-    return frozenset((*facts.words.split(" "), *parts, *facts.using))
+    return frozenset((*facts.words.split(" "), *facts.short.split(" "), *parts, *facts.using, *facts.opened))

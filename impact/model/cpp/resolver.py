@@ -1,21 +1,22 @@
 """What names and expressions of a C++ file stand for: classes of the package, of other packages, or interfaces.
 
-A file is seen with the headers of its package that it includes. What it says is facts.cpp.code's; what other packages
+A file is seen with the headers of its package that it includes. What it says are its facts; what other packages
 offer is told by a vocabulary (model.api) and a scope of interfaces (model.members). None is an answer: not known.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
-from ...facts.cpp.code import CppCode
+from ...facts.cpp.lexical import CppFile
 from ...facts.cpp.names import find_closing_angle, split_at_commas, strip_templates
-from ...facts.cpp.schema import CodePlace, CppClass, Declaration, Expr
+from ...facts.cpp.schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations
+from ...facts.cpp.syntax import AskedWords, Mention, select_places
 from ..api import Vocabulary
 from ..members import InterfaceScope, NamedInterface, find_section
 from ..members import MemberType as InterfaceType
@@ -94,57 +95,94 @@ def parse_type(text: str) -> Written:
 
 class KnownFile:
     """What one file declares, by the last parts of the names. Kept with the file, for all that include it. words: all
-    of four letters or more that stand in it, where that is known."""
+    that stand in it. look: gives facts of another kind of the file, with a table of what to look for."""
 
-    def __init__(self, code: CppCode, words: frozenset[str] = frozenset()):
-        self.code, self.words = code, words
+    def __init__(self, facts: CppFile, words: frozenset[str], look: Callable[[str, Any], Any]):
+        self.facts, self.words, self._look = facts, words, look
 
     def mentions(self, word: str) -> bool:
-        """Whether the word may stand in it."""
-        return word in self.words if self.words and len(word) > 3 else self.code.mentions(word)
+        """Whether a word stands in it."""
+        return word in self.words
 
-    def mentions_any(self, names: frozenset[str]) -> bool:
-        """Whether one of some words may stand in it."""
-        rest = [name for name in names if len(name) < 4] if self.words else names
-        return not names.isdisjoint(self.words) or any(map(self.code.mentions, rest))
+    @cached_property
+    def using(self) -> dict[str, str]:
+        """Names that `using a::b;` makes known anywhere in the file, in full; not the constructors of a base class."""
+        parts = ((full, *full.rpartition("::")[::2]) for full in self.facts.using)
+        return {last: full for full, outer, last in parts if outer and outer.rpartition("::")[2] != last}
+
+    @cached_property
+    def spaces(self) -> dict[str, str]:
+        """Other names of namespaces."""
+        return dict(self.facts.spaces)
+
+    @cached_property
+    def declarations(self) -> FileDeclarations:
+        """What it declares outside of functions."""
+        return self._look("declared_cpp", None)
+
+    def list_mentions(self, words: Iterable[str]) -> tuple[Mention, ...]:
+        """Where words stand in its text."""
+        return self._look("mentioned_cpp", AskedWords(tuple(words))).mentions
+
+    def list_uses(self, mentions: Iterable[Mention]) -> tuple[CppUse, ...]:
+        """What the code says where words are mentioned."""
+        asked = select_places(mentions)
+        return self._look("used_cpp", asked).uses if asked.places else ()
+
+    @cached_property
+    def type_names(self) -> frozenset[str]:
+        """Last parts of the types that it seems to define, aliases among them."""
+        return frozenset(self.facts.type_names)
+
+    def declares_type(self, word: str) -> bool:
+        """Whether it announces or defines a type of a name."""
+        if not self.mentions(word):
+            return False
+        return word in self.type_names or any(f"::{full}".endswith(f"::{word}") for full in self.declarations.announced)
 
     @cached_property
     def classes(self) -> dict[str, list[CppClass]]:
         """Its classes."""
-        every = self.code.file.classes
+        every = self.declarations.classes
         return group_pairs((one.name.rpartition("::")[2], one) for one in every if not one.specialised)
 
     @cached_property
     def names(self) -> dict[str, list[Declaration]]:
         """What it declares outside of classes and functions."""
-        return group_pairs((one.name, one) for one in self.code.file.names)
+        return group_pairs((one.name, one) for one in self.declarations.names)
 
     @cached_property
     def members(self) -> frozenset[str]:
         """Names of all members of its classes."""
-        return frozenset(name for one in self.code.file.classes for name in one.members)
+        return frozenset(name for one in self.declarations.classes for name in one.members)
 
     @cached_property
     def defines(self) -> frozenset[str]:
         """Names that it declares in any way, outside of functions."""
-        return frozenset((*self.classes, *self.names, *self.members, *self.code.file.macros))
+        return frozenset((*self.classes, *self.names, *self.members, *self.facts.defined))
 
-    @cache_method
-    def list_like_members(self, class_: str) -> frozenset[str]:
-        """What looks like the declaration of a member of a type, without parsing the file. class_: the last part of the
-        type."""
-        if not self.mentions(class_):
-            return frozenset()
-        return frozenset(re.findall(rf"{class_}\b(?:<[^;{{}}()]{{0,200}}>)?\s+(\w+)\s*[;={{]", self.code.text))
+    def list_members_of_type(self, class_: str) -> Iterator[str]:
+        """The members that are declared as objects of a type. class_: the last part of the type."""
+        for one in self.declarations.classes if self.mentions(class_) else ():
+            for name, those in one.members.items():
+                if any(each.kind == "variable" and _ends_in(each.type, class_) for each in those):
+                    yield name
+
+    def declares_in(self, scope: str, word: str) -> bool:
+        """Whether it declares a name in a namespace."""
+        full = f"{scope}::{word}"
+        return any(one.scope == scope for one in self.names.get(word, ())) or any(
+            one.name == full for one in self.list_classes(word)
+        )
 
     def list_aliases(self, name: str) -> Iterator[Declaration]:
         """What a name stands for, outside of classes."""
-        if self.mentions(name) and name in self.code.like_aliases:
+        if name in self.type_names:
             yield from (one for one in self.names.get(name, ()) if one.kind == "alias")
 
     def list_classes(self, last: str) -> list[CppClass]:
         """Its classes of a name."""
-        if self.mentions(last) and last in self.code.like_classes:
+        if last in self.type_names:
             return self.classes.get(last, [])
         return []
 
@@ -189,19 +227,17 @@ class Resolver:
         """What the head of a name stands for by `using a::head` or `namespace head = a`."""
         found: list[str] = []
         for file in self.files:
-            meant = (file.code.spaces.get(head) or file.code.using.get(head)) if file.mentions(head) else None
+            meant = file.spaces.get(head) or file.using.get(head)
             if meant and meant != head:
                 found.append(meant)
                 deeper, more, tail = meant.partition("::")
-                found += [
-                    other.code.spaces[deeper] + more + tail for other in self.files if deeper in other.code.spaces
-                ]
+                found += [other.spaces[deeper] + more + tail for other in self.files if deeper in other.spaces]
         return tuple(dict.fromkeys(found))
 
     def list_opened(self, place: CodePlace) -> tuple[str, ...]:
         """Namespaces whose names can be written without them."""
         if self._opened is None:
-            self._opened = tuple(dict.fromkeys(space for file in self.files for space in file.code.opened))
+            self._opened = tuple(dict.fromkeys(space for file in self.files for space in file.facts.opened))
         return (*place.opened, *self._opened)
 
     def declares(self, word: str) -> bool:
@@ -211,12 +247,8 @@ class Resolver:
     def declares_in(self, scope: str, word: str) -> bool:
         """Whether the file or a header of the package declares a name in a namespace, which may be another package's:
         then it is not theirs that is used."""
-        full = f"{scope}::{word}"
         return any(
-            any(one.scope == scope for one in file.names.get(word, ()))
-            or any(one.name == full for one in file.list_classes(word))
-            for file in self.files
-            if file.mentions(word)
+            file.mentions(word) and file.declares_in(scope, word) for file in self.files
         )
 
     @cache_method
@@ -338,8 +370,8 @@ class Resolver:
         found = {
             self._find_nested(self.find_type(member.type, _make_class_place(one), depth + 1), rest, depth)
             for file in self.files
-            if file.mentions(head) and head in file.code.like_aliases
-            for one in file.code.file.classes
+            if head in file.type_names
+            for one in file.declarations.classes
             for member in one.members.get(head, ())
             if member.kind == "alias"
         }
@@ -653,6 +685,12 @@ class Resolver:
 
 
 _NOWHERE = CodePlace("", "", False)
+
+
+def _ends_in(written: str, class_: str) -> bool:
+    """Whether a type as written is an object of a class, of which the last part is given."""
+    parts = parse_type(written)
+    return not (parts.pointer or parts.array or parts.tail) and parts.outer.rpartition("::")[2] == class_
 
 
 def _select_only(found: set[T]) -> T | None:

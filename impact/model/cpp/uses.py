@@ -2,117 +2,82 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from functools import lru_cache
 
 from ....edges.memory import cache_method
-from ...facts.cpp.lexical import KEYWORDS
-from ...facts.cpp.schema import CodePlace, CppClass, Expr, WrittenParameter
+from ...facts.cpp.schema import CodePlace, CodeSpot, CppClass, Expr, WrittenParameter
 from ...facts.cpp.schema import CppUse as Written
-from ...facts.usage import find_template_arguments
+from ...facts.cpp.syntax import UNREAD, Mention
 from ...targets.surface.overrides import describe_bases, describe_override
-from ..api import ASSIGNING, CALLED, CLASSES, ChangingName, FoundName
+from ..api import CALLED, CLASSES, ChangingName, FoundName
 from ..members import FoundField as FoundMember
 from .resolver import CppType, KnownFile, Resolver, locate_class
 
-# Both are matched backwards from what stands behind them.
-_LAST_WORD = re.compile(r"\w*[A-Za-z_]")
-_OF_STD = re.compile(r"(?<![\w:])std\s*::\s*\w+\s*<[^<>;(){}]*>\s*::\s*\Z")
-# What may stand before a name that is used, and is no type of one that is declared: `emit finished()`.
-_NO_TYPES = KEYWORDS | {"emit", "not", "and", "or", "xor", "compl", "bitand", "bitor"}
-_SCOPES = re.compile(r"(?:\s*::\s*\w*[A-Za-z_])+(?![\w>:])")
-# What the text of arguments has where one of them shows itself to be something that can be refused.
-_SHOWN = {
-    shown: re.compile(pattern)
-    for shown, pattern in (
-        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"),
-        ("qos", r"rclcpp\s*::\s*\w*QoS|(?i:qos)\w*\s*(?![\w\s:({])"),
-        ("profile", r"rmw_qos_profile|(?i:qos|profile)\w*\s*(?![\w\s:({])"),
-    )
-}  # fmt: skip
 # The types of quality of service: those of rclcpp, and the structure of rmw which they replaced.
 _QOS_TYPES = {
     "qos": re.compile(r"(?:static |const )*rclcpp\s*::\s*\w*QoS\s*&?"),
     "profile": re.compile(r"(?:static |const |struct )*rmw_qos_profile_[ts]\s*&?"),
 }
-_DIRECTIVE = re.compile(r"^[ \t]*#", re.M)
-_DECLARED_END = re.compile(r"[;{]|\Z")
-_SPACE = re.compile(r"\s*")
-_MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
-_LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
-_FARTHEST, _FAR = 4000, 160
 _DEEPEST = 8
 _INTERFACES = ("::msg", "::srv", "::action")
-_CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*\()")
-_INITIALIZED = re.compile(r"\s*\(")
-INITIALIZES = re.compile(rb"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]")
-"""What a text has where a constructor may initialize members."""
-_INSTANTIATED = re.compile(rb"\b(?:new\s+|make_(?:shared|unique)\s*<\s*)(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{,)]")
 _TYPES = CLASSES | {"alias", "enum"}
 
 
 class ApiUses:
     """Uses of C++ names of other packages. heads: first parts of the paths of other packages' headers that reach the
-    file. unresolved: offsets of members that may be such names, of objects whose type is not known, in a file that
+    file. unresolved: places of members that may be such names, of objects whose type is not known, in a file that
     names a class which has such a member."""
 
     def __init__(self, resolver: Resolver, heads: Collection[str] = ()):
         assert resolver.vocabulary is not None
         self.resolver, self.heads = resolver, heads
         self.vocabulary = resolver.vocabulary
-        self.unresolved: set[int] = set()
+        self.unresolved: set[CodeSpot] = set()
 
     def find_uses(self, words: Iterable[str]) -> Iterator[FoundName]:
         """Every use of a name that is looked for and whose last part is among the words."""
-        words = list(words)
+        words = sorted(words)
         home = self.vocabulary.home
-        for use in self.resolver.known.code.list_uses(words, self._may_matter):
+        known = self.resolver.known
+        for use in known.list_uses(filter(self._may_matter, known.list_mentions(words)) if words else ()):
             for found in (self._resolve_use(use), self._find_construction(use)):
                 if found is not None and found.package not in home and self._differs(found):
                     yield found
         yield from (found for found in self._find_overrides(frozenset(words)) if found.package not in home)
 
-    def _may_matter(self, word: str, at: int) -> bool:
+    def _may_matter(self, mention: Mention) -> bool:
         """Whether a word may be such a use, as far as the text around it shows."""
-        text, vocabulary = self.resolver.known.code.text, self.vocabulary
-        before = at
-        while before and text[before - 1] in " \t\n":
-            before -= 1
-        if word in ASSIGNING:
-            root = _find_ahead(_LAST_WORD, text, before)
-            if not root:
-                return text[before - 1 : before] == "]"
+        vocabulary, word = self.vocabulary, mention.word
+        if mention.form == "assigned":
+            if not mention.ahead.strip("]").isidentifier():
+                return mention.ahead == "]"
             speakers = vocabulary.list_member_speakers(word)
-            return root.endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
-        sign = text[before - 2 : before]
-        if sign == "->" or sign.endswith("."):
-            return vocabulary.is_member(word) and self._may_be_any(vocabulary.list_by_last(word), text, at + len(word))
-        if sign != "::":
-            return not _is_declared(text, before, at) and self._may_be_any(self._list_bare(word), text, at + len(word))
-        scopes = _find_ahead(_SCOPES, text, before)
-        if not scopes:  # behind template arguments, or of the global namespace
-            of_std = _OF_STD.search(text, max(0, before - _FAR), before) is not None
-            return not of_std and self._may_be_any(vocabulary.list_by_last(word), text, at + len(word))
-        scope = "".join(scopes.split()).removesuffix("::")
+            return mention.ahead.endswith("_") or any(self.resolver.known.mentions(one) for one in speakers)
+        if mention.form == "member":
+            return vocabulary.is_member(word) and self._may_be_any(vocabulary.list_by_last(word), mention)
+        if mention.form != "scoped":
+            return mention.form == "bare" and self._may_be_any(self._list_bare(word), mention)
+        scope = mention.ahead
+        if not scope:  # behind template arguments, or of the global namespace
+            return not mention.of_std and self._may_be_any(vocabulary.list_by_last(word), mention)
         head = scope.partition("::")[0]
         if head == "std":
             return False
         full = f"{scope}::{word}"
         known = vocabulary.names.get(full)
-        end = at + len(word)
-        if known is not None and (known.there or (known.what in CALLED and _may_differ(known, text, end))):
+        if known is not None and (known.there or (known.what in CALLED and _may_differ(known, mention))):
             return True
         if f"{full}::{word}" in vocabulary.list_constructors(word):
-            return _may_differ(vocabulary.names[f"{full}::{word}"], text, end)
+            return _may_differ(vocabulary.names[f"{full}::{word}"], mention)
         if known is not None or scope.endswith(_INTERFACES):
             return False
         if scope not in vocabulary.classes and vocabulary.has_space(head):
             return False
-        return self._may_be_any(vocabulary.list_by_last(word), text, end)
+        return self._may_be_any(vocabulary.list_by_last(word), mention)
 
-    def _may_be_any(self, names: Iterable[str], text: str, end: int) -> bool:
+    def _may_be_any(self, names: Iterable[str], mention: Mention) -> bool:
         """Whether one of some names that all end alike may be used in a way that differs between versions."""
         every = map(self.vocabulary.names.__getitem__, names)
-        return any(known.there or (known.what in CALLED and _may_differ(known, text, end)) for known in every)
+        return any(known.there or (known.what in CALLED and _may_differ(known, mention)) for known in every)
 
     @cache_method
     def _list_bare(self, word: str) -> list[str]:
@@ -123,7 +88,7 @@ class ApiUses:
     @cache_method
     def _is_near(self, names: frozenset[str]) -> bool:
         """Whether one of some names stands in the file or in a header of the package that it reaches."""
-        return any(file.mentions_any(names) for file in self.resolver.files)
+        return any(not names.isdisjoint(file.words) for file in self.resolver.files)
 
     def _differs(self, found: FoundName) -> bool:
         return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
@@ -147,7 +112,7 @@ class ApiUses:
         type_ = self.resolver.resolve_value(use.object, use.place)
         if type_ is None:
             if any(self.resolver.known.mentions(one) for one in self.vocabulary.list_member_speakers(use.word)):
-                self.unresolved.add(use.offset)
+                self.unresolved.add(use.at)
             return None
         return self._find_member(type_, use) if not type_.several and type_.pointer == use.arrow else None
 
@@ -214,7 +179,7 @@ class ApiUses:
                 return full
         return next(
             (full for file in self.resolver.files
-             if (full := file.code.using.get(use.word)) is not None), None
+             if (full := file.using.get(use.word)) is not None), None
         )  # fmt: skip
 
     def _is_bare_type(self, use: Written, package: str) -> bool:
@@ -228,7 +193,7 @@ class ApiUses:
             and (not place.owner or place.scope != place.owner)
             and not self.vocabulary.knows(place.scope.partition("::")[0])
             and not any(
-                file.code.opened or word in file.code.using or any(file.list_aliases(word))
+                file.facts.opened or word in file.using or any(file.list_aliases(word))
                 for file in self.resolver.files
             )
             and not self.resolver.declares(word)
@@ -254,31 +219,26 @@ class ApiUses:
             return None
         name = f"{type_.name}::{use.word}"
         count, given = self._describe_arguments(use)
-        return FoundName(self.vocabulary.names[name].package, name, use.offset, "call", count, given,
+        return FoundName(self.vocabulary.names[name].package, name, use.at, "call", count, given,
                      use.template is not None, True, ())  # fmt: skip
 
     def find_initialized(self, classes: frozenset[str], files: Iterable[KnownFile]) -> Iterator[FoundName]:
         """Constructors of other packages' classes that initializer lists of the file call by the name of a member.
         classes: last parts of the classes that may be meant. files: where members may be declared."""
-        code, home = self.resolver.known.code, self.vocabulary.home
-        declared = (name for file in files for class_ in classes for name in file.list_like_members(class_))
-        members = {name for name in declared if code.mentions(name)}
-        for use in code.list_uses(sorted(members), self._may_initialize):
+        known, home = self.resolver.known, self.vocabulary.home
+        declared = (name for file in files for class_ in classes for name in file.list_members_of_type(class_))
+        members = sorted({name for name in declared if known.mentions(name)})
+        for use in known.list_uses(one for one in known.list_mentions(members) if one.listed) if members else ():
             type_ = self.resolver.resolve_variable(use.word, use.place) if use.form == "initializer" else None
             if type_ is None or type_.own or not type_.plain or use.call is None:
                 continue
             name = f"{type_.name}::{type_.name.rpartition('::')[2]}"
             if name in self.vocabulary.names and self.vocabulary.names[name].package not in home:
                 count, given = self._describe_arguments(use)
-                found = FoundName(self.vocabulary.names[name].package, name, use.offset, "call", count, given, False,
+                found = FoundName(self.vocabulary.names[name].package, name, use.at, "call", count, given, False,
                                   True, ())  # fmt: skip
                 if self._differs(found):
                     yield found
-
-    def _may_initialize(self, word: str, at: int) -> bool:
-        """Whether a name at an offset may begin a part of an initializer list."""
-        text = self.resolver.known.code.text
-        return _INITIALIZED.match(text, at + len(word)) is not None and text[:at].rstrip()[-1:] in (":", ",")
 
     def _make_use(self, name: str, use: Written, sure: bool, through: tuple[str, ...]) -> FoundName:
         """The use that a name at a place is."""
@@ -287,7 +247,7 @@ class ApiUses:
         if known.what in CALLED and use.call is not None and not use.made:
             how = "call"
             count, given = self._describe_arguments(use)
-        return FoundName(known.package, name, use.offset, how, count, given, use.template is not None, sure, through)
+        return FoundName(known.package, name, use.at, how, count, given, use.template is not None, sure, through)
 
     def _describe_arguments(self, use: Written) -> tuple[int, tuple[str, ...]]:
         """How many arguments a call gives (-1: not to be told), and what each shows itself to be."""
@@ -330,7 +290,7 @@ class ApiUses:
         """The same of a variable, by the type that it is declared with, or by what it begins with; empty where a
         directive stands between its declaration and here, which may leave that out."""
         local = name.local
-        if local is not None and _DIRECTIVE.search(self.resolver.known.code.text, local.offset, name.offset):
+        if local is not None and local.apart:
             return ""
         if local is not None and "auto" in local.type:
             return self.classify(local.value, place) if local.value is not None and local.how == "variable" else ""
@@ -340,12 +300,14 @@ class ApiUses:
     def _find_overrides(self, words: frozenset[str]) -> Iterator[FoundName]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
-        code = self.resolver.known.code
+        known = self.resolver.known
+        if not known.facts.derives:
+            return
         virtual = {
             word for word in words
-            if self._is_near(self.vocabulary.list_virtual_speakers(word)) and code.may_declare(word)
+            if known.mentions(word) and self._is_near(self.vocabulary.list_virtual_speakers(word))
         }  # fmt: skip
-        for class_ in code.file.classes if virtual and code.may_derive else ():
+        for class_ in known.declarations.classes if virtual else ():
             if not class_.bases:
                 continue
             declared = sorted(virtual.intersection(class_.members))
@@ -356,7 +318,8 @@ class ApiUses:
             )
             for word in declared:
                 for method in class_.members[word]:
-                    if method.kind != "function" or "static" in method.traits or _is_split(code.text, method.offset):
+                    spot = method.at
+                    if method.kind != "function" or not method.traits.isdisjoint(("static", "split")) or spot is None:
                         continue
                     for line in lines:
                         member = self._find_first(line, word)
@@ -369,7 +332,7 @@ class ApiUses:
                         if "override" in marks and (bases := self._list_all_bases(class_, word)):
                             marks = (*marks, describe_bases(bases))
                         given = describe_override(types, marks, normalise_parameter(method.type), class_.name)
-                        yield FoundName(names[member[0]].package, member[0], method.offset, "override", len(types),
+                        yield FoundName(names[member[0]].package, member[0], spot, "override", len(types),
                                     given, False, True, member[1])  # fmt: skip
 
     def _list_all_bases(self, class_: CppClass, word: str, depth: int = 0) -> list[tuple[str, str]] | None:
@@ -398,10 +361,8 @@ class ApiUses:
     def find_unimplemented(self, exported: Collection[str]) -> Iterator[FoundName]:
         """Methods that a base class in another package makes others implement in some version, and that a class of the
         file does not have of which objects are made. exported: the names of such classes."""
-        code = self.resolver.known.code
-        if not code.may_derive:
-            return
-        for class_ in code.file.classes:
+        known = self.resolver.known
+        for class_ in known.declarations.classes if known.facts.derives else ():
             if class_.open or class_.template or not _is_among(class_.name, exported):
                 continue
             own = self.resolver.list_own_lineage(class_.name)
@@ -418,98 +379,18 @@ class ApiUses:
                     for name in self.vocabulary.list_pure(type_.name):
                         package, word = self.vocabulary.names[name].package, name.rpartition("::")[2]
                         if package not in self.vocabulary.home and not any(file.mentions(word) for file in files):
-                            yield FoundName(package, name, class_.offset, "implement", -1, (), False, True, ())
+                            yield FoundName(package, name, class_.at, "implement", -1, (), False, True, ())
 
     def _find_first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
         return next((found for one in classes if (found := self.vocabulary.find_member(one, word)) is not None), None)
 
 
-def find_instantiated(data: bytes) -> set[str]:
-    """The names of classes of which a file makes objects by `new`, std::make_shared() or std::make_unique()."""
-    return {name.decode() for name in _INSTANTIATED.findall(data)}
-
-
-def _find_ahead(pattern: re.Pattern[str], text: str, end: int) -> str:
-    """What stands before an offset of a text, empty where it does not match. pattern: of the same backwards."""
-    found = pattern.match(text[max(0, end - _FAR) : end][::-1])
-    return found[0][::-1] if found is not None else ""
-
-
-def _is_declared(text: str, before: int, at: int) -> bool:
-    """Whether the name at an offset stands behind a type, or in a sentence. before: where what stands before it ends.
-    In capitals may be a macro, which is no type."""
-    last = _find_ahead(_LAST_WORD, text, before) if "\n" not in text[before:at] else ""
-    return last != "" and last not in _NO_TYPES and not last.isupper() and not last.startswith("__")
-
-
-def _is_split(text: str, at: int) -> bool:
-    """Whether a directive stands in the declaration at an offset, so that which parameters it has depends on it."""
-    end = next(_DECLARED_END.finditer(text, at)).start()
-    return _DIRECTIVE.search(text, at, end) is not None
-
-
-def _may_differ(known: ChangingName, text: str, at: int) -> bool:
+def _may_differ(known: ChangingName, mention: Mention) -> bool:
     """Whether what follows a name may call it in a way that not all versions take."""
-    opened = _SPACE.match(text, at).end()  # type: ignore[union-attr]
-    templated = text.startswith("<", opened)
-    if templated:
-        types = find_template_arguments(text, opened + 1)
-        if types is None:
-            return True
-        opened = types.end()
-    if known.what == "constructor":
-        constructed = _CONSTRUCTED.match(text, opened)
-        if constructed is None:
-            return False
-        opened = constructed.end() - 1
-    else:
-        opened = _SPACE.match(text, opened).end()  # type: ignore[union-attr]
-        if not text.startswith("(", opened):
-            return False
-    found = _parse_arguments(text, opened)
-    if found is None:
-        return True
-    count, given = found
-    shown = [one for one in known.refuses if _SHOWN[one].search(given)]
-    return known.differs("call", count, shown, templated)
-
-
-@lru_cache(maxsize=64)  # every name that a word may be asks about the same place
-def _parse_arguments(text: str, at: int) -> tuple[int, str] | None:
-    """How many arguments a bracket gives that opens at an offset (-1 where it opens something else), and their text;
-    None where that takes a parser."""
-    depth, commas, place = 1, 0, at + 1
-    while (mark := _MARKS.search(text, place, at + _FARTHEST)) is not None:
-        sign, place = mark.group(), mark.end()
-        if sign in "([{":
-            depth += 1
-        elif sign in ")]}":
-            depth -= 1
-            if depth == 0:
-                given = text[at + 1 : place - 1]
-                return (commas + 1 if given.strip() else 0), given
-        elif sign == "," and depth == 1:
-            commas += 1
-        elif sign == ";" and depth == 1:
-            return -1, ""  # the body of a class
-        elif sign == "<" and depth == 1:
-            types = find_template_arguments(text, place)
-            if types is not None and "," in types.group():
-                return None
-        elif sign == "..." and depth == 1:
-            return None
-        elif sign == "//":
-            place = text.find("\n", place)
-        elif sign == "/*":
-            place = text.find("*/", place)
-        elif sign in _LITERALS and not (sign == "'" and text[mark.start() - 1].isalnum()):
-            literal = _LITERALS[sign].match(text, mark.start())
-            if literal is None or text[mark.start() - 1] == "R":
-                return None
-            place = literal.end()
-        if place < 0:
-            return None
-    return None
+    given = mention.construction if known.what == "constructor" else mention.call
+    if given is None or given.number == UNREAD:
+        return given is not None
+    return known.differs("call", given.number, known.refuses & given.shown, mention.templated)
 
 
 def _is_among(class_: str, names: Collection[str]) -> bool:
@@ -523,6 +404,9 @@ def normalise_parameter(parameter: WrittenParameter | str) -> str:
     return " ".join(re.sub(r"\s*([<>,&*:]+)\s*", r"\1", text).split())
 
 
+_REACHED = ("member", "scoped")
+
+
 class MemberUses:
     """Uses of fields and constants of other packages' interfaces that some version lacks."""
 
@@ -533,7 +417,9 @@ class MemberUses:
     def find_uses(self, words: Iterable[str], guess: bool) -> Iterator[FoundMember]:
         """Every use of such a member; guess: also accesses through something whose type does not show, of names that
         only one interface has."""
-        for use in self.resolver.known.code.list_uses(words):
+        known = self.resolver.known
+        mentions = known.list_mentions(words) if words else ()
+        for use in known.list_uses(one for one in mentions if one.form in _REACHED and one.call is None):
             if use.form == "scoped":
                 found = self._find_constant(use)
             elif use.form == "member" and use.call is None:
@@ -551,11 +437,11 @@ class MemberUses:
                 return None
             known = self.scope.definitions.items()
             meant = [(i, s) for i, d in known for s in d.sections if "." not in s and use.word in d.sections[s]]
-            return FoundMember(*meant[0], use.word, use.offset, False) if len(meant) == 1 else None
+            return FoundMember(*meant[0], use.word, use.at, False) if len(meant) == 1 else None
         if type_.interface is None or type_.several:
             return None
         section = self.scope.find_changed_section(type_.make_interface_type(), use.word)
-        return FoundMember(type_.interface, section, use.word, use.offset, True) if section is not None else None
+        return FoundMember(type_.interface, section, use.word, use.at, True) if section is not None else None
 
     def _shows(self, object_: Expr) -> bool:
         """Whether an object has a declared type of its own that is no interface's."""
@@ -580,8 +466,8 @@ class MemberUses:
             return None
         if self.scope.find_changed_section(type_.make_interface_type(), use.word) is None:
             return None
-        return FoundMember(type_.interface, type_.section, use.word, use.offset, True)
+        return FoundMember(type_.interface, type_.section, use.word, use.at, True)
 
 
 def _list_members(file: KnownFile, name: str):
-    return [one for class_ in file.code.file.classes for one in class_.members.get(name, ())]
+    return [one for class_ in file.declarations.classes for one in class_.members.get(name, ())]

@@ -49,7 +49,7 @@ def find_changing_members(uses: Iterable[FieldUse], scope: InterfaceScope) -> It
                 type_ = scope.resolve_field(type_, step)
         section = scope.find_changed_section(type_, use.steps[-1]) if type_ is not None else None
         if type_ is not None and section is not None:
-            yield use, FoundField(type_.interface, section, use.steps[-1], 0, True)
+            yield use, FoundField(type_.interface, section, use.steps[-1], None, True)
 
 
 def _resolve_type(text: str, scope: InterfaceScope) -> MemberType | None:

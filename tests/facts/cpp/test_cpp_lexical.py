@@ -160,7 +160,39 @@ def test_words_leave_out_directives_but_not_the_bodies_of_macros():
 
 def test_using():
     facts = extract(b"using namespace std::chrono_literals;\nusing cv::Mat;\nusing Ptr = std::shared_ptr<int>;\n")
-    assert facts.using == ("std::chrono_literals", "cv::Mat")
+    assert (facts.opened, facts.using) == (("std::chrono_literals",), ("cv::Mat",))
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("struct A { };", "A"),
+        ("class ARM_API(x) A : public ::b::C { }; struct n::B final {};", "A B"),
+        ("struct __attribute__((packed)) A;", ""),
+        ("typedef struct a { int b; } A;", "A a"),
+        ("ROS_DECLARE_MESSAGE(A)", "A"),
+        ("// struct A { };\nstruct A a;", ""),
+    ],
+)
+def test_names_of_types(text, names):
+    assert " ".join(sorted(extract(text.encode()).type_names)) == names
+
+
+@pytest.mark.parametrize(
+    ("text", "made", "derives", "initializes"),
+    [
+        ("auto a = new A(1); auto b = std::make_shared<n::B>();", ("A", "n::B"), False, False),
+        ("class A : public B { A() : b_(1) {} };", (), True, True),
+        ("struct A { n::B b; }; // new A(), class A : public B", (), False, False),
+    ],
+)
+def test_what_is_made_derived_and_initialized(text, made, derives, initializes):
+    facts = extract(text.encode())
+    assert (facts.made, facts.derives, facts.initializes) == (made, derives, initializes)
+
+
+def test_short_words_stand_apart():
+    assert extract(b"int ab = run(abcd);").short == "ab run"
 
 
 @pytest.mark.parametrize(

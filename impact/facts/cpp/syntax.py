@@ -1,0 +1,238 @@
+"""What a join asks about the code of a C++ file beyond its facts, and what the store keeps of it: what the file
+declares, how words are mentioned in its text, and what stands at certain places.
+
+Mentions are found without a parser. They tell where one is worth its time: most words that stand in a file are not the
+names that somebody asks about.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from typing import NamedTuple
+
+import msgspec
+
+from ..place import Problem
+from ..usage import compute_stamp, find_template_arguments
+from .lexical import KEYWORDS, CppFile, decode_source, find_words
+from .schema import CppUse, FileDeclarations
+
+ASSIGNING = {f"operator{sign}=": f"{sign}=" for sign in "+-*/"}
+"""Operators by name that are looked for where they stand behind an object, to the sign that they are written with."""
+UNREAD = -2
+"""The number of arguments that only a parser can count."""
+
+
+class Given(NamedTuple):
+    """What parentheses or braces behind a name give. number: how many arguments; -1 where they open something else,
+    UNREAD where it takes a parser. shown: what they show themselves to be, as far as their text tells."""
+
+    number: int
+    shown: frozenset[str] = frozenset()
+
+
+class Mention(NamedTuple):
+    """A place where a word stands in a text, in comments too.
+
+    form: `member` (behind `.` or `->`), `scoped`, `declared` (behind a type, or in a sentence), `assigned` (an
+    operator) or `bare`. ahead: the scopes as written, without blanks and the colons at their end, empty where others
+    than names stand there; of an operator the word, or the sign, before it. of_std: the scopes are a template of std. call: what
+    is given behind it; construction: the same where it may be a class. templated: template arguments stand behind it.
+    listed: a colon or comma stands before it and a parenthesis behind it, as in the initializer list of a
+    constructor."""
+
+    word: str
+    offset: int
+    form: str
+    ahead: str = ""
+    of_std: bool = False
+    call: Given | None = None
+    construction: Given | None = None
+    templated: bool = False
+    listed: bool = False
+
+
+class AskedWords(NamedTuple):
+    """Words to look for."""
+
+    words: tuple[str, ...]
+
+    @property
+    def stamp(self) -> str:
+        """Differs whenever other words are asked for."""
+        return compute_stamp(self.words)
+
+
+class AskedPlaces(NamedTuple):
+    """Words with their offsets in a file, to be read there."""
+
+    places: tuple[tuple[str, int], ...]
+
+    @property
+    def stamp(self) -> str:
+        """Differs whenever other places are asked for."""
+        return compute_stamp(self.places)
+
+
+class MentionedCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """mentions: of the words of AskedWords, word by word."""
+
+    mentions: tuple[Mention, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+class UsedCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """uses: those that stand at AskedPlaces, in their order; what is declared there is left out."""
+
+    uses: tuple[CppUse, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+def extract(data: bytes) -> FileDeclarations:
+    """What a C++ file declares outside of functions."""
+    return _open_code(data).declarations
+
+
+def used_cpp(data: bytes, facts: CppFile, table: AskedPlaces) -> UsedCpp:
+    """The uses that stand at places of a C++ file."""
+    return UsedCpp(tuple(_open_code(data).list_uses(table.places)))
+
+
+def mentioned_cpp(data: bytes, facts: CppFile, table: AskedWords) -> MentionedCpp:
+    """How words are mentioned in a C++ file."""
+    text = decode_source(data)
+    return MentionedCpp(tuple(mention for word in table.words for mention in _list_mentions(text, word)))
+
+
+@lru_cache(maxsize=2)  # what a file declares and uses is asked in turns
+def _open_code(data: bytes):
+    from .code import CppCode  # late: stored facts need no parser
+
+    return CppCode(data)
+
+
+# Both are matched backwards from what stands behind them.
+_LAST_WORD = re.compile(r"\w*[A-Za-z_]")
+_SCOPES = re.compile(r"(?:\s*::\s*\w*[A-Za-z_])+(?![\w>:])")
+_OF_STD = re.compile(r"(?<![\w:])std\s*::\s*\w+\s*<[^<>;(){}]*>\s*::\s*\Z")
+# What may stand before a name that is used, and is no type of one that is declared: `emit finished()`.
+_NO_TYPES = KEYWORDS | {"emit", "not", "and", "or", "xor", "compl", "bitand", "bitor"}
+# What the text of arguments has where one of them shows itself to be something that can be refused.
+_SHOWN = {
+    shown: re.compile(pattern)
+    for shown, pattern in (
+        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"),
+        ("qos", r"rclcpp\s*::\s*\w*QoS|(?i:qos)\w*\s*(?![\w\s:({])"),
+        ("profile", r"rmw_qos_profile|(?i:qos|profile)\w*\s*(?![\w\s:({])"),
+    )
+}  # fmt: skip
+_SPACE = re.compile(r"\s*")
+_MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
+_LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
+_CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*\()")
+_FARTHEST, _FAR = 4000, 160
+
+
+def _list_mentions(text: str, word: str) -> Iterator[Mention]:
+    if word in ASSIGNING:
+        sign = ASSIGNING[word]
+        at = text.find(sign)
+        while at >= 0:
+            before = _find_end_before(text, at)
+            yield Mention(word, at, "assigned", _find_ahead(_LAST_WORD, text, before) or text[before - 1 : before])
+            at = text.find(sign, at + len(sign))
+        return
+    for at in find_words(word, text):
+        before, end = _find_end_before(text, at), at + len(word)
+        sign = text[before - 2 : before]
+        form, ahead, of_std = "bare", "", False
+        if sign == "->" or sign.endswith("."):
+            form = "member"
+        elif sign == "::":
+            form = "scoped"
+            scopes = _find_ahead(_SCOPES, text, before)
+            ahead = "".join(scopes.split()).removesuffix("::")
+            of_std = not scopes and _OF_STD.search(text, max(0, before - _FAR), before) is not None
+        elif _is_declared(text, before, at):
+            form = "declared"
+        opened = _SPACE.match(text, end).end()  # type: ignore[union-attr]
+        listed = text.startswith("(", opened) and text[before - 1 : before] in (":", ",")
+        templated = text.startswith("<", opened)
+        types = find_template_arguments(text, opened + 1) if templated else None
+        if templated and types is None:
+            yield Mention(word, at, form, ahead, of_std, Given(UNREAD), Given(UNREAD), True)
+            continue
+        opened = types.end() if types is not None else end
+        constructed = _CONSTRUCTED.match(text, opened)
+        construction = _parse_arguments(text, constructed.end() - 1) if constructed is not None else None
+        opened = _SPACE.match(text, opened).end()  # type: ignore[union-attr]
+        call = _parse_arguments(text, opened) if text.startswith("(", opened) else None
+        yield Mention(word, at, form, ahead, of_std, call, construction, templated, listed)
+
+
+def _find_end_before(text: str, at: int) -> int:
+    """Where what stands before an offset ends, blanks left out."""
+    while at and text[at - 1] in " \t\n":
+        at -= 1
+    return at
+
+
+def _find_ahead(pattern: re.Pattern[str], text: str, end: int) -> str:
+    """What stands before an offset of a text, empty where it does not match. pattern: of the same backwards."""
+    found = pattern.match(text[max(0, end - _FAR) : end][::-1])
+    return found[0][::-1] if found is not None else ""
+
+
+def _is_declared(text: str, before: int, at: int) -> bool:
+    """Whether the name at an offset stands behind a type, or in a sentence. before: where what stands before it ends.
+    In capitals may be a macro, which is no type."""
+    last = _find_ahead(_LAST_WORD, text, before) if "\n" not in text[before:at] else ""
+    return last != "" and last not in _NO_TYPES and not last.isupper() and not last.startswith("__")
+
+
+def _show(given: str) -> frozenset[str]:
+    return frozenset(shown for shown, pattern in _SHOWN.items() if pattern.search(given))
+
+
+@lru_cache(maxsize=64)  # a call is often looked at as a construction too
+def _parse_arguments(text: str, at: int) -> Given:
+    """What a bracket gives that opens at an offset."""
+    depth, commas, place = 1, 0, at + 1
+    while (mark := _MARKS.search(text, place, at + _FARTHEST)) is not None:
+        sign, place = mark.group(), mark.end()
+        if sign in "([{":
+            depth += 1
+        elif sign in ")]}":
+            depth -= 1
+            if depth == 0:
+                given = text[at + 1 : place - 1]
+                return Given(commas + 1 if given.strip() else 0, _show(given))
+        elif sign == "," and depth == 1:
+            commas += 1
+        elif sign == ";" and depth == 1:
+            return Given(-1)  # the body of a class
+        elif sign == "<" and depth == 1:
+            types = find_template_arguments(text, place)
+            if types is not None and "," in types.group():
+                return Given(UNREAD)
+        elif sign == "..." and depth == 1:
+            return Given(UNREAD)
+        elif sign == "//":
+            place = text.find("\n", place)
+        elif sign == "/*":
+            place = text.find("*/", place)
+        elif sign in _LITERALS and not (sign == "'" and text[mark.start() - 1].isalnum()):
+            literal = _LITERALS[sign].match(text, mark.start())
+            if literal is None or text[mark.start() - 1] == "R":
+                return Given(UNREAD)
+            place = literal.end()
+        if place < 0:
+            return Given(UNREAD)
+    return Given(UNREAD)
+
+
+def select_places(mentions: Iterable[Mention]) -> AskedPlaces:
+    """The places of mentions, in order and each once."""
+    return AskedPlaces(tuple(dict.fromkeys((one.word, one.offset) for one in mentions)))
