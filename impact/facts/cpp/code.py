@@ -203,7 +203,8 @@ class CppCode:
             call = self._list_arguments(parent.named_children[-1], outer)
             return CppUse(word, spot, "initializer", written, self._find_place(path), call=call, template=template)
         if number == KIND.call_expression:
-            return self._make_use(word, at, spot, form, written, template, self._find_args(path, level), False, path, outer)
+            call = self._find_args(path, level)
+            return self._make_use(word, at, spot, form, written, template, call, False, path, outer)
         if self._is_declared(node, parent):
             return None
         made, call = self._find_construction(node, parent, path, level)
@@ -630,20 +631,11 @@ class _Declarations:
         self.code = code
         self.classes: list[CppClass] = []
         self.names: list[Declaration] = []
-        self.using: list[tuple[str, str]] = []
-        self.opened: list[tuple[str, str]] = []
-        self.spaces: list[tuple[str, str, str]] = []
-        self.added: dict[str, None] = {}
-        self.announced: list[str] = []
-        self.macros: list[str] = []
 
     def read(self, root: Node) -> FileDeclarations:
         with suppress(RecursionError):  # what nobody writes by hand is read as far as it goes
             self._add_nodes(root.named_children, "", None, ())
-        return FileDeclarations(
-            tuple(self.classes), tuple(self.names), tuple(self.using), tuple(self.opened), tuple(self.spaces),
-            tuple(self.added), tuple(self.announced), tuple(self.macros),
-        )  # fmt: skip
+        return FileDeclarations(tuple(self.classes), tuple(self.names))
 
     def _add_nodes(self, children: Sequence[Node], scope: str, members: dict | None, template: tuple[str, ...]) -> None:
         for node in children:
@@ -651,7 +643,6 @@ class _Declarations:
             if number == KIND.namespace_definition:
                 name = node.child_by_field_name("name")
                 inner = join_scope(scope, "".join(self.code._read(name).split())) if name is not None else scope
-                self.added[inner] = None
                 body = node.child_by_field_name("body")
                 if body is not None:
                     self._add_nodes(body.named_children, inner, None, ())
@@ -673,17 +664,6 @@ class _Declarations:
                     self._add_nodes(body.named_children if several else [body], scope, members, ())
             elif number in (KIND.alias_declaration, KIND.type_definition):
                 self._add_alias(node, scope, members, template)
-            elif number == KIND.using_declaration:
-                self._add_using(node, scope)
-            elif number == KIND.namespace_alias_definition:
-                name = node.child_by_field_name("name")
-                meant = self.code._read(node).partition("=")[2].strip(" ;")
-                if name is not None and meant:
-                    self.spaces.append((scope, self.code._read(name), "".join(meant.split()).removeprefix("::")))
-            elif number in _DEFINES:
-                name = node.child_by_field_name("name")
-                if name is not None:
-                    self.macros.append(self.code._read(name))
             elif number in (KIND.ERROR, KIND.declaration_list):
                 self._add_nodes(node.named_children, scope, members, template)
 
@@ -776,12 +756,6 @@ class _Declarations:
         written = code._read(name)
         full = join_scope(scope, strip_templates(written))
         if body is None:
-            if (
-                node.parent is None
-                or node.parent.kind_id not in (KIND.declaration, KIND.field_declaration)
-                or not (node.parent.children_by_field_name("declarator"))
-            ):
-                self.announced.append(full)
             return
         bases = []
         for child in node.named_children:
@@ -834,10 +808,3 @@ class _Declarations:
             if name is not None and function is None:
                 meant = code._read_type(node) + marks + ("[]" if array else "")
                 self._add(members, Declaration("alias", code._read(name), scope, meant))
-
-    def _add_using(self, node: Node, scope: str) -> None:
-        full = self.code._read(node).removeprefix("using").strip(" ;")
-        if full.startswith("namespace "):
-            self.opened.append((scope, "".join(full.removeprefix("namespace").split()).removeprefix("::")))
-        else:
-            self.using.append((scope, strip_templates(full.removeprefix("typename")).removeprefix("::")))

@@ -50,7 +50,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     `using a::b`; opened: namespaces of lines `using namespace`; spaces: (name, namespace) of other names of namespaces.
     exports: classes given to macros of pluginlib, rclcpp_components and Gazebo, as written without spaces; references:
     packages and files named by literals (`package://`, getPath, get_package_share_directory).
-    namespaces: those that it adds to. type_names: last parts of the types that it seems to define, aliases among them.
+    namespaces: those that it adds to. type_names: last parts of the types that it seems to define, aliases among them;
+    announced: of those that it only declares.
     variables: qualified types of which some line declares a variable or member itself, not a pointer or reference.
     made: classes of which it makes objects by `new`, make_shared() or make_unique(). derives: something like
     `class A : public B` stands in it. initializes: a constructor may initialize members. code: a digest of all but
@@ -70,6 +71,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     references: tuple[Reference, ...] = ()
     namespaces: tuple[str, ...] = ()
     type_names: tuple[str, ...] = ()
+    announced: tuple[str, ...] = ()
     variables: tuple[str, ...] = ()
     made: tuple[str, ...] = ()
     derives: bool = False
@@ -523,6 +525,7 @@ def extract(data: bytes) -> CppFile:
     long_words = [word for word in ordered if len(word) > 3 and (word.isascii() or len(word.decode()) > 3)]
     using, opened = _list_using_names(visible) if "using" in tokens_text else ((), ())
     has_namespace = "namespace" in tokens_text
+    type_names, announced = _list_type_names(visible, tokens_text)
     return CppFile(
         includes=collect_includes(scanned),
         qualified=tuple(qualified),
@@ -536,7 +539,8 @@ def extract(data: bytes) -> CppFile:
         exports=list_exports(visible) if any(word in tokens_text for word in _EXPORTING) else (),
         references=_find_references(scanned.text, visible, locate),
         namespaces=_list_namespaces(visible) if has_namespace else (),
-        type_names=_list_type_names(visible, tokens_text),
+        type_names=type_names,
+        announced=announced,
         variables=_list_variable_types(visible),
         made=_list_made_classes(visible, tokens_text),
         derives=any(pattern.search(visible) is not None for pattern in _DERIVED),
@@ -628,6 +632,9 @@ _MOST_TYPES = 400
 _DERIVED = [
     re.compile(rf"{word}(?<!\w{word})\s[^;{{}}()]{{0,400}}[^:]:(?!:)[^;{{}}()]") for word in ("class", "struct")
 ]
+_ANNOUNCED = [
+    re.compile(rf"{word}(?<!\w{word})\s+([A-Za-z_]\w*)(?:\s*:\s*\w+)?\s*;") for word in ("class", "struct", "enum")
+]
 _INITIALIZES = re.compile(r"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]")
 _MADE = [
     re.compile(rf"{word}(?<!\w{word}){between}(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{{,)]")
@@ -639,13 +646,14 @@ def _list_namespaces(visible: str) -> tuple[str, ...]:
     return tuple(sys.intern(name) for name in dict.fromkeys(_SPACE.sub("", m) for m in _NAMESPACE.findall(visible)))
 
 
-def _list_type_names(visible: str, tokens_text: str) -> tuple[str, ...]:
-    """The last parts of the types that a file seems to define. tokens_text: all of its words."""
+def _list_type_names(visible: str, tokens_text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Last parts of the types that a file seems to define, and of those it announces. tokens_text: all its words."""
     names: dict[str, None] = {}
     begins = [begin for word, begin in _BEGIN_TYPES.items() if word in tokens_text]
     for match in _matches(_TYPE, begins, visible):
         names[sys.intern(match.group(match.lastindex or 0))] = None
-    return tuple(names)
+    announced = dict.fromkeys(sys.intern(name) for pattern in _ANNOUNCED for name in pattern.findall(visible))
+    return tuple(names), tuple(announced)
 
 
 def _list_made_classes(visible: str, tokens_text: str) -> tuple[str, ...]:

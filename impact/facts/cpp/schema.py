@@ -64,19 +64,10 @@ class CppClass(NamedTuple):
 
 
 class FileDeclarations(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What a file declares outside of functions. classes, names: in the order of the file; aliases are among the
-    names. using: (scope, full name) of each `using a::b`. opened: (scope, namespace) of each `using namespace`.
-    spaces: (scope, name, namespace) of each other name of a namespace. added: full names of the namespaces it adds to.
-    announced: names of types that are declared but not defined. macros: that it defines."""
+    """What a file declares outside of functions, in its order; aliases are among the names."""
 
     classes: tuple[CppClass, ...] = ()
     names: tuple[Declaration, ...] = ()
-    using: tuple[tuple[str, str], ...] = ()
-    opened: tuple[tuple[str, str], ...] = ()
-    spaces: tuple[tuple[str, str, str], ...] = ()
-    added: tuple[str, ...] = ()
-    announced: tuple[str, ...] = ()
-    macros: tuple[str, ...] = ()
     problems: tuple[Problem, ...] = ()
 
 

@@ -38,10 +38,10 @@ class Mention(NamedTuple):
 
     form: `member` (behind `.` or `->`), `scoped`, `declared` (behind a type, or in a sentence), `assigned` (an
     operator) or `bare`. ahead: the scopes as written, without blanks and the colons at their end, empty where others
-    than names stand there; of an operator the word, or the sign, before it. of_std: the scopes are a template of std. call: what
-    is given behind it; construction: the same where it may be a class. templated: template arguments stand behind it.
-    listed: a colon or comma stands before it and a parenthesis behind it, as in the initializer list of a
-    constructor."""
+    than names stand there; of an operator the word, or the sign, before it. of_std: the scopes are a template of std.
+    call: what is given behind it; construction: the same where it may be a class. templated: template arguments stand
+    behind it. typed: a type may stand before it. listed: a colon or comma stands before it and a parenthesis behind it,
+    as in the initializer list of a constructor."""
 
     word: str
     offset: int
@@ -51,6 +51,7 @@ class Mention(NamedTuple):
     call: Given | None = None
     construction: Given | None = None
     templated: bool = False
+    typed: bool = False
     listed: bool = False
 
 
@@ -158,7 +159,9 @@ def _list_mentions(text: str, word: str) -> Iterator[Mention]:
         elif _is_declared(text, before, at):
             form = "declared"
         opened = _SPACE.match(text, end).end()  # type: ignore[union-attr]
-        listed = text.startswith("(", opened) and text[before - 1 : before] in (":", ",")
+        last = text[before - 1 : before]
+        listed = text.startswith("(", opened) and last in (":", ",")
+        typed = last in ("*", "&") or (before < at and (last in (">", "]") or last.isalnum() or last == "_"))
         templated = text.startswith("<", opened)
         types = find_template_arguments(text, opened + 1) if templated else None
         if templated and types is None:
@@ -169,7 +172,7 @@ def _list_mentions(text: str, word: str) -> Iterator[Mention]:
         construction = _parse_arguments(text, constructed.end() - 1) if constructed is not None else None
         opened = _SPACE.match(text, opened).end()  # type: ignore[union-attr]
         call = _parse_arguments(text, opened) if text.startswith("(", opened) else None
-        yield Mention(word, at, form, ahead, of_std, call, construction, templated, listed)
+        yield Mention(word, at, form, ahead, of_std, call, construction, templated, typed, listed)
 
 
 def _find_end_before(text: str, at: int) -> int:

@@ -136,9 +136,7 @@ class KnownFile:
 
     def declares_type(self, word: str) -> bool:
         """Whether it announces or defines a type of a name."""
-        if not self.mentions(word):
-            return False
-        return word in self.type_names or any(f"::{full}".endswith(f"::{word}") for full in self.declarations.announced)
+        return word in self.type_names or word in self.facts.announced
 
     @cached_property
     def classes(self) -> dict[str, list[CppClass]]:

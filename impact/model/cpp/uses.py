@@ -38,11 +38,14 @@ class ApiUses:
         words = sorted(words)
         home = self.vocabulary.home
         known = self.resolver.known
-        for use in known.list_uses(filter(self._may_matter, known.list_mentions(words)) if words else ()):
+        mentions = known.list_mentions(words) if words else ()
+        for use in known.list_uses(filter(self._may_matter, mentions)):
             for found in (self._resolve_use(use), self._find_construction(use)):
                 if found is not None and found.package not in home and self._differs(found):
                     yield found
-        yield from (found for found in self._find_overrides(frozenset(words)) if found.package not in home)
+        if known.facts.derives:
+            declared = {one.word for one in mentions if one.typed and one.call is not None}
+            yield from (found for found in self._find_overrides(declared) if found.package not in home)
 
     def _may_matter(self, mention: Mention) -> bool:
         """Whether a word may be such a use, as far as the text around it shows."""
@@ -226,7 +229,11 @@ class ApiUses:
         """Constructors of other packages' classes that initializer lists of the file call by the name of a member.
         classes: last parts of the classes that may be meant. files: where members may be declared."""
         known, home = self.resolver.known, self.vocabulary.home
-        declared = (name for file in files for class_ in classes for name in file.list_members_of_type(class_))
+        # Those that a constructor initializes are declared where its class is.
+        parts = (name.text.split("::")[-2:] for name in known.facts.qualified)
+        owners = {one[0] for one in parts if one[0] == one[-1]} | known.type_names
+        homes = [file for file in files if not owners.isdisjoint(file.type_names)]
+        declared = (name for file in homes for class_ in classes for name in file.list_members_of_type(class_))
         members = sorted({name for name in declared if known.mentions(name)})
         for use in known.list_uses(one for one in known.list_mentions(members) if one.listed) if members else ():
             type_ = self.resolver.resolve_variable(use.word, use.place) if use.form == "initializer" else None
@@ -297,17 +304,11 @@ class ApiUses:
         type_ = self.resolver.find_written_type(name, place)
         return next((shown for shown, known in _QOS_TYPES.items() if known.fullmatch(type_)), "")
 
-    def _find_overrides(self, words: frozenset[str]) -> Iterator[FoundName]:
+    def _find_overrides(self, words: Collection[str]) -> Iterator[FoundName]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
-        known = self.resolver.known
-        if not known.facts.derives:
-            return
-        virtual = {
-            word for word in words
-            if known.mentions(word) and self._is_near(self.vocabulary.list_virtual_speakers(word))
-        }  # fmt: skip
-        for class_ in known.declarations.classes if virtual else ():
+        virtual = {word for word in words if self._is_near(self.vocabulary.list_virtual_speakers(word))}
+        for class_ in self.resolver.known.declarations.classes if virtual else ():
             if not class_.bases:
                 continue
             declared = sorted(virtual.intersection(class_.members))
