@@ -1129,7 +1129,8 @@ class PackageJoin:
         if parse_type(name) is not None:  # tf2 has a Quaternion too
             return any(head in file.facts.namespaces and file.declares_type(word) for file in reached)
         if space == "tf2" and word[0].islower():
-            return any(word in file.words and file.declares_in(space, word) for file in reached)
+            speaking = (file for file in reached if file.mentions(word))
+            return any(file.declares_in(space, word) or file.has_special_form(word) for file in speaking)
         return any(file.declares_type(word) for file in reached)
 
     def collect_python(self, files: dict[str, PythonFile]):

@@ -4,7 +4,7 @@ import pytest
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.cpp import lexical as cpp
 from rosimpact.impact.facts.kinds import decode, encode, search
-from rosimpact.impact.facts.searches import WordUse, declares_in_tf2, declares_type, opens_namespace
+from rosimpact.impact.facts.searches import WordUse
 from rosimpact.impact.facts.usage import Pattern, Rows, UsageTable
 
 TABLE = UsageTable({"advertise": [("advertise(a)", Pattern("advertise", arguments="1"))]}, ["changed", "other"])
@@ -42,35 +42,6 @@ def test_what_rows_describe_in_text():
     rows = Rows([("spin_once", Pattern("spin_once", language="python", arguments="1"))])
     found = looked("searched_text", "# spin_once(n)\nrclpy.spin_once(n)\nrclpy.spin_once()\n", rows)
     assert [(use.label, use.line, use.column) for use in found.uses] == [("spin_once", 2, 7)]
-
-
-@pytest.mark.parametrize(("text", "declared", "others"), [
-    ("class A;\n", {"A"}, {"class"}),
-    ("subclass A;\nclassic B;\n", set(), {"A", "B"}),
-    ("struct A : B {};\n", {"A", "B"}, set()),
-    ("enum class A { X };\n", {"A"}, {"X"}),
-    ("typedef a::B C;\n", {"a", "C"}, {"B"}),
-    ("using C = a::B;\n", {"C"}, {"a", "B"}),
-    ("class A; B b; void f(C c);\nclass AB;\n", {"A", "AB"}, {"B", "C"}),
-    ("class A\n" + " " * 300 + "{\n", set(), {"A"}),
-    ("ROS_DECLARE_MESSAGE(Twist)\n", {"Twist"}, set()),
-])  # fmt: skip
-def test_which_types_a_file_declares(text, declared, others):
-    assert {name for name in declared | others if declares_type(text.encode(), name)} == declared
-
-
-def test_which_namespaces_a_file_opens():
-    text = b"namespace tf2 {\n}\nnamespace a::b {\n}\n// not namespaces\n"
-    assert [opens_namespace(text, name) for name in ("tf2", "a", "b", "namespaces")] == [True, True, False, False]
-
-
-@pytest.mark.parametrize(("text", "declared", "others"), [
-    ("namespace tf2 {\nvoid fromMsg();\n", {"fromMsg", "void"}, {"Msg"}),
-    ("template<> void doTransform(int);\n", {"doTransform"}, {"tf2"}),
-    ("namespace a {\nvoid fromMsg();\n", set(), {"fromMsg"}),
-])  # fmt: skip
-def test_which_names_a_file_declares_for_tf2(text, declared, others):
-    assert {name for name in declared | others if declares_in_tf2(text.encode(), name)} == declared
 
 
 @pytest.mark.parametrize(("text", "functions"), [

@@ -173,6 +173,10 @@ class KnownFile:
             one.name == full for one in self.list_classes(word)
         )
 
+    def has_special_form(self, word: str) -> bool:
+        """Whether it has a special form of a template of functions that is called so."""
+        return any(one.template == ("",) for one in self.names.get(word, ()))
+
     def list_aliases(self, name: str) -> Iterator[Declaration]:
         """What a name stands for, outside of classes."""
         if name in self.type_names:
