@@ -12,22 +12,20 @@ from functools import cached_property
 from tree_sitter import Node
 
 from ....edges.memory import cache_method
-from .flow_clean import clean_further, clean_source
 from .flow_grammar import (
     DECLARED_TYPES,
     KIND,
     LISTS,
     NAMES,
     PARAMETERS,
-    PARSER,
     TYPES,
-    find_errors,
     get_items,
     get_kind,
     get_kinds,
 )
 from .lexical import Scan, scan
 from .names import join_scope, strip_templates
+from .parse import parse_source
 from .schema import (
     CodePlace,
     CodeSpot,
@@ -84,14 +82,7 @@ class CppCode:
     @cached_property
     def _parsed(self) -> tuple[str, str, Node]:
         """The text, what was parsed, and its tree."""
-        source = clean_source(self._data)
-        root = PARSER.parse(source.source).root_node
-        if root.has_error:
-            further = clean_further(self._data, source)
-            if further.source != source.source:
-                again = PARSER.parse(further.source).root_node
-                if len(find_errors(again, further.starts)) < len(find_errors(root, source.starts)):
-                    source, root = further, again
+        source, root, _ = parse_source(self._data)
         return source.text, source.source.decode(), root
 
     @property
@@ -625,7 +616,10 @@ _SCOPED = _STATEMENTS_WITH_HEAD | get_kinds(
 
 
 class _Declarations:
-    """Reads what a file declares outside of functions."""
+    """Reads what a file declares outside of functions.
+
+    A tree-sitter query for the nodes in question takes as long (0.095 s for 400 files, this 0.102 s), since it goes
+    through the bodies of functions too."""
 
     def __init__(self, code: CppCode):
         self.code = code

@@ -12,19 +12,17 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 
-from tree_sitter import Node, Tree
+from tree_sitter import Node
 
 from ..flow import Alias, Assignment, DataMember, FlowClass, FlowExpr, FlowFile
 from ..place import Problem
-from .flow_clean import Cleaned, clean_further, clean_source
+from .flow_clean import Cleaned
 from .flow_grammar import (
     DECLARATORS,
     DECLARED_TYPES,
     KIND,
     NAMES,
-    PARSER,
     TYPES,
-    find_errors,
     find_node_readers,
     get_items,
     list_children,
@@ -33,26 +31,21 @@ from .flow_statements import CppStatements
 from .flow_values import PASS, READ, flatten, strip_template
 from .lexical import EXPORTING, find_at_line_starts, list_exports, scan
 from .names import join_scope
+from .parse import parse_source
 
 INCLUDED = re.compile(r"#[ \t]*include[ \t]*[<\"]([\w./+-]+)[>\"]")
 
 
 def extract(data: bytes) -> FlowFile:
     """The flow of one C or C++ file. Never raises; what did not parse is in `unread`, what went wrong in `problems`."""
-    source = clean_source(data)
-    tree = PARSER.parse(source.source)
-    root = tree.root_node
-    wrong = find_errors(root, source.starts)
-    reader = None if wrong else read(source, root)
-    if reader is None or reader.misread:
-        further = clean_further(data, source)
-        if further.source != source.source:
-            again = _parse_again(tree, source.source, further.source)
-            still_wrong = find_errors(again, further.starts)
-            if len(still_wrong) <= len(wrong):
-                source, root, wrong, reader = further, again, still_wrong, None
-    if reader is None:
-        reader = read(source, root)
+    readers: dict[bytes, _File] = {}
+
+    def is_misread(source: Cleaned, root: Node) -> bool:
+        reader = readers[source.source] = read(source, root)
+        return reader.misread
+
+    source, root, wrong = parse_source(data, is_misread)
+    reader = readers.get(source.source) or read(source, root)
     reader.leave_outside()
     exports: tuple[str, ...] = ()
     if any(word in source.text for word in EXPORTING):
@@ -62,18 +55,6 @@ def extract(data: bytes) -> FlowFile:
         "cpp", tuple(reader.aliases), tuple(reader.classes), tuple(reader.functions), tuple(reader.constants), exports,
         tuple(sorted(wrong.union(source.hidden))), tuple(reader.problems), tuple(dict.fromkeys(included)),
     )  # fmt: skip
-
-
-def _parse_again(tree: Tree, before: bytes, after: bytes) -> Node:
-    """The root of a source some of whose bytes were replaced by as many others: only what the lines touch in which they
-    lie is parsed anew. tree: of the source as it was; it is changed, and places in it are by bytes alone."""
-    start = 0
-    for row, line in enumerate(before.splitlines(keepends=True)):
-        end = start + len(line)
-        if after[start:end] != line:
-            tree.edit(start, end, end, (row, 0), (row + 1, 0), (row + 1, 0))
-        start = end
-    return PARSER.parse(after, tree).root_node
 
 
 def read(source: Cleaned, root: Node) -> _File:

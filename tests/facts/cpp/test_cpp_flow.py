@@ -6,8 +6,10 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.cpp.flow import PARSER, _parse_again, extract, find_errors
+from rosimpact.impact.facts.cpp.flow import extract
 from rosimpact.impact.facts.cpp.flow_clean import clean_further, clean_source
+from rosimpact.impact.facts.cpp.flow_grammar import PARSER, find_errors
+from rosimpact.impact.facts.cpp.parse import _parse_again
 from rosimpact.impact.facts.flow import FlowExpr, FlowFile
 
 
