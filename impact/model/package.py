@@ -1027,15 +1027,18 @@ class PackageJoin:
 
     def list_python_api_uses(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
         """Uses of Python names of other packages that may not be the same in all versions."""
-        from .python.api import find_python_packages, find_uses
+        from .python.api import count_unresolved, find_python_packages, find_uses
+        from .python.own_types import OwnTypes
 
         changing = self.watched.changing_python
         if changing is None:
             return
         own = {self.name, *find_python_packages(self.files)}
         own.update(posixpath.basename(path).removesuffix(".py") for path in files)
+        types = OwnTypes(files, own)
         for path, facts in files.items():
-            for use in find_uses(facts, frozenset(own), changing):
+            self.unresolved_receivers += count_unresolved(facts, changing)
+            for use in find_uses(facts, frozenset(own), changing, types, path):
                 yield PythonApiUse(use, At(path, use.line, use.column), self.find_python_role(path))
 
     def make_bare_use(self, word: WordUse, path, role, public, targets, conditions) -> NameUse:

@@ -12,7 +12,7 @@ from ..condition import UNDECIDED, Condition
 from ..place import Problem, Reference
 from .bound import PYTHON2_BUILTINS, PYTHON2_METHODS
 from .text import SourceText, find_child_fields, list_caught_exceptions
-from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, make_field_type
+from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, join_dotted, make_field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
 
 
@@ -93,8 +93,6 @@ class PythonReader(ObjectUses, SourceText):
         self.imports: list[Import] = []
         # Line, offset, and whether only functions that may not run have it.
         self.uses: dict[tuple[PythonScope, str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
-        # Names that nothing in the file binds, see bound.py.
-        self.unbound: frozenset[str] = frozenset()
         self.main_lines = range(0)
         self.assigned: set[tuple[PythonScope, str]] = set()
         self.imported_names: list[AttributeUse] = []
@@ -180,6 +178,8 @@ class PythonReader(ObjectUses, SourceText):
                 self.use_of_super(steps[0].attr, call if len(steps) == 1 else None, node)
             elif type_ := self.find_type(value):
                 self.use_member(type_, steps, call)
+            else:
+                self.note_unknown(steps[0])
             self.visit(value)
             return
         head = value.id  # type: ignore[attr-defined]
@@ -189,8 +189,10 @@ class PythonReader(ObjectUses, SourceText):
             self.use_member(type_, steps, call)
         elif self.has_interfaces:
             self.use_constant(steps, call)
+        if not type_ and head not in self.classes and head not in self.unbound and not self.find_imported(head):
+            self.note_unknown(steps[0])
         if own and len(steps) == 1 and node.ctx.__class__ is ast.Store:
-            self.hold_own(node, "")
+            self.hold_own(node, None)
         if head == "self" or head == "cls":
             return
         if node.ctx.__class__ is ast.Store:
@@ -267,8 +269,9 @@ class PythonReader(ObjectUses, SourceText):
         self.imports.append(Import(module, names, node.level, node.lineno, column, self.function, self.conditions))
         for alias in node.names:
             if alias.name == "*":
+                self.starred.append(dotted)
                 continue
-            self.bind_import(alias.asname or alias.name, f"{dotted}.{alias.name}", self.use_conditions)
+            self.bind_import(alias.asname or alias.name, join_dotted(dotted, alias.name), self.use_conditions)
             if not node.level:
                 column = self.find_column(alias.lineno, alias.col_offset)
                 self.imported_names.append(
@@ -356,7 +359,8 @@ class PythonReader(ObjectUses, SourceText):
     def format_test(self, node: ast.expr) -> str:
         """The source of a test, names that stand for a variable of the environment replaced by what reads it."""
         test = self.format_source(node)
-        for name in {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}:
+        known = any(scope.machine for scope in self.scope.chain)
+        for name in {part.id for part in ast.walk(node) if isinstance(part, ast.Name)} if known else ():
             holder = next((scope for scope in self.scope.chain if name in scope.bound), None)
             if holder is not None and name in holder.machine:
                 test = re.sub(rf"(?<![\w.'\"]){name}(?![\w'\"])", lambda _, text=holder.machine[name]: text, test)
@@ -462,7 +466,9 @@ class PythonReader(ObjectUses, SourceText):
         if node.returns is not None:
             self.need(0, "annotations", node)
             self.walk_annotation(node.returns)
+        annotated = self.find_annotated(node.returns)
         before = self.scope, self.function, self.defining, self.lazy, self.me
+        outer, self.given = self.given, set()
         self.defining = (self.scope, node.name)
         self.lazy = self.lazy or self.scope.parent is not None or node.name not in SURE_TO_RUN
         if self.scope.is_class:
@@ -482,6 +488,18 @@ class PythonReader(ObjectUses, SourceText):
         self.scope.objects.update(types)
         self.walk_all(node.body)
         self.scope, self.function, self.defining, self.lazy, self.me = before
+        self.note_result(node, annotated)
+        self.given = outer
+
+    def visit_Return(self, node: ast.Return) -> None:
+        if node.value is not None:
+            self.visit(node.value)
+            if self.given is not None and getattr(node.value, "value", "") is not None:
+                self.given.add(self.find_type(node.value))
+
+    def visit_Yield(self, node) -> None:
+        self.given = None
+        self.walk_children(node)
 
     def visit_AsyncFunctionDef(self, node) -> None:
         self.need(5, "async functions", node)
@@ -541,10 +559,13 @@ class PythonReader(ObjectUses, SourceText):
         self.scope = PythonScope(self.scope, True)
         self.walk_all(node.body)
         self.inside_class.members |= self.scope.bound
+        for name, type_ in ((name, type_) for name, type_ in self.scope.objects.items() if type_):
+            self.inside_class.objects[name] = type_ if self.inside_class.objects.get(name, type_) == type_ else ""
         self.scope, self.inside_class, self.me = before
 
     def visit_Global(self, node: ast.Global) -> None:
         # An import or assignment here binds the module's name.
+        self.declared_global.update(node.names)
         for name in node.names:
             self.scope.imports.setdefault(name, self.scope.chain[-1].imports.setdefault(name, []))
 
@@ -553,7 +574,7 @@ class PythonReader(ObjectUses, SourceText):
         for target in node.targets:
             if target.__class__ is ast.Name:
                 self.remember(target.id, node.value)  # type: ignore[attr-defined]
-            elif target.__class__ is not ast.Attribute or not self.hold_own(target, self.find_type(node.value)):  # type: ignore
+            elif target.__class__ is not ast.Attribute or not self.hold_own(target, node.value):  # type: ignore
                 self.visit(target)
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
@@ -564,7 +585,7 @@ class PythonReader(ObjectUses, SourceText):
             if isinstance(node.target, ast.Name):
                 self.remember(node.target.id, node.value, self.find_annotated(node.annotation))
                 return
-        if isinstance(node.target, ast.Attribute) and self.hold_own(node.target, self.find_annotated(node.annotation)):
+        if isinstance(node.target, ast.Attribute) and self.hold_own(node.target, None, self.find_annotated(node.annotation)):
             return
         self.visit(node.target)
         if isinstance(node.target, ast.Name):
@@ -582,7 +603,7 @@ class PythonReader(ObjectUses, SourceText):
         if name in scope.values and scope.values[name] != value:
             value = None
         scope.values[name] = value
-        if node.__class__ is ast.Constant and node.value is None:  # type: ignore[attr-defined]
+        if not annotated and node.__class__ is ast.Constant and node.value is None:  # type: ignore[attr-defined]
             scope.objects.pop(name, None)
         else:
             self.hold(name, annotated or self.find_type(node))
@@ -605,7 +626,11 @@ class PythonReader(ObjectUses, SourceText):
         self.need(*_NEEDED[node.__class__.__name__], node)
         self.walk_children(node)
 
-    visit_TypeAlias = visit_Nonlocal = visit_YieldFrom = visit_TemplateStr
+    visit_TypeAlias = visit_Nonlocal = visit_TemplateStr
+
+    def visit_YieldFrom(self, node) -> None:
+        self.given = None
+        self.visit_TemplateStr(node)
 
     def visit_Raise(self, node: ast.Raise) -> None:
         if node.cause is not None:

@@ -17,7 +17,7 @@ from . import python2
 from .bound import find_scope_names
 from .reader import TRY, AttributeUse, Import, PythonReader
 from .text import drop_surrogates
-from .uses import FieldUse, PythonUse
+from .uses import FieldUse, PythonUse, TypedName
 
 NO_PYTHON = 1000
 """The minor version of Python 3 that syntax needs which this interpreter refuses and nothing explains."""
@@ -33,7 +33,8 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     uses: what calls and objects tell besides the attributes. fields: of
     interfaces. words: see list_words(). unbound: names that nothing in the file binds, and methods, with a dot before,
     that nothing in it defines and only Python 2 has. bound: names, between spaces, that others can import from it;
-    empty where that cannot be told, and two spaces where there are none.
+    empty where that cannot be told, and two spaces where there are none. typed: what of these shows its type. unknown:
+    members of objects whose types do not show, with the number of places.
     """
 
     imports: tuple[Import, ...]
@@ -48,6 +49,8 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     fields: tuple[FieldUse, ...] = ()
     unbound: tuple[AttributeUse, ...] = ()
     bound: str = ""
+    typed: tuple[TypedName, ...] = ()
+    unknown: dict[str, int] = {}
 
 
 class PythonSource(NamedTuple):
@@ -164,7 +167,8 @@ def extract(data: bytes) -> PythonFile:
             # What was rewritten may have lost names that it binds.
             reader.unbound, bound = (None if old else find_scope_names(parsed)) or (frozenset(), None)
             reader.read(tree)
-            if any("*" in item.names for item in reader.imports):
+            uses = reader.list_object_uses(reader.find_column)
+            if reader.starred:
                 reader.unbound, bound = frozenset(), None
             return PythonFile(
                 imports=tuple(reader.imports),
@@ -174,11 +178,13 @@ def extract(data: bytes) -> PythonFile:
                 needs=None if old else reader.needs,
                 interpreter=interpreter,
                 problems=problems,
-                uses=reader.list_object_uses(reader.find_column),
+                uses=uses,
                 words=list_words(data),
                 fields=reader.list_field_uses(reader.find_column),
                 unbound=() if old else reader.list_unbound_names(),
                 bound="" if bound is None else f" {' '.join(sorted(bound))} ",
+                typed=reader.list_typed_names(),
+                unknown=reader.unknown,
             )
         except RecursionError:
             problems = (*problems, Problem(1, "nested too deeply"))

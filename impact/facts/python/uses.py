@@ -2,8 +2,8 @@
 shows, methods that override; and fields and constants of interfaces.
 
 A class shows where a name is bound to what its constructor gives, where a parameter or variable is annotated with it,
-and in `self` and `super()` of a subclass; that of a message also in the callback it is handed to, and in what is a
-field of another. Nothing outside of the file is looked at.
+in `self` and `super()` of a subclass, and in what functions and methods of the file give; that of a message also in the
+callback it is handed to, and in what is a field of another. Nothing outside of the file is looked at.
 """
 
 import ast
@@ -50,6 +50,18 @@ class PythonUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     more: tuple[tuple[int, int], ...] = ()
 
 
+class TypedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """What a name that the module binds is by types, for those who import it: of a class its bases, of a function and a
+    variable the only type of what it gives or holds. name: `Class.member` for what objects hold or methods give. types:
+    as the name of a PythonUse, of the module's own after the mark OWN; empty where one is not known. members: of a
+    class, between spaces, what it defines itself.
+    """
+
+    name: str
+    types: tuple[str, ...]
+    members: str = ""
+
+
 class FieldUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The first use like it of a member of an interface. type: dotted, `pkg.msg.Name`, `pkg.srv.Name.Request`. steps:
     fields on the way, ELEMENT for an element of a sequence; the last is the member that is used. line, column: of it.
@@ -81,20 +93,27 @@ class _Raw(NamedTuple):
     more: list[tuple[int, int]]
 
 
-# A type is a dotted name; of the file's own classes the name after this mark. Empty: not known. Behind a dot stands
-# what is a member of such an object; whether that is a field shows at the end.
+# A type is a dotted name; of the file's own classes and functions the name after this mark. Empty: not known. Behind a
+# dot stands what is a member of such an object; whether that is a field shows at the end.
 OWN = ":"
 # A parameter of a function that may be a callback: `@name:how many:which`.
 _PARAMETER = "@"
 KINDS = frozenset(("msg", "srv", "action"))
 SECTIONS = frozenset(("Request", "Response", "Goal", "Result", "Feedback"))
 ELEMENT = "[]"
+# Before what one of several star imports brings.
+STARRED = "*"
+# Of types whose objects have the members of what stands in brackets, the names.
+_TRANSPARENT = frozenset(("Annotated", "ClassVar", "Final", "InitVar", "Optional"))
+# Decorators behind which a call or member gives what the function gives.
+_PLAIN_DECORATORS = frozenset(("cached_property", "classmethod", "override", "property", "staticmethod"))
+_LITERALS = frozenset((ast.Constant, ast.Dict, ast.JoinedStr, ast.List, ast.ListComp, ast.Set, ast.Tuple))
 _INTERFACE = re.compile(rf"\w+\.(?:{'|'.join(sorted(KINDS))})\.[A-Z]\w*(?:\.(?:{'|'.join(sorted(SECTIONS))}))?(?![^.])")
 _MENTIONS_INTERFACES = re.compile(r"\b(?:msg|srv|action)\b")
 _ASK_FOR_MESSAGES = frozenset(("create_subscription", "Subscriber"))
 CALLBACK_CALLS = _ASK_FOR_MESSAGES | {"create_service", "Service"}
 _DEEPEST = 40
-_DOTTED = re.compile(r"\.*[A-Za-z_][\w.]*\Z")
+_QUOTED_TYPE = re.compile(r"[A-Za-z_][\w.\[\], |]*\Z")
 SURE_TO_RUN = frozenset(("generate_launch_description", "main"))
 
 
@@ -104,6 +123,15 @@ class ObjectUses(PythonValues):
     def __init__(self, text: str) -> None:
         super().__init__(text)
         self.classes: dict[str, _Class] = {}
+        # What functions of the module give, by name, and what the one that is read gave so far; None for a generator.
+        self.results: dict[str, str] = {}
+        self.given: set[str] | None = set()
+        # Names that nothing in the file binds, see bound.py, and the modules whose star imports may.
+        self.unbound: frozenset[str] = frozenset()
+        self.starred: list[str] = []
+        # Members of objects whose types do not show, with the number of places.
+        self.unknown: dict[str, int] = {}
+        self.declared_global: set[str] = set()
         self.inside_class: _Class | None = None
         # First parameters of the methods around, by which the object is called.
         self.me = ""
@@ -133,21 +161,28 @@ class ObjectUses(PythonValues):
     def find_type(self, node) -> str:
         """The type of an expression's value, empty where it does not show."""
         if node.__class__ is ast.Call:
-            return self.resolve_callee(node.func)
+            func = node.func
+            if func.__class__ is ast.Attribute and self.is_me(func.value):
+                return f"{OWN}{id(self.inside_class)}.{func.attr}"
+            return self.resolve_callee(func)
         if node.__class__ is ast.Name:
             return self.find_object_type(node.id)
+        if node.__class__ is ast.Attribute and self.is_me(node.value):
+            return f"{OWN}{id(self.inside_class)}.{node.attr}"
         if not self.has_interfaces:
             return ""
         if node.__class__ is ast.Attribute:
-            if node.value.__class__ is ast.Name and node.value.id == self.me and self.inside_class is not None:
-                return f"{OWN}{id(self.inside_class)}.{node.attr}"
             return make_field_type(self.find_type(node.value), node.attr)
         if node.__class__ is ast.Subscript and node.slice.__class__ is not ast.Slice:
             return make_field_type(self.find_type(node.value), ELEMENT)
         return ""
 
+    def is_me(self, node) -> bool:
+        """Whether an expression is the object whose method is read."""
+        return node.__class__ is ast.Name and node.id == self.me and self.inside_class is not None
+
     def resolve_callee(self, node) -> str:
-        """What a callee is: a dotted name of another module, or a class of the file."""
+        """What a callee is: a dotted name of another module, or a class or function of the file."""
         parts: list[str] = []
         while node.__class__ is ast.Attribute:
             parts.append(node.attr)
@@ -161,7 +196,11 @@ class ObjectUses(PythonValues):
                 plain = len(known) == 1 and not known[0][1] and node.id not in looking.bound
                 return ".".join([known[0][0], *reversed(parts)]) if plain else ""
             if node.id in looking.bound:
-                return f"{OWN}{node.id}" if not parts and node.id in self.classes else ""
+                own = not parts and (node.id in self.classes or (looking.parent is None and node.id in self.results))
+                return f"{OWN}{node.id}" if own else ""
+        if self.starred and node.id in self.unbound:
+            only = join_dotted(self.starred[0], node.id) if len(self.starred) == 1 else f"{STARRED}.{node.id}"
+            return ".".join([only, *reversed(parts)])
         return ""
 
     def find_object_type(self, name: str) -> str:
@@ -173,11 +212,15 @@ class ObjectUses(PythonValues):
 
     def find_annotated(self, node) -> str:
         """The type that an annotation names, in quotes or not."""
-        if node.__class__ is ast.Constant and node.value.__class__ is str and _DOTTED.match(node.value):
+        if node.__class__ is ast.Constant and node.value.__class__ is str and _QUOTED_TYPE.match(node.value):
             try:
-                node = ast.parse(node.value, mode="eval").body
+                return self.find_annotated(ast.parse(node.value, mode="eval").body)
             except (SyntaxError, ValueError):
                 return ""
+        if node.__class__ is ast.BinOp:  # `X | None`
+            node = node.left if getattr(node.right, "value", "") is None else None
+        elif node.__class__ is ast.Subscript and self.resolve_callee(node.value).rpartition(".")[2] in _TRANSPARENT:
+            return self.find_annotated(node.slice.elts[0] if node.slice.__class__ is ast.Tuple else node.slice)
         return self.resolve_callee(node) if node.__class__ in (ast.Name, ast.Attribute) else ""
 
     def hold(self, name: str, type_: str) -> None:
@@ -232,12 +275,15 @@ class ObjectUses(PythonValues):
         self.scope.objects = merged
         del self.ways[first:]
 
-    def hold_own(self, target: ast.Attribute, type_: str) -> bool:
-        """`self.name = ...`; True where the target is such."""
+    def hold_own(self, target: ast.Attribute, value: ast.expr | None, annotated: str = "") -> bool:
+        """`self.name = value`; True where the target is such."""
         inside = self.inside_class
         if inside is None or target.value.__class__ is not ast.Name or target.value.id != self.me:  # type: ignore
             return False
         inside.members.add(target.attr)
+        if value.__class__ is ast.Constant and value.value is None:  # type: ignore
+            return True  # which stands for what is yet to come
+        type_ = annotated or self.find_type(value)
         inside.objects[target.attr] = type_ if inside.objects.get(target.attr, type_) == type_ else ""
         return True
 
@@ -246,7 +292,7 @@ class ObjectUses(PythonValues):
         own, outer = type_[:1] == OWN and "." not in type_, steps[-1]
         if outer.ctx.__class__ is ast.Load:
             given = _make_call_arguments(call) if call is not None else None
-            if type_ != f"{OWN}{id(self.inside_class)}" or len(steps) == 1:
+            if not own or len(steps) == 1:
                 self.note(type_, steps[0].attr, given if len(steps) == 1 else None, outer)
             elif len(steps) == 2:
                 self.note(f"{type_}.{steps[0].attr}", steps[1].attr, given, outer)
@@ -329,7 +375,10 @@ class ObjectUses(PythonValues):
         found: dict[tuple, PythonUse] = {}
         for raw in self.raw.values():
             how = "member" if raw.given is None else "method" if raw.member else "call"
-            for type_, alone in self.list_types(raw):
+            types = list(self.list_types(raw))
+            if raw.member and not self.resolve(raw.type):
+                self.count_unknown(raw.member, 1 + len(raw.more))
+            for type_, alone in types:
                 name = f"{type_}.{raw.member}" if raw.member else type_
                 key = (name, how, raw.given, raw.conditions)
                 more = tuple((line, column(line, offset)) for line, offset in raw.more)
@@ -373,6 +422,8 @@ class ObjectUses(PythonValues):
             elif type_[:1] == OWN and rest and head in self.classes:
                 name, _, rest = rest.partition(".")
                 type_ = self.find_member_type(self.classes[head], name)
+            elif type_[:1] == OWN and head not in self.classes:
+                type_ = self.results.get(head, "")
             else:
                 return type_
             if rest:
@@ -381,7 +432,7 @@ class ObjectUses(PythonValues):
 
     def list_types(self, raw: _Raw) -> Iterator[tuple[str, bool]]:
         """The types of other modules that a use may be of, and whether it is the only one."""
-        type_ = self.resolve(raw.type) if "." in raw.type else raw.type
+        type_ = self.resolve(raw.type)
         if type_[:1] != OWN:
             if type_ and (type_ == raw.type or not _is_stdlib(type_)):
                 yield type_, True
@@ -390,14 +441,59 @@ class ObjectUses(PythonValues):
         if one is None:
             return
         bases = list(self.list_bases(one))
-        if raw.member in one.members or any(raw.member in self.classes[own].members for _, own in bases if own):
+        members = one.members.union(*(self.classes[own].members for _, own in bases if own))
+        if raw.member in members or "__getattr__" in members:
             return
         outside = [base for base, own in bases if not own]
         yield from ((base, len(outside) == 1) for base in outside if base and not _is_stdlib(base))
 
     def find_member_type(self, one: _Class, attribute: str) -> str:
-        every = (one, *(self.classes[name] for _, name in self.list_bases(one) if name))
-        return next((own.objects[attribute] for own in every if attribute in own.objects), "")
+        bases = list(self.list_bases(one))
+        for own in (one, *(self.classes[name] for _, name in bases if name)):
+            if attribute in own.objects or attribute in own.members:
+                return own.objects.get(attribute, "")
+        outside = [base for base, name in bases if not name]
+        return f"{outside[0]}.{attribute}" if len(outside) == 1 and outside[0] else ""
+
+    def count_unknown(self, member: str, places: int = 1) -> None:
+        """Places that use a member of an object whose type is not known."""
+        self.unknown[member] = self.unknown.get(member, 0) + places
+
+    def note_unknown(self, node: ast.Attribute) -> None:
+        """A member of what no name and no import tells the type of."""
+        if node.value.__class__ not in _LITERALS and node.ctx.__class__ is ast.Load:
+            self.count_unknown(node.attr)
+
+    def note_result(self, node, annotated: str) -> None:
+        """A function has been read, which gives what its annotation or all that it returns tells."""
+        decorators = {getattr(one, "id", getattr(one, "attr", "")) for one in node.decorator_list}
+        if not decorators.isdisjoint(("deleter", "setter")):
+            return
+        plain = node.__class__ is ast.FunctionDef and decorators <= _PLAIN_DECORATORS
+        types = {annotated} if annotated else self.given or ()
+        type_ = next(iter(types)) if plain and len(types) == 1 else ""
+        if self.scope.is_class and self.inside_class is not None:
+            self.inside_class.objects[node.name] = type_
+        elif self.scope.parent is None:
+            self.results[node.name] = type_ if self.results.get(node.name, type_) == type_ else ""
+
+    def list_typed_names(self) -> tuple[TypedName, ...]:
+        """What the names are that others can import, as far as types show."""
+        objects = {name: self.scope.objects.get(name, "") for name in self.scope.bound - self.declared_global}
+        found = [TypedName(name, (told,)) for name, type_ in {**objects, **self.results}.items()
+                 if name not in self.classes and (told := self._tell_type(type_))]  # fmt: skip
+        for name in self.scope.bound & self.classes.keys():
+            one = self.classes[name]
+            found.append(TypedName(name, tuple(map(self._tell_type, one.bases)), f" {' '.join(sorted(one.members))} "))
+            held = ((f"{name}.{attribute}", self._tell_type(type_)) for attribute, type_ in one.objects.items())
+            found += [TypedName(attribute, (told,)) for attribute, told in held if told]
+        return tuple(sorted(found, key=lambda one: one.name))
+
+    def _tell_type(self, type_: str) -> str:
+        """A type as others can know it."""
+        type_ = self.resolve(type_) if type_ else ""
+        inside = type_[:1] == OWN and type_[1:].partition(".")[0].isdigit()
+        return "" if inside or type_[:1] in (_PARAMETER, STARRED) else type_
 
     def list_bases(self, one: _Class) -> Iterator[tuple[str, str]]:
         """All base classes over any number of steps: (dotted, "") of other modules, ("", name) of the file, ("", "")
@@ -412,6 +508,11 @@ class ObjectUses(PythonValues):
                 seen.add(base)
                 yield "", base[1:]
                 todo += self.classes[base[1:]].bases
+
+
+def join_dotted(module: str, name: str) -> str:
+    """The dotted name of what a module has; of a relative one that is only dots, these before the name."""
+    return f"{module}{'' if module.endswith('.') else '.'}{name}"
 
 
 def _has_fields(type_: str) -> bool:

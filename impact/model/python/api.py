@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
+import msgspec
+
 from ....edges.memory import cache_method
 from ...facts.python.source import PythonFile
 from ...facts.python.uses import PythonUse
+from .own_types import OwnTypes
 
 if TYPE_CHECKING:
     from ...targets.surface.store import Surfaces
@@ -57,8 +60,10 @@ def find_python_packages(files: Iterable[str]) -> set[str]:
     return {path.split("/")[-2] for path in files if path.endswith("/__init__.py")}
 
 
-def find_uses(facts: PythonFile, own: frozenset[str], changing: Changing) -> Iterator[PythonUse]:
+def find_uses(facts: PythonFile, own: frozenset[str], changing: Changing, types: OwnTypes,
+              path: str) -> Iterator[PythonUse]:  # fmt: skip
     """Uses in one file of names that may have changed, or never been. own: top-level modules of the package itself.
+    types: what these have. path: of the file.
     Besides what PythonUse tells, how is `import` for a module that is imported, `from` for a name that is imported from
     one, or a constant, and has not changed, and `name` for any other name."""
     told: set[str] = set()
@@ -83,5 +88,18 @@ def find_uses(facts: PythonFile, own: frozenset[str], changing: Changing) -> Ite
                 attribute.lazy, True, attribute.conditions,
             )  # fmt: skip
     for use in facts.uses:
-        if use.name[0] != "." and use.name.partition(".")[0] not in own and changing.may_change(use.name):
-            yield use
+        if use.name[0] not in ".*" and use.name.partition(".")[0] not in own:
+            if changing.may_change(use.name):
+                yield use
+            continue
+        names = types.resolve(path, use.name)
+        for name in sorted(names):
+            if name and changing.may_change(name):
+                yield msgspec.structs.replace(use, name=name, alone=use.alone and len(names) == 1)
+
+
+def count_unresolved(facts: PythonFile, changing: Changing) -> int:
+    """Members that may be such names of what a file imports, of objects whose type is not known."""
+    heads = {item.module.partition(".")[0] for item in facts.imports if not item.level}
+    words = frozenset().union(*map(changing.list_words, heads)) if facts.unknown else frozenset()
+    return sum(places for word, places in facts.unknown.items() if word in words)

@@ -26,7 +26,7 @@ def list_undefined(
     itself, and for modules, whose names have a dot. With them star imports of a package from itself. files: the Python
     files of a package by their paths. others: what modules and libraries of the package, and what its build
     makes in ways that are not known, are called. paths: all its files, of which modules may be built."""
-    modules = _Modules(files, others, paths)
+    modules = PackageModules(files, others, paths)
     for path, facts in files.items():
         if posixpath.basename(path).startswith("."):
             continue  # settings of tools, which define names for them
@@ -66,7 +66,7 @@ def list_siblings(
     their package, lazy but for those that starting a program imports. The name of each is BESIDE."""
     if any(use.text.startswith("sys.path") for facts in files.values() for use in facts.attributes):
         return  # more folders may be looked into
-    modules = _Modules(files, (), ())
+    modules = PackageModules(files, (), ())
     imported = {
         place
         for path, facts in files.items()
@@ -86,7 +86,7 @@ def list_unlisted(
     """Imports of modules that lie in a Python package which setup() does not install, though it installs the outermost
     one, each as an import of that package, lazy but for those that starting a program imports. files, setup: as above.
     The name of each is UNLISTED."""
-    modules = _Modules(files, (), ())
+    modules = PackageModules(files, (), ())
     started = modules.list_started(setup) if setup else frozenset()
     for path, file in setup:
         folder, listed = posixpath.dirname(path), set(file.packages)
@@ -140,7 +140,7 @@ def offer_python(
         root = next((one for one in roots if stem == one or stem.startswith(f"{one}/")), None)
         if root is not None and f"{root}/__init__.py" in files:
             modules[stem[len(root) - len(posixpath.basename(root)) :].replace("/", ".")] = facts.bound
-    return PythonOffer(modules, _Modules(files, others, paths).built) if modules else PythonOffer()
+    return PythonOffer(modules, PackageModules(files, others, paths).built) if modules else PythonOffer()
 
 
 def list_undefined_functions(
@@ -172,7 +172,7 @@ def _is_made(name: str, sources: Iterable[str]) -> bool:
     return any(len(one) >= _SHORTEST and name.startswith(one) for one in sources)
 
 
-class _Modules:
+class PackageModules:
     """The modules of a package. files, others, paths: as above."""
 
     def __init__(self, files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str]):

@@ -49,6 +49,19 @@ def told(source: str) -> set[tuple[str, str]]:
         ("from a import C\ndef f(x: C): x.m()", {("a.C.m", "method")}),
         ("from a import C\ndef f(x: 'C'): x.m()", {("a.C.m", "method")}),
         ("from a import C\ndef f(x: list[C]): x.m()", set()),
+        ("from a import C\nfrom typing import Optional\ndef f(x: Optional[C]): x.m()", {("a.C.m", "method")}),
+        ("from a import C\ndef f(x: 'C | None' = None): x.m()", {("a.C.m", "method")}),
+        ("from a import C\nclass D:\n  c: C = None\n  def f(self): self.c.m()", {("a.C.m", "method")}),
+        ("from a import C\nclass D:\n  c: C\ndef f(d: D): d.c.m()", {("a.C.m", "method")}),
+        # what functions of the file give, and variables that hold nothing at first
+        ("from a import C\ndef f() -> C: ...\nf().m()", {("a.C.m", "method")}),
+        ("from a import C\ndef f(): return C()\nf().m()", {("a.C", "call"), ("a.C.m", "method")}),
+        ("from a import C\ndef f(): yield C()\nf().m()", {("a.C", "call")}),
+        ("from a import C\nclass D:\n  def f(self) -> C: ...\n  def g(self): self.f().m()", {("a.C.m", "method")}),
+        ("from a import C\nclass D:\n  def f(self):\n    self.c = None\n    self.c = C()\n    self.c.m()",
+         {("a.C", "call"), ("a.C.m", "method")}),
+        # one star import brings what nothing else binds
+        ("from a import *\nf(1)\nprint(2)", {("a.f", "call")}),
         # self and super() of a subclass, also over several steps in the file
         ("from a import C\nclass D(C):\n  def f(self): self.m(1)", {("a.C.f", "override"), ("a.C.m", "method")}),
         ("from a import C\nclass D(C):\n  def _f(self): super()._f(1)", {("a.C._f", "method")}),
@@ -68,6 +81,11 @@ def told(source: str) -> set[tuple[str, str]]:
 )
 def test_uses_are_told_by_what_names_are_bound_to(source, expected):
     assert told(source) == expected
+
+
+def test_members_of_what_shows_no_type_are_counted():
+    facts = extract(b"import a\ndef f(x):\n    x.m()\n    x.m\n    a.f\n    ''.join(x)\n    g(x)[0].n\n    x.o = 1\n")
+    assert facts.unknown == {"m": 2, "n": 1}
 
 
 def test_arguments_of_a_call():
