@@ -580,16 +580,17 @@ class PythonReader(ObjectUses, SourceText):
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
         self.need(6, "variable annotations", node)
         self.walk_annotation(node.annotation)
+        annotated = self.find_annotated(node.annotation)
         if node.value is not None:
             self.visit(node.value)
             if isinstance(node.target, ast.Name):
-                self.remember(node.target.id, node.value, self.find_annotated(node.annotation))
+                self.remember(node.target.id, node.value, annotated)
                 return
-        if isinstance(node.target, ast.Attribute) and self.hold_own(node.target, None, self.find_annotated(node.annotation)):
+        if isinstance(node.target, ast.Attribute) and self.hold_own(node.target, None, annotated):
             return
         self.visit(node.target)
         if isinstance(node.target, ast.Name):
-            self.hold(node.target.id, self.find_annotated(node.annotation))
+            self.hold(node.target.id, annotated)
 
     def remember(self, name: str, node: ast.expr, annotated: str = "") -> None:
         scope = self.scope
