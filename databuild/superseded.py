@@ -3,17 +3,19 @@
 A row says that a name of a ROS package is gone from some version, or distro, on. Where surfaces of the package are
 stored, each stored version tells whether the name is there. A row is
 
-    answered        every stored version says what the row says, and there are versions on both sides of its bound
+    answered        stored versions have the name and later ones lack it, as the row says; what a version before the
+                    first that has it lacks is not gone
     contradicted    some stored version says otherwise, so that the row is wrong there or its bound is inexact
     more            answered, but the row names a replacement, or a deprecation, that nothing stored names
     bare            it is a bare name of a function or method, which does not tell whose: it may be anybody's
     unknown         no version is stored, or none on one side of the bound, or the name is of no kind that is stored
 
 Of rows that were derived from release tags, which are what surfaces are made from too, only the unknown ones and those
-that say more stay, and of reviewed rows all but the answered and bare ones. Platform libraries have no stored surfaces,
-and their rows stay. Of fields and interfaces the table of interfaces alone is asked, so that a row only lends a
-replacement. Rows of uses stay too: a pattern that is only a qualified name is answered by the surfaces, and still finds
-places that the resolver does not see, such as template arguments and braced initialisers.
+that say more stay, and of reviewed rows all but the answered and bare ones. A contradicted bound is first replaced by
+the version that the stored ones tell (see derive_bound). Platform libraries have no stored surfaces, and their rows
+stay. Of fields and interfaces the table of interfaces alone is asked, so that a row only lends a replacement. Rows of
+uses stay too: a pattern that is only a qualified name is answered by the surfaces, and still finds places that the
+resolver does not see, such as template arguments and braced initialisers.
 
     python -P -m rosimpact.databuild.superseded [--write]
 """
@@ -25,6 +27,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
+from itertools import accumulate, dropwhile
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +75,18 @@ def judge_row(kind: str, package: str, old: str, new: str, removed_in: str, ros:
     return "unknown"
 
 
+def derive_bound(kind: str, package: str, old: str, ros: int) -> str:
+    """The first stored version without a name that earlier ones have, and none from then on has; empty where there is
+    none, or one in each generation of ROS."""
+    side = kind.partition("-")[0]
+    found = []
+    for generation in (ros,) if ros else (1, 2):
+        told = list(_list_presence(side, package, old, generation))
+        last = max((place for place, (_, has) in enumerate(told) if has), default=len(told))
+        found += [version for version, _ in told[last + 1 : last + 2]]
+    return found[0] if len(found) == 1 else ""
+
+
 def _is_bare(package: str, name: str) -> bool:
     """Whether a name of C++ is a function or method without its scope. Macros, types and functions of C, which are
     called after their package, are global."""
@@ -81,7 +96,8 @@ def _is_bare(package: str, name: str) -> bool:
 
 def _compare(told: list[tuple[str, bool]], gone: Callable[[str], bool | None]) -> str:
     """What versions that have, or lack, a name make of the bound. gone: what the bound says of a version."""
-    sides = {(gone(version), has) for version, has in told if gone(version) is not None}
+    came = dropwhile(lambda one: not one[1], told)
+    sides = {(gone(version), has) for version, has in came if gone(version) is not None}
     if not any(has for _, has in sides):
         return "unknown"
     if (True, True) in sides or (False, False) in sides:
@@ -136,23 +152,26 @@ def _list_presence(side: str, package: str, old: str, ros: int) -> Iterator[tupl
         events = line.events.get(which, {})
         if which == "c++" and "::" not in name:
             yield from _list_bare_presence(line, package, ros, name)
-        elif name in events:
+        elif name in events or _is_always_there(package, ros, which, name):
             for place, version in enumerate(line.versions):
                 if version not in line.approximate:
-                    yield version, is_there_at(which, events[name], place)
+                    yield version, _is_there(line, which, name, place)
             return
-        elif _is_always_there(package, ros, which, name):
-            for version in line.versions:
-                yield version, True
+
+
+def _is_there(line: Line, side: str, name: str, place: int) -> bool:
+    """Whether a version has a name, and all that it stands in: what goes with its class has no event of its own."""
+    events, separator = line.events.get(side, {}), _SEPARATOR.get(side, "\0")
+    scopes = accumulate(name.split(separator), lambda scope, part: f"{scope}{separator}{part}")
+    return all(is_there_at(side, events[scope], place) for scope in scopes if scope in events)
 
 
 def _list_bare_presence(line: Line, package: str, ros: int, name: str) -> Iterator[tuple[str, bool]]:
     """The same for a bare name of C++: that of a type or macro in whatever scope."""
     known = [full for full in _read_names(package, ros) if full == name or full.endswith(f"::{name}")]
-    events = line.events.get("c++", {})
     for place, version in enumerate(line.versions):
         if known and version not in line.approximate:
-            yield version, any(full not in events or is_there_at("c++", events[full], place) for full in known)
+            yield version, any(_is_there(line, "c++", full, place) for full in known)
 
 
 def _is_always_there(package: str, ros: int, side: str, name: str) -> bool:
@@ -208,25 +227,33 @@ def _has(definition: Definition, section: str, member: str, state: int) -> bool:
 
 
 def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
-    """A file's content without superseded rows, and how many rows of each kind had which verdict."""
+    """A file's content without superseded rows, and with bounds as the stored versions have them, and how many rows of
+    each kind had which verdict."""
     content = json.loads(file.read_bytes())
     count: Counter[tuple[str, str]] = Counter()
     kept = []
     for group in content["changes"]:
-        names = {}
+        # Of platform libraries nothing is stored; a name that comes back, or is only deprecated, says more.
+        plain = not group.get("library") and not group.get("back_in") and not group["kind"].startswith("package")
+        by_bound: dict[str, dict[str, str]] = {}
         for old, new in group["names"].items():
-            # Of platform libraries nothing is stored; a name that comes back, or is only deprecated, says more.
-            plain = not group.get("library") and not group.get("back_in") and not group["kind"].startswith("package")
-            found = "unknown"
-            if plain:
-                found = judge_row(group["kind"], group["package"], old, new, group.get("removed_in", ""),
-                                group.get("ros", 0), bool(group.get("deprecated_in")))  # fmt: skip
+            found, bound = _judge(group, old, new) if plain else ("unknown", group.get("removed_in", ""))
             count[group["kind"], found] += 1
             if found not in _GOES[file.name in _DERIVED]:
-                names[old] = new
-        if names:
-            kept.append({**group, "names": names})
+                by_bound.setdefault(bound, {})[old] = new
+        kept += [{**group, **({"removed_in": bound} if bound else {}), "names": names}
+                 for bound, names in by_bound.items()]  # fmt: skip
     return {**content, "changes": kept}, count
+
+
+def _judge(group: dict[str, Any], old: str, new: str) -> tuple[str, str]:
+    """The verdict on a row of a group and its bound, which is that of the stored versions where they contradict it."""
+    kind, package, ros, given = group["kind"], group["package"], group.get("ros", 0), group.get("removed_in", "")
+    deprecated = bool(group.get("deprecated_in"))
+    found = judge_row(kind, package, old, new, given, ros, deprecated)
+    bound = derive_bound(kind, package, old, ros) if found == "contradicted" else ""
+    better = judge_row(kind, package, old, new, bound, ros, deprecated) if bound else found
+    return (better, bound) if better in ("answered", "more") else (found, given)
 
 
 def format_content(content: dict[str, Any]) -> str:

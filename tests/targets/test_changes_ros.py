@@ -67,7 +67,7 @@ def test_a_file_says_a_thing_once(name):
 
 # kind, package, old name, new name, distros where the old one is gone, distros where it is not
 SEEN = [
-    ("api-renamed", "rclcpp", "rclcpp::executor::FutureReturnCode", "rclcpp::FutureReturnCode", "galactic", "foxy"),
+    ("api-removed", "rclcpp", "rclcpp::executor::FutureReturnCode", "rclcpp::FutureReturnCode", "galactic", "foxy"),
     ("api-renamed", "rosidl_generator_c", "rosidl_generator_c__String", "rosidl_runtime_c__String", "foxy", "eloquent"),
     ("api-renamed", "nav2_util", "nav2_util::LifecycleNode", "nav2::LifecycleNode", "lyrical", "humble kilted"),
     ("api-removed", "srdfdom", "srdf::Model::DisabledCollision", "srdf::Model::CollisionPair", "", "melodic galactic"),
