@@ -21,8 +21,8 @@ from ..conditions.cmake import list_tested_packages
 from ..config import Config
 from ..facts.condition import Condition
 from ..facts.manifest import Dependency
-from ..targets.availability import Availabilities, Availability, Horizon, Symbol, find_coming_changes, list_horizons
-from ..targets.changes import DISTROS, ChangeRow
+from ..targets.availability import Availabilities, Availability, Horizon, Symbol, list_horizons
+from ..targets.changes import DISTROS
 from ..targets.distro.distro import DistroTarget, ReleasedDependency
 from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
@@ -33,8 +33,7 @@ from ..targets.providers.library import find_default_standard, get_year, include
 from ..targets.providers.providers import Providers
 from ..targets.providers.stdlib import is_in_stdlib, was_ever_in_stdlib
 from ..targets.surface.offers import Offers
-from ..targets.surface.offers_python import PythonOffers
-from ..targets.target import ChangeInForce, Provider
+from ..targets.target import Provider
 from ..targets.version import is_at_least
 from .cmake.build import At, FoundPackage, is_for_tests, select_active
 from .cmake.names import MODULES, SINCE
@@ -209,11 +208,11 @@ class TargetView:
         """Whether the compiler finds a header on the target, for __has_include; None when that is not known."""
         if self.workspace.provides_header(path):
             return True
-        for change in self.list_changes("header-renamed", "header-moved", "header-removed"):
-            if change.old == path and change.state in ("removed", "deprecated"):
-                return change.state == "deprecated"
-            if change.new == path:
-                return change.state != "absent"
+        states = {found.state for found in self.find_reviewed("header", path)}
+        if not states.isdisjoint(("removed", "deprecated")):
+            return "deprecated" in states
+        if path in self.availabilities.replacing_headers:
+            return self.availabilities.replacing_headers[path]
         known = {*self._find_releases_having(path, self.find_header(path)).values()}
         if True in known or known == {False}:
             return True in known
@@ -309,11 +308,6 @@ class TargetView:
     def later_offers(self) -> Offers:
         """What they offer on the newest distro, see newest; here where there is none."""
         return Offers(self.newest) if self.newest is not None else self.offers
-
-    @cached_property
-    def python_offers(self) -> PythonOffers:
-        """The same of their Python names, for uses of them."""
-        return PythonOffers(self.offers)
 
     @cached_property
     def own_modules(self) -> frozenset[str]:
@@ -428,10 +422,8 @@ class TargetView:
 
     def find_successor(self, name: str) -> str:
         """What the known-changes table says to use instead of a package; empty when it says nothing."""
-        for change in self.list_changes("package-renamed", "package-removed"):
-            if change.new and name in (change.old, change.package):
-                return f"depend on `{change.new}`"
-        return ""
+        found = (one.replacement for one in self.find_reviewed("package", name) if one.state != "upcoming")
+        return next((f"depend on `{replacement}`" for replacement in found if replacement), "")
 
     @property
     def underlaid(self) -> bool:
@@ -452,13 +444,14 @@ class TargetView:
         """True for headers of the C and C++ standard libraries and of the operating system."""
         return any(not p.name for p in self.providers.find_header(header))
 
-    def find_header_availability(self, path: str) -> Availability | None:
-        """How the target stands to a header of released packages; None where something else may have it."""
+    def find_header_availability(self, path: str, conditions: Iterable[Condition] = ()) -> Availability | None:
+        """How the target stands to a header of released packages; None where something else may have it. conditions:
+        as in find_availability()."""
         providers = self.find_header(path)
         owners = [p.name for p in providers if p.kind == "ros" and p.name not in self.workspace.packages]
         if not owners or len(owners) < len(providers) or any(self.has_nested_header(owner, path) for owner in owners):
             return None
-        return self.find_availability(Symbol("header", path, tuple(owners)))
+        return self.find_availability(Symbol("header", path, tuple(owners)), conditions)
 
     @cache_method
     def find_lost_header(self, path: str) -> Availability | None:
@@ -533,9 +526,10 @@ class TargetView:
     def _library_names(self) -> frozenset[str]:
         return self.target.list_library_names()
 
-    def list_changes(self, *kinds: str) -> list[ChangeInForce]:
-        """Known upstream changes of these kinds that are in force on the target."""
-        return [c for kind in kinds for c in self.target.changes().by_kind.get(kind, ())]
+    def find_reviewed(self, kind: str, name: str) -> tuple[Availability, ...]:
+        """What reviewed rows say of a name that is not as it was: what is in force on the target, then what is upcoming
+        on the nearest horizon. kind: as of symbols, and `use`, whose name is the label."""
+        return self.availabilities.find_reviewed(kind, name)
 
     @cached_property
     def horizons(self) -> tuple[Horizon, ...]:
@@ -543,36 +537,21 @@ class TargetView:
         return list_horizons(self.target, self.asked)
 
     @cached_property
-    def updates(self) -> tuple[Horizon, ...]:
-        """Those of them that an update of this distro brings."""
-        return tuple(ahead for ahead in self.horizons if not ahead.platform)
+    def updates(self) -> tuple[tuple[Horizon, Availabilities], ...]:
+        """Those of them that an update of this distro brings, with what is there then."""
+        return tuple(one for one in self.availabilities.ahead if not one[0].platform)
 
     @cached_property
     def availabilities(self) -> Availabilities:
         """What of released packages and platform libraries is there."""
         return Availabilities(self.target, self.offers, self.providers, self.horizons)
 
-    def find_availability(self, symbol: Symbol) -> Availability:
-        """How the target stands to something outside the workspace; what the workspace brings itself is there."""
-        if not self.workspace.may_have.isdisjoint(symbol.packages):
+    def find_availability(self, symbol: Symbol, conditions: Iterable[Condition] = ()) -> Availability:
+        """How the target stands to something outside the workspace; what the workspace brings itself is there. What is
+        to come counts where a use under these conditions does on that horizon too."""
+        if symbol.kind != "component" and not self.workspace.may_have.isdisjoint(symbol.packages):
             return Availability(symbol, "present")
-        return self.availabilities.find_on_horizon(symbol)
-
-    @cached_property
-    def coming(self) -> dict[str, tuple[ChangeInForce, Horizon]]:
-        """Reviewed changes that are not in force here and will be, by old name, each with the nearest horizon: what
-        breaks when this machine, or a colleague's, is updated."""
-        found: dict[str, tuple[ChangeInForce, Horizon]] = {}
-        for ahead in self.horizons:
-            for change in find_coming_changes(self.target, ahead):
-                found.setdefault(change.old or change.package, (change, ahead))
-        return found
-
-    @cache_method
-    def make_offers(self, ahead: Horizon) -> tuple[Offers, PythonOffers]:
-        """What released packages offer on a horizon."""
-        offers = Offers(ahead.target)
-        return offers, PythonOffers(offers)
+        return self.availabilities.find_on_horizon(symbol, lambda ahead: self.is_active_on(ahead, conditions))
 
     def is_active_on(self, ahead: Horizon, conditions: Iterable[Condition]) -> bool:
         """False when a statement under these conditions surely does not count on a horizon."""
@@ -598,13 +577,12 @@ class TargetView:
         newest = self.newest
         return newest.distro if newest is not None else ""
 
-    def may_concern(self, package: Package, change: ChangeInForce | ChangeRow, path: str) -> bool:
-        """True when a file can mean the changed package by a name: the package declares or includes something of it,
-        and the workspace does not hold it in a version of its own."""
-        head = change.package
+    def may_concern(self, package: Package, head: str, path: str, language: str = "") -> bool:
+        """True when a file can mean a changed package by a name: the package declares or includes something of it, and
+        the workspace does not hold it in a version of its own. head: the changed package. language: of the name."""
         if head in self.workspace.may_have:
             return False
-        if path.endswith(".py") or change.kind.startswith("python"):
+        if path.endswith(".py") or language == "python":
             return True
         names = self.build_environment(package)
         if head in names or (any(head in (p.name, p.package) for p in self.find_cmake(head)) and head in names):

@@ -1,5 +1,5 @@
-"""Is it there, on this target? One question for packages, headers, names of C++ and Python, CMake names, targets,
-programs, plugins, launch files, parameters, interfaces and their fields.
+"""Is it there, on this target? One question for packages, headers, names of C++ and Python and how they are used, CMake
+names, targets, components, programs, plugins, launch files, parameters, interfaces and their fields.
 
 What answers are surfaces that were derived from the releases themselves, the lists of their headers and the table of
 interfaces; of platform libraries, and where a release was not read, the reviewed rows of data/changes*.json. Versions
@@ -10,7 +10,7 @@ what the target is going to be as well (see Horizon), so that `upcoming` means t
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
@@ -21,12 +21,15 @@ from .distro.known import list_known_distros, release_day
 from .evidence import make_evidence, make_offer_evidence
 from .evidence_record import Evidence
 from .providers.libraries import load_libraries
+from .providers.library import find_gone_component, knows_components
 from .providers.providers import Providers, load_providers
 from .surface.changes import PARAMETER
 from .surface.fields import covers, load_fields, was_there_before
 from .surface.offers import Offered, Offers, PackageOffer
+from .surface.offers_cpp import check_use
+from .surface.offers_python import PythonOffers
 from .surface.surface import BuildSurface
-from .symbol import Availability, Horizon, State, Symbol
+from .symbol import Availability, CppUseForm, Horizon, State, Symbol
 from .target import ChangeInForce
 
 if TYPE_CHECKING:
@@ -55,16 +58,13 @@ _STATES: dict[str, State] = {
     "deprecated": "deprecated",
     "changed": "present",
 }
-_ROWS = {
-    "header": ("header-removed", "header-renamed", "header-moved"),
-    "c++": ("api-removed", "api-renamed", "api-changed"),
-    "python": ("python-removed", "python-api"),
-    "command": ("cmake-removed", "cmake-renamed"),
-    "target": ("cmake-removed", "cmake-renamed"),
-    "variable": ("cmake-removed", "cmake-renamed"),
-    "package": ("package-removed", "package-renamed"),
-}
-"""Kinds of reviewed rows by what they are about."""
+_SUBJECTS = {"api": "c++", "call": "use", "msg": "field"}
+"""What reviewed rows are about by how their kinds begin, where it is not called so."""
+_LESS_TELLING = frozenset(("api-renamed", "api-changed"))
+"""Kinds of reviewed rows that come after others on the same name."""
+_CMAKE = frozenset(("command", "target", "variable"))
+_REFUSED_FORMS = frozenset(("arguments", "types", "override", "call"))
+"""Forms whose change by an update breaks a use."""
 
 
 def list_horizons(target: DistroTarget, asked: Iterable[str] = ()) -> tuple[Horizon, ...]:
@@ -131,8 +131,12 @@ class Availabilities:
     @cache_method
     def find_availability(self, symbol: Symbol) -> Availability:
         """How the target stands to a symbol, what is to come left out."""
+        if symbol.use is not None:
+            return self._find_use(symbol) or Availability(symbol, "present")
         if symbol.kind == "package":
             return self._find_package(symbol)
+        if symbol.kind == "component":
+            return self._find_component(symbol)
         if symbol.kind in ("field", "interface"):
             return self._find_interface(symbol)
         missing = None
@@ -143,6 +147,25 @@ class Availabilities:
             if found.state != "unknown":
                 missing = missing or found
         return missing or self._find_reviewed(symbol) or self._find_library(symbol) or Availability(symbol, "unknown")
+
+    @cached_property
+    def _python_offers(self) -> PythonOffers:
+        return PythonOffers(self.offers)
+
+    def _find_use(self, symbol: Symbol) -> Availability | None:
+        """How a name is changed, gone or deprecated for how it is used, by the stored surfaces."""
+        if isinstance(symbol.use, CppUseForm):
+            return check_use(self.offers, symbol.packages[0], symbol.name, *symbol.use)
+        return self._python_offers.ask(symbol.use, symbol.packages) if symbol.use is not None else None
+
+    def _find_component(self, symbol: Symbol) -> Availability:
+        """A component of a library, by the table of those that went and Debian's configurations."""
+        package = symbol.packages[0]
+        gone = find_gone_component(self.target, package, symbol.name)
+        if gone is not None:
+            return Availability(symbol, "removed", package, gone.version, library=True, detail=gone.help)
+        known = knows_components(self.target, package)
+        return Availability(symbol, "present" if known else "unknown", package, library=True)
 
     def _find_library(self, symbol: Symbol) -> Availability | None:
         """What Debian's releases of a system library tell of a target that some of them export."""
@@ -156,17 +179,65 @@ class Availabilities:
         version = target.find_library(found.library) or found.version
         return Availability(symbol, state, found.library, version, library=True)
 
-    def find_on_horizon(self, symbol: Symbol) -> Availability:
-        """The same, and `upcoming` for what is there and is removed on the nearest horizon. A newer distro counts for
-        platform libraries, and for what is deprecated here already."""
+    def find_on_horizon(self, symbol: Symbol, counts: Callable[[Horizon], bool] = lambda _: True) -> Availability:
+        """The same, and `upcoming` for what is there and is removed, or not usable so, on the nearest horizon that
+        counts. A newer distro counts for platform libraries, and for what is deprecated here already."""
         here = self.find_availability(symbol)
-        if here.state not in ("present", "deprecated"):
+        if here.state not in ("present", "deprecated") and here.form != "default":
             return here
-        for horizon, then in self._ahead:
+        for horizon, then in self.ahead:
+            if symbol.use is not None and all(map(self._is_alike(horizon), symbol.packages)):
+                continue
             found = then.find_availability(symbol)
-            if found.state == "removed" and (found.library or not horizon.platform or self._is_deprecated(here)):
+            breaks = found.state == "removed" or found.form in _REFUSED_FORMS
+            relevant = found.library or not horizon.platform or self._is_deprecated(here)
+            if breaks and found.earlier and relevant and counts(horizon):
                 return found.apply_horizon(horizon)
         return here
+
+    def _is_alike(self, horizon: Horizon) -> Callable[[str], bool]:
+        """Whether a horizon has the same version of a package."""
+        return lambda package: horizon.target.find_version(package) == self.target.find_version(package)
+
+    @cache_method
+    def find_reviewed(self, kind: str, name: str) -> tuple[Availability, ...]:
+        """What reviewed rows say of a name that is not as it was: what is in force on the target, then what is upcoming
+        on the nearest horizon. kind: as of symbols, and `use`."""
+        subject, exact = ("cmake", kind != "command") if kind in _CMAKE else (kind, True)
+        rows = self._rows.get((subject, name.lower() if subject == "cmake" and "::" not in name else name), ())
+        return tuple(
+            found if ahead is None else found.apply_horizon(ahead)
+            for change, ahead in rows
+            if (found := _convert_row(kind, change)).symbol.name == name or not exact
+        )
+
+    def iterate_reviewed(self, kind: str) -> Iterator[Availability]:
+        """The same of all names."""
+        for subject, name in self._rows:
+            if subject == kind:
+                yield from self.find_reviewed(kind, name)
+
+    @cached_property
+    def _rows(self) -> dict[tuple[str, str], list[tuple[ChangeInForce, Horizon | None]]]:
+        """Reviewed rows by what they are about and its name, each with the horizon where it will be in force."""
+        found: dict[tuple[str, str], list[tuple[ChangeInForce, Horizon | None]]] = {}
+        rows = ((change, None) for change in sorted(self.target.changes(), key=lambda one: one.kind in _LESS_TELLING))
+        coming: dict[str, tuple[ChangeInForce, Horizon]] = {}
+        for ahead, _ in self.ahead:
+            for change in find_coming_changes(self.target, ahead):
+                coming.setdefault(change.old or change.package, (change, ahead))
+        for change, ahead in (*rows, *coming.values()):
+            subject = _get_subject(change.kind)
+            name = _get_name(change)
+            name = name.lower() if subject == "cmake" and "::" not in name else name
+            found.setdefault((subject, name), []).append((change, ahead))
+        return found
+
+    @cached_property
+    def replacing_headers(self) -> dict[str, bool]:
+        """Headers that reviewed rows name for others that are not as they were, and whether they are there."""
+        rows = (change for change in self.target.changes() if change.kind.startswith("header") and change.new)
+        return {change.new: change.state != "absent" for change in rows}
 
     def _is_deprecated(self, here: Availability) -> bool:
         """Whether the target warns of something, by what its version says or by a reviewed row."""
@@ -176,7 +247,7 @@ class Availabilities:
         return row is not None and row.state == "deprecated"
 
     @cached_property
-    def _ahead(self) -> list[tuple[Horizon, Availabilities]]:
+    def ahead(self) -> list[tuple[Horizon, Availabilities]]:
         ahead = list_horizons(self.target) if self._given is None else self._given
         return [(one, Availabilities(one.target, providers=self.providers, ahead=())) for one in ahead]
 
@@ -325,23 +396,22 @@ class Availabilities:
         """What a reviewed row says stands for a field; rows call it `Name.field` or `Name_Part.field`."""
         section = "" if parts[:-1] in ([], ["message"]) else f"_{parts[0].capitalize()}"
         name = f"{interface.rpartition('/')[2]}{section}.{parts[-1]}"
-        for change in self.target.changes().by_name.get(("msg-field", f"{package}/{name}"), ()):
-            if change.new and change.state == "removed" and change.package == package:
-                return change.new.rpartition(".")[2]
+        for row in self.find_reviewed("field", f"{package}/{name}"):
+            if row.replacement and row.state == "removed" and row.package == package:
+                return row.replacement.rpartition(".")[2]
         return ""
 
     def _find_reviewed(self, symbol: Symbol) -> Availability | None:
+        for row in self.find_reviewed(symbol.kind, symbol.name):
+            if row.state != "upcoming" and (not symbol.packages or row.library or row.package in symbol.packages):
+                return row._replace(symbol=symbol)
         name = symbol.name.lower() if symbol.kind == "command" else symbol.name
-        for kind in _ROWS.get(symbol.kind, ()):
-            for change in self.target.changes().by_name.get((kind, name), ()):
-                if not symbol.packages or change.library or change.package in symbol.packages:
-                    return convert_row(symbol, change)
-        for row in _load_removals().get(name, ()):
-            if not row.library or row.kind not in _ROWS.get(symbol.kind, ()):
+        for change in _load_removals().get(name, ()):
+            if not change.library or _get_subject(change.kind) != ("cmake" if symbol.kind in _CMAKE else symbol.kind):
                 continue
-            version = find_version(row.package, True, self.target)
-            if version and not has_reached(row.removed_in, version, self.target):
-                return Availability(symbol, "present", row.package, version, library=True)
+            version = find_version(change.package, True, self.target)
+            if version and not has_reached(change.removed_in, version, self.target):
+                return Availability(symbol, "present", change.package, version, library=True)
         return None
 
 
@@ -353,8 +423,19 @@ def _load_removals() -> dict[str, list[ChangeRow]]:
     )
 
 
-def convert_row(symbol: Symbol, change: ChangeInForce) -> Availability:
-    """What a reviewed row says of a symbol."""
+def _get_subject(kind: str) -> str:
+    """The kind of symbol that rows of a kind are about; `cmake` for all of CMake."""
+    head = kind.partition("-")[0]
+    return _SUBJECTS.get(head, head)
+
+
+def _get_name(change: ChangeInForce) -> str:
+    """The name that the target lacks, or warns of."""
+    return change.new if change.state == "absent" and change.kind != "call-changed" else change.old or change.package
+
+
+def _convert_row(kind: str, change: ChangeInForce) -> Availability:
+    """What a reviewed row says of its name. kind: of the symbol."""
     state: State = "changed" if change.kind in ("api-changed", "call-changed") else "removed"
     since, earlier = find_removal_version(change), True
     if change.state == "absent":
@@ -363,9 +444,11 @@ def convert_row(symbol: Symbol, change: ChangeInForce) -> Availability:
     elif change.state == "deprecated":
         state, since = "deprecated", ""
     other = change.old if state == "not yet" else change.new
-    return Availability(symbol, state, change.package, change.version, since, other, library=change.library,
-                        evidence=make_evidence(change), replacement_since=change.since if earlier else "",
-                        earlier=earlier)  # fmt: skip
+    form = "renamed" if change.kind.endswith(("-renamed", "-moved")) else ""
+    return Availability(Symbol(kind, _get_name(change)), state, change.package, change.version, since, other,
+                        library=change.library, evidence=make_evidence(change),
+                        replacement_since=change.since if earlier else "",
+                        form="meaning" if change.kind == "api-changed" else form, earlier=earlier)  # fmt: skip
 
 
 _SEVERAL = 3

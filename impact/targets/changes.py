@@ -376,9 +376,9 @@ def has_reached(bound: str, version: str, target: DistroTarget) -> bool:
     return bool(version) and is_at_least(version, bound)
 
 
-def list_excuses(change: ChangeInForce) -> tuple[str, ...]:
+def list_excuses(package: str, name: str) -> tuple[str, ...]:
     """Endings of include paths that bring a removed name back (`_c.h` for OpenCV's C constants); empty for most."""
-    return _load_excuses().get((change.package, change.old), ())
+    return _load_excuses().get((package, name), ())
 
 
 def find_removal_version(change: ChangeInForce) -> str:

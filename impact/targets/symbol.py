@@ -5,21 +5,34 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 if TYPE_CHECKING:
+    from ..facts.python.uses import PythonUse
     from .distro.distro import DistroTarget
     from .evidence_record import Evidence
 
 State = Literal["present", "removed", "not yet", "changed", "deprecated", "upcoming", "unknown"]
 
 
+class CppUseForm(NamedTuple):
+    """How a C++ name is used, as in model.package.CppApiUse."""
+
+    how: str
+    arguments: int = -1
+    given: tuple[str, ...] = ()
+    templated: bool = False
+
+
 class Symbol(NamedTuple):
     """Something that may be there or not. kind: `package`, `header`, `c++`, `python`, `command`, `target`, `variable`,
-    `executable`, `plugin`, `launch file`, `launch argument` (name: `path argument`), `parameter`, `interface` (name:
-    `msg/Name`) or `field` (name: `msg/Name.field`, or `srv/Name.request.field` of one section). packages: that may have
-    it; of platform libraries none."""
+    `component` (of the CMake package of a library, which packages names), `executable`, `plugin`, `launch file`,
+    `launch argument` (name: `path argument`), `parameter`, `interface` (name: `msg/Name`), `field` (name:
+    `msg/Name.field`, or `srv/Name.request.field` of one section) or, of reviewed rows, `use` (name: its label).
+    packages: that may have it; of platform libraries none. use: how a name of C++ or Python is used, where that is
+    asked about too."""
 
     kind: str
     name: str
     packages: tuple[str, ...] = ()
+    use: CppUseForm | PythonUse | None = None
 
 
 class Horizon(NamedTuple):
@@ -45,9 +58,10 @@ class Availability(NamedTuple):
     that has it now. alike: what is there under a similar name. library: package is a platform library. sure: nothing
     about it is guessed. horizon: where it is removed, of what is upcoming.
     form: how it is changed, for what it is used as: `arguments`, `types`, `template` (nothing tells a template
-    argument), `override`, `pure`, `default` or `call`; of what is not there, `never` where no version has it. earlier:
-    a version before the target's took the use; else a later one does. detail: what the package itself says of it, or
-    why a call is refused. gone_in: of what is deprecated, the version that removes it.
+    argument), `override`, `pure`, `default` or `call`; of what is not there, `never` where no version has it; by a
+    reviewed row `renamed`, where the replacement is the same thing, or `meaning`, which changed. earlier: a version
+    before the target's took the use; else a later one does. detail: what the package itself says of it, why a call is
+    refused, or what to do. gone_in: of what is deprecated, the version that removes it.
     """
 
     symbol: Symbol

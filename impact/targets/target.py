@@ -63,11 +63,6 @@ class ChangeTable(tuple[ChangeInForce, ...]):
     """The changes that are in force on a target, in order, and by what they are asked for."""
 
     @cached_property
-    def by_kind(self) -> dict[str, list[ChangeInForce]]:
-        """The changes of each kind."""
-        return group_pairs((change.kind, change) for change in self)
-
-    @cached_property
     def by_name(self) -> dict[tuple[str, str], list[ChangeInForce]]:
         """The changes by kind and the name that the target does not have, or warns of; CMake commands in lower case."""
         found: dict[tuple[str, str], list[ChangeInForce]] = {}

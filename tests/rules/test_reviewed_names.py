@@ -8,6 +8,9 @@ from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.model.package import NameUse
 from rosimpact.impact.model.view import TargetView
 from rosimpact.impact.rules.api.reviewed_names import ReviewedNames
+from rosimpact.impact.targets.availability import Availabilities
+from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.surface.offers import Offers
 from rosimpact.impact.targets.target import ChangeInForce, ChangeTable
 
 
@@ -37,10 +40,11 @@ class Workspace(SimpleNamespace):
 
 
 MACHINE = SimpleNamespace(is_from_library=lambda header: header == "Eigen/src/Core/Dot.h")
+REVIEWED = Availabilities(cast(DistroTarget, SimpleNamespace(changes=lambda: ROWS)), cast(Offers, object()), ahead=())
 NAMES = ReviewedNames(
     cast(
         TargetView,
-        SimpleNamespace(target=SimpleNamespace(changes=lambda: ROWS), workspace=Workspace(), machine=MACHINE),
+        SimpleNamespace(find_reviewed=REVIEWED.find_reviewed, workspace=Workspace(), machine=MACHINE),
     )
 )
 
@@ -70,7 +74,7 @@ def test_rows_on_names_that_are_gone(name, language, found):
 
 @pytest.mark.parametrize(("name", "found"), [("turn", ["arm"]), ("spin", []), ("lift", []), ("put", [])])
 def test_rows_on_names_that_are_not_there_yet(name, found):
-    assert [one.package for one in NAMES.find_early(name)] == found
+    assert [one.package for one in NAMES.list_rows("c++", name, "not yet")] == found
 
 
 @pytest.mark.parametrize(

@@ -79,4 +79,4 @@ def _is_relevant(view: TargetView, package: Package, use: NameUse, row: ChangeRo
         return False
     if use.language == "yaml" and is_of_another_distro(view, use.at.path, package.digest.files):
         return False
-    return view.may_concern(package, row, use.at.path)
+    return view.may_concern(package, row.package, use.at.path)

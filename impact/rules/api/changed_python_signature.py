@@ -43,8 +43,6 @@ _HERE = f"{UPSTREAM}[[ ({{horizon}})]]"
     },
 )
 def changed_python_signature(view: TargetView, package: Package):
-    # What parameters are called now, where a reviewed table knows: by `function.parameter`.
-    renamed = {change.old: change.new.rpartition(".")[2] for change in view.list_changes("python-api") if change.new}
     for use in list_python_uses(view, package):
         found = use.found
         if found.form not in ("call", "override"):
@@ -52,7 +50,9 @@ def changed_python_signature(view: TargetView, package: Package):
         evidence = found.evidence
         data = {**build_data(found), "detail": found.detail}
         data["declaration"] = evidence.new[0] if evidence is not None and evidence.new else ""
-        names = [f"`{renamed[key]}` for `{one}`" for one in use.keywords if (key := f"{use.name}.{one}") in renamed]
+        # What parameters are called now, where a reviewed row knows: by `function.parameter`.
+        rows = [(one, view.find_reviewed("python", f"{use.name}.{one}")) for one in use.keywords]
+        names = [f"`{row.replacement.rpartition('.')[2]}` for `{one}`" for one, (row, *_) in filter(all, rows)]
         data["spelling"] = " and ".join(names)
         kind = found.form if found.earlier else f"{found.form} early"
         yield diagnose(found, use.at, use.name, package.name, use.doubts, kind=kind, data=data)

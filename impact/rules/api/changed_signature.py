@@ -34,10 +34,8 @@ from collections.abc import Iterator
 
 from ....edges.console import format_count
 from ...model.standards import find_failing_standard
-from ...targets.availability import convert_row
 from ...targets.changes import find_function, find_standards, shows_no_type
-from ...targets.symbol import Horizon, Symbol
-from ...targets.target import ChangeInForce
+from ...targets.symbol import Availability
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
 from .diagnosis import UPSTREAM, build_data, diagnose
 from .uses import UnservedUse, list_cpp_uses
@@ -95,21 +93,17 @@ def _diagnose_use(use: UnservedUse, package: Package) -> Diagnostic | Upcoming:
 
 def _list_reviewed(view: TargetView) -> Iterator[Diagnostic]:
     """What the tables of known changes tell. What the workspace itself brings is as it brings it."""
-    refused: dict[str, tuple[ChangeInForce, Horizon | None]] = {
-        label: (change, ahead)
-        for label, (change, ahead) in view.coming.items()
-        if change.kind == "call-changed" and change.package not in _COMPILER
-    }
-    refused.update((change.old, (change, None)) for change in view.list_changes("call-changed"))
-    refused = {label: row for label, row in refused.items() if row[0].package not in view.workspace.may_have}
-    for package in view if refused else ():
-        yield from rate_upcoming(_list_reviewed_of(view, package, refused))
+    for package in view:
+        yield from rate_upcoming(_list_reviewed_of(view, package))
 
 
-def _list_reviewed_of(
-    view: TargetView, package: Package, refused: dict[str, tuple[ChangeInForce, Horizon | None]]
-) -> Iterator[Diagnostic | Upcoming]:
-    uses = [(use, *refused[use.text]) for use in package.digest.uses if use.text in refused]
+def _find_row(view: TargetView, label: str) -> Availability | None:
+    rows = (row for row in view.find_reviewed("use", label) if row.package not in view.workspace.may_have)
+    return next((row for row in rows if row.state != "upcoming" or row.package not in _COMPILER), None)
+
+
+def _list_reviewed_of(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
+    uses = [(use, found) for use in package.digest.uses if (found := _find_row(view, use.text)) is not None]
     if not uses:
         return
     # A method that the package or what it is built with declares may be meant wherever its name is called.
@@ -120,25 +114,23 @@ def _list_reviewed_of(
         "cpp": {function for each in within for function in each.digest.functions},
         "python": {method for each in within for method in each.digest.methods},
     }
-    for use, change, ahead in uses:
+    for use, found in uses:
         if (
             find_function(use.text, use.language) in own.get(use.language, ())
             or not view.applies(use.conditions)
-            or not (change.package in _COMPILER or view.may_concern(package, change, use.at.path))
-            or (ahead is not None and not view.is_active_on(ahead, use.conditions))
+            or not (found.package in _COMPILER or view.may_concern(package, found.package, use.at.path))
+            or (found.horizon is not None and not view.is_active_on(found.horizon, use.conditions))
         ):
             continue
-        standard = find_failing_standard(view, package, use, *find_standards(change.old))
+        standard = find_failing_standard(view, package, use, *find_standards(use.text))
         if standard is None:
             continue
         shown = use.shown or use.text
-        found = convert_row(Symbol("c++", use.text), change)
-        found = found if ahead is None else found.apply_horizon(ahead)
         doubts = list_place_doubts(view, use.role, use.conditions)
         doubts = doubts if use.language == "cpp" else (*doubts, Doubt.LATE)
         doubts = (*doubts, Doubt.AMBIGUOUS) if shows_no_type(use.text) else doubts
-        doubts = (*doubts, Doubt.GUARDED) if view.is_included_under_conditions(package, change.package) else doubts
-        data = {**build_data(found), "standard": standard, "advice": change.new}
+        doubts = (*doubts, Doubt.GUARDED) if view.is_included_under_conditions(package, found.package) else doubts
+        data = {**build_data(found), "standard": standard, "advice": found.replacement}
         if standard:
             data["since"] = ""  # the version is bound to the standard
             found = found._replace(evidence=None)

@@ -18,11 +18,12 @@ Not reported
     Code that a version test excludes on the target.
 """
 
-from ...targets.availability import convert_row
 from ...targets.symbol import Symbol
 from ..vocabulary import Doubt, TargetView, rule
 from .diagnosis import build_availability_texts, diagnose
 from .uses import list_cpp_uses, list_python_uses
+
+_KINDS = {"cpp": "c++", "python": "python"}
 
 
 @rule(
@@ -41,25 +42,21 @@ def deprecated_name(view: TargetView):
                 named.add((use.at.path, use.name))
                 seen.add((use.at.path, use.at.line))
                 yield diagnose(use.found, use.at, use.name, package.name)
-    rows = {
-        c.old: c
-        for c in view.list_changes("api-removed", "api-renamed", "python-removed", "cmake-removed", "cmake-renamed")
-        if c.state == "deprecated" and c.old
-    }
     for package in view:
         gone = tuple(f"{use.name}." for use in list_python_uses(view, package) if use.found.state == "removed")
-        names = [(use.text, use.at, use.conditions) for use in package.digest.names]
-        names += [(use.name, use.at, use.conditions) for use in package.build.uses]
-        for text, at, conditions in names:
-            change = rows.get(text)
-            if change is None or not view.applies(conditions) or not view.may_concern(package, change, at.path):
+        names = [(_KINDS[use.language], use.text, use.at, use.conditions) for use in package.digest.names]
+        names += [(use.kind, use.name, use.at, use.conditions) for use in package.build.uses]
+        for kind, text, at, conditions in names:
+            row = next((row for row in view.find_reviewed(kind, text) if row.state == "deprecated"), None)
+            if row is None or not view.applies(conditions):
+                continue
+            if not view.may_concern(package, row.package, at.path, kind):
                 continue
             if not f"{text}.".startswith(gone):  # else what it stands in has gone with it, which is reported
                 seen.add((at.path, at.line))
                 # What the next distro removes of CMake, removed-cmake-name says, once for the package.
-                cmake = change.kind.startswith("cmake")
-                if not cmake or view.find_availability(Symbol("command", text)).state != "upcoming":
-                    yield diagnose(convert_row(Symbol("c++", text), change), at, text, package.name)
+                if kind in _KINDS.values() or view.find_availability(Symbol(kind, text)).state != "upcoming":
+                    yield diagnose(row, at, text, package.name)
     for package in view:
         for use in list_cpp_uses(view, package):
             if use.found.state == "deprecated" and use.sure and (use.at.path, use.at.line) not in seen:

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Iterable, Iterator
 
+from ...facts.condition import Condition
 from ...model.package import ReferenceUse
 from ...targets.changes import DISTROS
 from ...targets.symbol import Availability, Symbol
@@ -63,9 +64,12 @@ def build_data(found: Availability) -> dict[str, Value]:
     }
 
 
-def find_missing(view: TargetView, kind: str, name: str, packages: Iterable[str]) -> Availability | None:
-    """What is known of a thing that none of these packages has here, or will have; None for all else."""
-    found = view.find_availability(Symbol(kind, name, tuple(packages)))
+def find_missing(
+    view: TargetView, kind: str, name: str, packages: Iterable[str], conditions: Iterable[Condition] = ()
+) -> Availability | None:
+    """What is known of a thing that none of these packages has here, or will have where a use under these conditions
+    counts; None for all else."""
+    found = view.find_availability(Symbol(kind, name, tuple(packages)), conditions)
     return found if found.is_missing or found.state == "upcoming" else None
 
 

@@ -9,10 +9,8 @@ from ....edges.memory import cache_in_derived
 from ...model.cmake.interpreter import calls_unmodelled
 from ...model.misspelling import is_slip
 from ...model.package import IncludeUse
-from ...targets.availability import convert_row
 from ...targets.providers.library import find_versioned_folder
-from ...targets.symbol import Availability, Symbol
-from ...targets.target import ChangeInForce
+from ...targets.symbol import Availability
 from ..vocabulary import Doubt, FixAction, Package, TargetView, list_place_doubts
 from .moved_header import respell
 from .parameter_header import ParameterHeaders
@@ -34,9 +32,6 @@ class IncludedHeaders:
 
     def __init__(self, view: TargetView):
         self._view = view
-        kinds = ("header-removed", "header-renamed", "header-moved")
-        self._gone = {c.old: c for c in view.list_changes(*kinds) if c.state == "removed" and c.old}
-        self._early = {c.new: c for c in view.list_changes(*kinds[1:]) if c.state == "absent" and c.new}
         self._quiet: set[str] = set()
         self._parameters = ParameterHeaders(view)
 
@@ -69,7 +64,7 @@ class IncludedHeaders:
 
     def skip(self, path: str) -> None:
         """Leaves a header of which nothing is known to be wrong out from now on, unless a place may say otherwise."""
-        known = path in self._gone or path in self._early or path in self._view.coming
+        known = any(row.state != "deprecated" for row in self._view.find_reviewed("header", path))
         if not known and is_answered(self._view, path):
             self._quiet.add(path)
 
@@ -77,18 +72,14 @@ class IncludedHeaders:
         """What reviewed rows, stored releases and platforms tell of an included header; None where they have it, or
         never had."""
         view, path = self._view, include.path
-        symbol = Symbol("header", path)
-        if (change := self._find_row(path)) is not None:
-            found = convert_row(symbol, change)
-            as_it_is = found.state == "removed" and change.kind != "header-removed"
-            return HeaderLoss(found, fix=respell(view, package, include, found.replacement) if as_it_is else ())
-        change, ahead = view.coming.get(path, (None, None))
-        is_header_row = change is not None and change.kind.startswith("header")
-        if change is not None and ahead is not None and is_header_row and view.is_active_on(ahead, include.conditions):
-            fix = respell(view, package, include, change.new) if change.kind != "header-removed" else ()
-            return HeaderLoss(convert_row(symbol, change).apply_horizon(ahead), fix=fix, ordered=True)
-        found = view.find_header_availability(path)
-        if found is not None and view.breaks_under(found, include.conditions):
+        rows = {row.state: row for row in view.find_reviewed("header", path)}
+        row = self._find_row(rows) or rows.get("upcoming")
+        if row is not None and (row.is_missing or view.breaks_under(row, include.conditions)):
+            as_it_is = row.form == "renamed" and row.state != "not yet"
+            fix = respell(view, package, include, row.replacement) if as_it_is else ()
+            return HeaderLoss(row, fix=fix, ordered=row.state == "upcoming")
+        found = view.find_header_availability(path, include.conditions)
+        if found is not None and (found.is_missing or found.state == "upcoming"):
             fix = () if found.state == "not yet" else respell(view, package, include, found.replacement)
             return HeaderLoss(found, fix=fix, ordered=True)
         found = view.find_lost_header(path)
@@ -98,18 +89,19 @@ class IncludedHeaders:
             return HeaderLoss(None)
         return HeaderLoss(found, found.form)
 
-    def _find_row(self, path: str) -> ChangeInForce | None:
-        """The reviewed row on a path that the target lacks."""
+    def _find_row(self, rows: dict[str, Availability]) -> Availability | None:
+        """The reviewed row on a path that the target lacks. rows: all on that path, by their state."""
         view = self._view
-        change = self._gone.get(path)
-        if change is not None and change.package in view.workspace.unread_names:
+        row = rows.get("removed")
+        if row is not None and row.package in view.workspace.unread_names:
             return None
-        if change is not None and not view.has_nested_header(change.package, path):
-            return change
-        change = self._early.get(path)
-        if change is None or view.has_released_header(path.partition("/")[0], path):
+        if row is not None and not view.has_nested_header(row.package, row.symbol.name):
+            return row
+        row = rows.get("not yet")
+        path = row.symbol.name if row is not None else ""
+        if row is None or row.form != "renamed" or view.has_released_header(path.partition("/")[0], path):
             return None  # the package that it is called after has it
-        return change if view.has_released_header(change.package, path) is False else None
+        return row if view.has_released_header(row.package, path) is False else None
 
 
 # What the C++ files of a generation of ROS include.

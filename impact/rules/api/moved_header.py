@@ -21,7 +21,6 @@ Not reported
 """
 
 from ...model.package import IncludeUse
-from ...targets.availability import convert_row
 from ...targets.evidence import make_offer_evidence
 from ...targets.symbol import Availability, Symbol
 from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, rule
@@ -35,23 +34,17 @@ from .diagnosis import build_availability_texts, build_data
     yields_to=("removed-header",),
 )
 def moved_header(view: TargetView):
-    moved = {
-        c.old: c
-        for c in view.list_changes("header-removed", "header-renamed", "header-moved")
-        if c.state == "deprecated" and c.old
-    }
     known: dict[str, Availability | None] = {}
     for package in view:
         for include in package.digest.includes:
             path = include.path
-            change = moved.get(path)
             if path not in known:
-                known[path] = convert_row(Symbol("header", path), change) if change else _find_deprecated(view, path)
+                rows = (row for row in view.find_reviewed("header", path) if row.state == "deprecated")
+                known[path] = next(rows, None) or _find_deprecated(view, path)
             found = known[path]
             if found is None or not view.applies(include.conditions) or view.workspace.provides_header(path):
                 continue
-            removed = change is not None and change.kind == "header-removed"
-            fix = () if removed else respell(view, package, include, found.replacement)
+            fix = respell(view, package, include, found.replacement) if found.form == "renamed" else ()
             yield Diagnostic(
                 include.at, path, package.name, build_data(found), "deprecated", fix=fix, evidence=found.evidence
             )
@@ -64,7 +57,7 @@ def _find_deprecated(view: TargetView, path: str) -> Availability | None:
     if found is None or found.state != "deprecated" or not found.sure:
         return None
     return Availability(Symbol("header", path), "deprecated", found.package, found.version,
-                        replacement=found.instead, evidence=make_offer_evidence(found))  # fmt: skip
+                        replacement=found.instead, form="renamed", evidence=make_offer_evidence(found))  # fmt: skip
 
 
 def respell(view: TargetView, package: Package, include: IncludeUse, path: str) -> tuple[Replace, ...]:

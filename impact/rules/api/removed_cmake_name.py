@@ -63,8 +63,6 @@ Names = list[tuple[str, At, tuple[Condition, ...], str]]
     },
 )
 def removed_cmake_name(view: TargetView):
-    rows = view.list_changes("cmake-removed", "cmake-renamed")
-    gone = {c.old: c.package for c in rows if c.state in ("removed", "deprecated")}
     for package in view:
         names: Names = [(use.name, use.at, use.conditions, use.kind) for use in package.build.uses]
         names += [
@@ -72,23 +70,30 @@ def removed_cmake_name(view: TargetView):
             for target in package.build.targets
             for link in target.links
         ]
-        yield from rate_upcoming(_list_unexported(view, package, [name for name in names if name[0] not in gone]))
-        yield from rate_upcoming(_list_reviewed(view, package, names, gone))
+        owners = {(name, kind): _find_reviewed_owner(view, kind, name) for name, _, _, kind in names}
+        unknown = [name for name in names if not owners[name[0], name[3]]]
+        yield from rate_upcoming(_list_unexported(view, package, unknown))
+        yield from rate_upcoming(_list_reviewed(view, package, names, owners))
         yield from _list_emptied(view, package)
 
 
+def _find_reviewed_owner(view: TargetView, kind: str, name: str) -> str:
+    """The package that, as reviewed rows say, no longer defines a name, or will not; empty where none say so."""
+    rows = view.find_reviewed(kind, name)
+    return next((row.package for row in rows if row.state in ("removed", "deprecated")), "")
+
+
 def _list_reviewed(
-    view: TargetView, package: Package, names: Names, gone: dict[str, str]
+    view: TargetView, package: Package, names: Names, owners: dict[tuple[str, str], str]
 ) -> Iterator[Diagnostic | Upcoming]:
     """What the tables of known changes tell, unless what is stored of the very release contradicts it."""
-    folded = {name.lower(): owner for name, owner in gone.items()}
     seen = set()
     for name, at, conditions, kind in names:
-        owner = gone.get(name) or (folded.get(name.lower()) if kind == "command" else None)
-        if owner is None or name in seen or not view.applies(conditions):
+        owner = owners[name, kind]
+        if not owner or name in seen or not view.applies(conditions):
             continue
-        found = view.find_availability(Symbol(kind, name, (owner,)))
-        if view.breaks_under(found, conditions):
+        found = view.find_availability(Symbol(kind, name, (owner,)), conditions)
+        if found.is_missing or found.state == "upcoming":
             seen.add(name)
             doubts = (*list_place_doubts(view, "build", conditions), kind != "variable" or Doubt.INCOMPLETE)
             yield _diagnose(view, package, found._replace(sure=True), at, name, doubts)
@@ -111,8 +116,8 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
             places[key] = at, certain, conditions
     for (kind, name), (at, certain, conditions) in places.items():
         packages = [name.partition("::")[0]] if kind == "target" else list(found)
-        lost = find_missing(view, kind, name, packages)
-        if lost is None or not view.breaks_under(lost, conditions):
+        lost = find_missing(view, kind, name, packages, conditions)
+        if lost is None:
             continue
         if not (lost.library and _may_be_made(view, package, name)):
             alone = not lost.library or not _may_be_built(view, package, name)

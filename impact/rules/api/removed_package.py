@@ -43,13 +43,11 @@ TEXTS = {
 
 @rule(texts=TEXTS)
 def removed_package(view: TargetView, package: Package):
-    return list_gone_packages(view, package, "package-removed")
+    return list_gone_packages(view, package, "")
 
 
-def list_gone_packages(view: TargetView, package: Package, kind: str) -> Iterator[Diagnostic | Upcoming]:
-    """Diagnostics for every use of a package whose change of the given kind is in force, or will be."""
-    gone = {c.old or c.package: c.new for c in view.list_changes(kind) if c.state == "removed"}
-    coming = {c.old or c.package: (c.new, ahead) for c, ahead in view.coming.values() if c.kind == kind}
+def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterator[Diagnostic | Upcoming]:
+    """Diagnostics for every use of a package that a reviewed row of the given form says is gone, or will be."""
     uses = [
         (d.name, "declared", _list_conditions(d.condition), view.find_place(package, d),
          (d.kind in ("build", "buildtool", "exec") or Doubt.TEST,))
@@ -65,20 +63,22 @@ def list_gone_packages(view: TargetView, package: Package, kind: str) -> Iterato
     for name, how, conditions, at, doubts in uses:
         if name in seen:
             continue
-        if name in coming and name not in view.workspace.may_have and view.target.find_version(name) is not None:
-            replacement, ahead = coming[name]
-            if view.is_active_on(ahead, conditions):
+        rows = {row.state: row for row in reversed(view.find_reviewed("package", name)) if row.form == form}
+        later = rows.get("upcoming")
+        if later is not None and name not in view.workspace.may_have and view.target.find_version(name) is not None:
+            if later.horizon is not None and view.is_active_on(later.horizon, conditions):
                 seen.add(name)
-                data = {"distro": ahead.name, "replacement": replacement}
-                told = "upcoming, renamed" if replacement else "upcoming"
+                data = {"distro": later.horizon.name, "replacement": later.replacement}
+                told = "upcoming, renamed" if later.replacement else "upcoming"
                 found = Diagnostic(at, name, package.name, data, told, doubts)
-                yield Upcoming(found, name, ahead, (at.path, at.line))
+                yield Upcoming(found, name, later.horizon, (at.path, at.line))
             continue
-        if name not in gone or view.is_available(name):
+        gone = rows.get("removed")
+        if gone is None or view.is_available(name):
             continue
         seen.add(name)
-        data = {"distro": view.target.distro, "replacement": gone[name]}
-        yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone[name] else how, doubts)
+        data = {"distro": view.target.distro, "replacement": gone.replacement}
+        yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone.replacement else how, doubts)
 
 
 def _list_conditions(condition: str) -> tuple[Condition, ...]:

@@ -28,22 +28,20 @@ Not reported
     show.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import Literal
 
 from ...facts.condition import Condition
 from ...model.package import NameUse, is_header
-from ...targets.availability import convert_row
-from ...targets.changes import find_removal_version, list_excuses
+from ...targets.changes import list_excuses
 from ...targets.providers.library import include_roots
 from ...targets.providers.stdlib import has_substitute
-from ...targets.symbol import Symbol
-from ...targets.target import ChangeInForce
+from ...targets.symbol import Availability
 from ...targets.version import parse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
 from .diagnosis import UPSTREAM, build_availability_texts, diagnose
-from .reviewed_names import KINDS_OF_NAMES, ReviewedNames, is_contradicted
+from .reviewed_names import ReviewedNames, is_contradicted
 from .uses import list_cpp_uses
 
 # What stands in a `try` whose except catches a missing name, or in that except, is for both versions.
@@ -79,58 +77,57 @@ def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> I
     for use in package.digest.names:
         if "::" in use.text and use.text in rows.own:
             continue  # the workspace defines it
-        change = next((c for c in rows.find(use) if view.may_concern(package, c, use.at.path)), None)
-        symbol = Symbol("python" if use.language == "python" else "c++", use.text)
-        early = rows.find_early(use.text) if change is None and use.text not in rows.own else []
+        kind = "python" if use.language == "python" else "c++"
+
+        def choose(found: Iterable[Availability], use: NameUse = use) -> Availability | None:
+            concerned = (row for row in found if view.may_concern(package, row.package, use.at.path, use.language))
+            return next(concerned, None)
+
+        row = choose(rows.find(use))
+        early = rows.list_rows(kind, use.text, "not yet") if row is None and use.text not in rows.own else []
         if early and view.is_sure(use.conditions):
-            change = next((c for c in early if view.may_concern(package, c, use.at.path)), None)
-            if change is not None and use.role in ("build", "run"):
-                yield diagnose(convert_row(symbol, change), use.at, use.text, package.name, (Doubt.AMBIGUOUS,))
+            row = choose(early)
+            if row is not None and use.role in ("build", "run"):
+                yield diagnose(row, use.at, use.text, package.name, (Doubt.AMBIGUOUS,))
             continue
-        ahead = None
-        if change is None and use.text in view.coming:
-            change, ahead = view.coming[use.text]
+        row = row or choose(one for one in view.find_reviewed(kind, use.text) if one.state == "upcoming")
         if (
-            change is None
-            or change.kind not in KINDS_OF_NAMES
-            or (use.text != change.old and _is_replacement(use.text, change))
+            row is None
+            or (use.text != row.symbol.name and _is_replacement(use.text, row.replacement))
             or (use.language == "python" and _TRIED.intersection(use.conditions))
             or not view.applies(use.conditions)
-            or not view.may_concern(package, change, use.at.path)
-            or (ahead is not None and not view.is_active_on(ahead, use.conditions))
-            or (ahead is None and is_contradicted(view, symbol, change))
+            or (row.horizon is not None and not view.is_active_on(row.horizon, use.conditions))
+            or is_contradicted(view, row)
         ):
             continue
-        bringing = headers.bring_back(use.at.path, change) if list_excuses(change) else "no"
+        excuses = list_excuses(row.package, row.symbol.name)
+        bringing = headers.bring_back(use.at.path, row.package, excuses) if excuses else "no"
         if bringing == "yes":
             continue
-        doubts = _list_doubts(view, package, use, change, rows)
+        doubts = _list_doubts(view, package, use, row, rows)
         if not doubts and bringing == "maybe":
             doubts.append(Doubt.INCOMPLETE)
-        found = convert_row(symbol, change)
-        order = (parse(find_removal_version(change)), use.at.path, use.at.line, use.at.column)
-        yield diagnose(
-            found if ahead is None else found.apply_horizon(ahead), use.at, use.text, package.name, doubts, order=order
-        )
+        order = (parse(row.since), use.at.path, use.at.line, use.at.column)
+        yield diagnose(row, use.at, use.text, package.name, doubts, order=order)
 
 
-def _is_replacement(text: str, change: ChangeInForce) -> bool:
+def _is_replacement(text: str, new: str) -> bool:
     """Whether a name is what a row says to use instead: `cv::X` is found by the row of `X`."""
-    return bool(change.new) and (text == change.new or text.endswith((f"::{change.new}", f".{change.new}")))
+    return bool(new) and (text == new or text.endswith((f"::{new}", f".{new}")))
 
 
 def _list_doubts(
-    view: TargetView, package: Package, use: NameUse, change: ChangeInForce, rows: ReviewedNames
+    view: TargetView, package: Package, use: NameUse, row: Availability, rows: ReviewedNames
 ) -> list[Doubt]:
     role = "run" if use.language == "python" and _is_run(package, use) else use.role
     doubts = [*list_place_doubts(view, role, use.conditions)]
     if use.text in rows.own:
         doubts.append(Doubt.OWN)
-    if view.is_included_under_conditions(package, change.package):
+    if view.is_included_under_conditions(package, row.package):
         doubts.append(Doubt.GUARDED)
     if use.language == "python" and role == "test":
         doubts.append(Doubt.TEST)
-    if (use.language == "python" and has_substitute(use.text)) or change.kind == "api-changed":
+    if (use.language == "python" and has_substitute(use.text)) or row.form == "meaning":
         doubts.append(Doubt.INCOMPLETE)
     return doubts
 
@@ -163,29 +160,28 @@ class _Headers:
             found.setdefault(include.at.path, set(shared)).add(include.path)
         return found
 
-    def bring_back(self, file: str, change: ChangeInForce) -> Literal["yes", "maybe", "no"]:
-        """Whether a file has a name in spite of a change, by what it includes."""
+    def bring_back(self, file: str, library: str, endings: tuple[str, ...]) -> Literal["yes", "maybe", "no"]:
+        """Whether a file has a name that a library took out, by what it includes. endings: of what brings it back."""
         paths = self._included.get(file, self._included[""])
-        endings = list_excuses(change)
-        if any(self._brings(change, endings, path) for path in paths):
+        if any(self._brings(library, endings, path) for path in paths):
             return "yes"
-        return "maybe" if any(self._may_bring(change, path) for path in paths) else "no"
+        return "maybe" if any(self._may_bring(library, path) for path in paths) else "no"
 
-    def _brings(self, change: ChangeInForce, endings: tuple[str, ...], path: str) -> bool:
+    def _brings(self, library: str, endings: tuple[str, ...], path: str) -> bool:
         """True for headers that bring the name back, and for those of other packages that include one of the library's
         that does, at whatever distance."""
-        roots = include_roots(change.package)
+        roots = include_roots(library)
         if path.endswith(endings) or not roots or path.startswith(roots):
             return path.endswith(endings)
         return any(h.startswith(roots) and h.endswith(endings) for h in self._view.machine.find_brought(path).headers)
 
-    def _may_bring(self, change: ChangeInForce, path: str) -> bool:
+    def _may_bring(self, library: str, path: str) -> bool:
         """True for headers of packages that depend on the changed library, and of nobody known."""
         view = self._view
-        if path.startswith(include_roots(change.package) or "\0") or view.is_standard(path):
+        if path.startswith(include_roots(library) or "\0") or view.is_standard(path):
             return False
         providers = view.find_header(path)
-        keys = {provider.name for provider in view.find_cmake(_CMAKE_NAME.get(change.package, change.package))}
+        keys = {provider.name for provider in view.find_cmake(_CMAKE_NAME.get(library, library))}
         return not providers or any(
             p.kind == "ros" and not keys.isdisjoint(view.list_transitive((p.name,))) for p in providers
         )

@@ -29,4 +29,4 @@ from .removed_package import TEXTS, list_gone_packages
 
 @rule(texts=TEXTS)
 def renamed_package(view: TargetView, package: Package):
-    return list_gone_packages(view, package, "package-renamed")
+    return list_gone_packages(view, package, "renamed")

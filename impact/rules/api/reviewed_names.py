@@ -1,16 +1,9 @@
 """Reviewed rows of known changes on classes, functions, constants and macros, by the name that a target lacks."""
 
-from collections.abc import Iterable
-
 from ...model.package import NameUse, is_header
-from ...targets.symbol import Symbol
-from ...targets.target import ChangeInForce
+from ...targets.symbol import Availability
 from ..vocabulary import TargetView
 
-_CPP_KINDS = ("api-removed", "api-renamed", "api-changed")
-_PYTHON_KINDS = ("python-removed", "python-api")
-KINDS_OF_NAMES = (*_CPP_KINDS, *_PYTHON_KINDS)
-"""The kinds of such rows."""
 # Namespaces of libraries whose names are in the table without them.
 _ROOTS = ("cv::", "boost::", "pcl::", "YAML::", "gazebo::", "rclcpp::", "ros::")
 
@@ -20,7 +13,6 @@ class ReviewedNames:
 
     def __init__(self, view: TargetView):
         self._view = view
-        self._by_name = view.target.changes().by_name
         self._packages = view.workspace.packages
         # A method that a header of the workspace has may be meant wherever its name stands.
         self.own = {
@@ -31,12 +23,12 @@ class ReviewedNames:
         }
         self.own.update(name for package in view.workspace for name in package.digest.defined)
 
-    def find(self, use: NameUse) -> list[ChangeInForce]:
-        """The rows on a name that is gone."""
-        kinds = _PYTHON_KINDS if use.language == "python" else _CPP_KINDS
-        found = self._list(kinds, use.text, "removed")
+    def find(self, use: NameUse) -> list[Availability]:
+        """The rows on a name that is gone, or changed its meaning."""
+        kind = "python" if use.language == "python" else "c++"
+        found = self.list_rows(kind, use.text, "removed", "changed")
         if not found and use.language == "cpp" and use.text.count("::") == 1 and use.text.startswith(_ROOTS):
-            found = self._list(kinds, use.text.rsplit("::", 1)[-1], "removed")
+            found = self.list_rows(kind, use.text.rsplit("::", 1)[-1], "removed", "changed")
         if any(row.library for row in found) and self._is_copy(use.at.path):
             return [row for row in found if not row.library]  # its own version has the names that it uses
         return found
@@ -46,19 +38,16 @@ class ReviewedNames:
         parts = path.split("/")
         return any(self._view.machine.is_from_library("/".join(parts[at:])) for at in range(1, len(parts) - 2))
 
-    def find_early(self, name: str) -> list[ChangeInForce]:
-        """The rows on a name that is not there yet."""
-        return self._list(KINDS_OF_NAMES, name, "absent")
-
-    def _list(self, kinds: Iterable[str], name: str, state: str) -> list[ChangeInForce]:
+    def list_rows(self, kind: str, name: str, *states: str) -> list[Availability]:
+        """The rows on a name that say that it is in one of these states."""
         # What the workspace itself brings is as it brings it, whatever a release did.
-        rows = (row for kind in kinds for row in self._by_name.get((kind, name), ()))
-        return [row for row in rows if row.state == state and row.package not in self._packages]
+        rows = self._view.find_reviewed(kind, name)
+        return [row for row in rows if row.state in states and row.package not in self._packages]
 
 
-def is_contradicted(view: TargetView, symbol: Symbol, change: ChangeInForce) -> bool:
+def is_contradicted(view: TargetView, row: Availability) -> bool:
     """Whether what is stored of the very release contradicts a reviewed row."""
-    if change.library or change.kind == "api-changed":
+    if row.library or row.state != "removed":
         return False
-    asked = symbol._replace(name=change.old, packages=(change.package,))
-    return view.find_availability(asked).state in ("present", "deprecated", "upcoming")
+    found = view.find_availability(row.symbol._replace(packages=(row.package,)))
+    return found.state in ("present", "deprecated", "upcoming")

@@ -60,23 +60,15 @@ def unknown_field(view: TargetView):
         for section in interface.definition.sections
         for member in (*section.fields, *section.constants)
     }
-    # What the tables of names say already is removed-symbol's.
-    named = {
-        c.old
-        for c in view.list_changes("api-removed", "api-renamed", "api-changed", "python-removed", "python-api")
-        if c.state == "removed"
-    }
     for package in view:
-        yield from rate_upcoming(_list_members(view, package, own, named))
-        yield from rate_upcoming(_list_imports(view, package, named))
+        yield from rate_upcoming(_list_members(view, package, own))
+        yield from rate_upcoming(_list_imports(view, package))
         yield from _list_of_workspace(view, package)
 
 
-def _list_members(
-    view: TargetView, package: Package, own: set[str], named: set[str]
-) -> Iterator[Diagnostic | Upcoming]:
+def _list_members(view: TargetView, package: Package, own: set[str]) -> Iterator[Diagnostic | Upcoming]:
     for use in package.digest.members:
-        if (not use.sure and use.member in own) or not named.isdisjoint(_list_spellings(use)):
+        if (not use.sure and use.member in own) or _is_reviewed(view, *_list_spellings(use)):
             continue
         # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
         if not view.applies(use.conditions) or not view.is_sure(c for c in use.conditions if c.language == "cpp"):
@@ -93,7 +85,13 @@ def _list_members(
             yield diagnose(found, use.at, subject, package.name, doubts, kind=kind, data=data)
 
 
-def _list_imports(view: TargetView, package: Package, named: set[str]) -> Iterator[Diagnostic | Upcoming]:
+def _is_reviewed(view: TargetView, *names: str) -> bool:
+    """Whether reviewed rows say that one of the names is gone, which removed-symbol reports."""
+    found = (row for name in names for kind in ("c++", "python") for row in view.find_reviewed(kind, name))
+    return any(row.state in ("removed", "changed") for row in found)
+
+
+def _list_imports(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
     """Interfaces that Python imports."""
     for imported in package.digest.imports:
         head, _, kind = imported.module.partition(".")
@@ -102,7 +100,7 @@ def _list_imports(view: TargetView, package: Package, named: set[str]) -> Iterat
         for name in imported.names:
             full = f"{imported.module}.{name}"
             found = view.find_availability(Symbol("interface", f"{kind}/{name}", (head,)))
-            if found.is_missing and full not in named and view.applies(imported.conditions):
+            if found.is_missing and not _is_reviewed(view, full) and view.applies(imported.conditions):
                 doubts = (*list_place_doubts(view, imported.role, imported.conditions), Doubt.LATE)
                 yield diagnose(found, imported.at, full, package.name, doubts)
 

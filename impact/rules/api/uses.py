@@ -1,18 +1,14 @@
 """Uses of C++ and Python names of released packages that a target does not serve as they need."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
-from ...facts.condition import Condition
 from ...model.package import CppApiUse, PythonApiUse
 from ...model.python.api import list_packages
 from ...targets.changes import find_function
-from ...targets.surface.offers import Offers
-from ...targets.surface.offers_cpp import check_use
-from ...targets.surface.offers_python import PythonOffers
 from ...targets.surface.overrides import extract_class, says_override
-from ...targets.symbol import Availability
+from ...targets.symbol import Availability, CppUseForm, Symbol
 from ..vocabulary import At, Doubt, Package, TargetView, list_place_doubts
 
 
@@ -29,53 +25,21 @@ class UnservedUse(NamedTuple):
     sure: bool = True
 
 
-Ask = Callable[[Offers, PythonOffers], Availability | None]
-_FORMS = frozenset(("arguments", "types", "override", "call"))
-
-
-def _find_answers(
-    view: TargetView, ask: Ask, owners: Iterable[str], conditions: tuple[Condition, ...]
-) -> Iterator[Availability]:
-    """What the target makes of a use, and the first update of it that breaks the use if that works so far; of a name
-    that is deprecated, the newest distro too."""
-    found = ask(view.offers, view.python_offers)
-    if found is not None:
-        yield found
-        if found.state != "deprecated" and found.form != "default":
-            return
-    deprecated = found is not None and found.state == "deprecated"
-    for ahead in view.horizons if deprecated else view.updates:
-        if all(ahead.target.find_version(one) == view.target.find_version(one) for one in owners):
-            continue
-        later = ask(*view.make_offers(ahead))
-        if later is None or not later.earlier or not (later.state == "removed" or later.form in _FORMS):
-            continue
-        if view.is_active_on(ahead, conditions):
-            yield later.apply_horizon(ahead)
-            return
-
-
-_REVIEWED = ("api-removed", "api-renamed", "api-changed")
-
-
 @cache_in_derived
 def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
     """Uses of C++ names, in the order of the digest. What the target does not compile, and what reviewed tables speak
     of is left out. What an update of the distro breaks is upcoming."""
     if not package.digest.cpp_api:
         return
-    reviewed = {change.old for change in view.list_changes(*_REVIEWED)}
-    reviewed.update(change.new for change in view.list_changes(*_REVIEWED) if change.state == "absent")
     calls = {
-        find_function(change.old, "cpp")
-        for change in view.list_changes("call-changed")
-        if view.offers.find_package(change.package) is None  # else its surfaces know more
+        find_function(row.symbol.name, "cpp")
+        for row in view.availabilities.iterate_reviewed("use")
+        if row.state != "upcoming" and view.offers.find_package(row.package) is None  # else its surfaces know more
     }
     near = view.build_environment(package)
     own = {name for one in view.workspace for name in one.digest.defined}
     unserved: list[tuple[CppApiUse, Availability]] = []
     overridden: set[tuple[str, str]] = set()
-    answers: dict[tuple, list[Availability]] = {}
     for use in package.digest.cpp_api:
         if use.package not in near or use.name in own or not view.applies(use.conditions):
             continue
@@ -83,15 +47,13 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
             continue
         if _is_of_another(use.name.partition("::")[0], use.package, near):
             continue  # a name of that package, which this one took over for a while
-        if use.name.rpartition("::")[2] in calls or not reviewed.isdisjoint(_list_tails(use.name)):
+        if use.name.rpartition("::")[2] in calls or _is_reviewed(view, "c++", _list_tails(use.name)):
             continue
-        asked = use.package, use.name, use.how, use.arguments, use.given, use.templated
-        ask: Ask = lambda offers, _, asked=asked: check_use(offers, *asked)  # noqa: E731
-        found = answers.get((asked, use.conditions))
-        if found is None:
-            found = answers[asked, use.conditions] = list(_find_answers(view, ask, (use.package,), use.conditions))
-        unserved += [(use, one) for one in found]
-        if use.how == "override" and (not found or says_override(use.given, use.arguments)):
+        form = CppUseForm(use.how, use.arguments, use.given, use.templated)
+        found = view.find_availability(Symbol("c++", use.name, (use.package,), form), use.conditions)
+        if found.state != "present":
+            unserved.append((use, found))
+        if use.how == "override" and (found.state == "present" or says_override(use.given, use.arguments)):
             overridden.add((extract_class(use.given, use.arguments), use.name))
     for use, found in unserved:
         if found.form == "unmatched" and not view.workspace.may_have.isdisjoint(found.symbol.packages):
@@ -125,26 +87,31 @@ def list_python_uses(view: TargetView, package: Package) -> Iterable[UnservedUse
     """The same of Python; what the workspace provides is left out."""
     if not package.digest.python_api:
         return
-    reviewed = {change.old for change in view.list_changes("python-removed", "python-api") if change.old}
-    changed = {change.old for change in view.list_changes("call-changed")}
     patterns = {
-        (use.at.path, use.at.line) for use in package.digest.uses if use.language == "python" and use.text in changed
+        (use.at.path, use.at.line)
+        for use in package.digest.uses
+        if use.language == "python" and _is_reviewed(view, "use", (use.text,))
     }
     for one in package.digest.python_api:
         use = one.use
         head = use.name.partition(".")[0]
         if head in view.own_modules or not use.alone or not view.is_sure(use.conditions):
             continue
-        if not reviewed.isdisjoint(_list_heads(use.name)):
+        if _is_reviewed(view, "python", _list_heads(use.name)):
             continue
-        owners = list_packages(head)
-        ask: Ask = lambda _, python, use=use, owners=owners: python.ask(use, owners)  # noqa: E731
-        for found in _find_answers(view, ask, owners, use.conditions):
-            keywords = use.given.keywords if use.given is not None else ()
-            doubts = _collect_python_doubts(view, one, found)
-            for at in (one.at, *(At(one.at.path, *place) for place in use.more)):
-                if (at.path, at.line) not in patterns:
-                    yield UnservedUse(at, found.symbol.name, found, doubts, keywords=keywords)
+        found = view.find_availability(Symbol("python", use.name, tuple(list_packages(head)), use), use.conditions)
+        if found.state == "present":
+            continue
+        keywords = use.given.keywords if use.given is not None else ()
+        doubts = _collect_python_doubts(view, one, found)
+        for at in (one.at, *(At(one.at.path, *place) for place in use.more)):
+            if (at.path, at.line) not in patterns:
+                yield UnservedUse(at, found.symbol.name, found, doubts, keywords=keywords)
+
+
+def _is_reviewed(view: TargetView, kind: str, names: Iterable[str]) -> bool:
+    """Whether reviewed rows in force speak of one of these names."""
+    return any(row.state != "upcoming" for name in names for row in view.find_reviewed(kind, name))
 
 
 def _collect_python_doubts(view: TargetView, one: PythonApiUse, found: Availability) -> tuple[Doubt, ...]:

@@ -11,7 +11,7 @@ OFF_PATH = frozenset({"eigen", "bullet", "libbullet-dev", "libpcl-all-dev", "lib
 def shares_one_folder(view: TargetView) -> bool:
     """Whether the headers of all released packages lie in one folder, and go on to with all updates that are known."""
     return all(
-        offers.has_one_include_folder for offers in (view.offers, *(view.make_offers(a)[0] for a in view.updates))
+        offers.has_one_include_folder for offers in (view.offers, *(then.offers for _, then in view.updates))
     )
 
 
@@ -21,8 +21,8 @@ def collect_folder_doubts(view: TargetView, name: str, header: str) -> tuple[Dou
     own = _has_own_folder(view, view.offers, name, header)
     if own is not False:
         return () if own else (Doubt.INCOMPLETE,)
-    for ahead in view.updates:
-        if _has_own_folder(view, view.make_offers(ahead)[0], name, header):
+    for ahead, then in view.updates:
+        if _has_own_folder(view, then.offers, name, header):
             return (Doubt.FAR if ahead.far else Doubt.UPCOMING,)
     return None
 

@@ -19,7 +19,7 @@ Use instead
 """
 
 from ...model.cmake.build import FoundPackage
-from ...targets.providers.library import find_gone_component
+from ...targets.symbol import Symbol
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 
@@ -40,17 +40,15 @@ def library_component(view: TargetView, package: Package):
 
 def _list_gone(view: TargetView, package: Package, found: FoundPackage, besides: tuple[Doubt, ...] = ()):
     """Components that the target's version of the library, or that of the newest distro, does not have."""
-    newest = view.newest
     certain = view.is_sure(found.conditions)
     for name, at in found.components:
-        gone = find_gone_component(view.target, found.name, name)
-        later = find_gone_component(newest, found.name, name) if newest is not None and not gone else None
-        if later is not None:
-            data = {"library": found.name, "version": later.version, "horizon": view.horizon, "advice": later.help}
+        known = view.find_availability(Symbol("component", name, (found.name,)))
+        data = {"library": found.name, "version": known.version, "advice": known.detail}
+        if known.state == "upcoming" and known.horizon is not None:
+            data["horizon"] = known.horizon.name
             doubt = Doubt.UPCOMING if found.required and name != "system" and certain else Doubt.FAR
             yield Diagnostic(at, name, package.name, data, "upcoming", (doubt, *besides))
-        if gone:
-            data = {"library": found.name, "version": gone.version, "advice": gone.help}
+        if known.is_missing:
             if found.quiet and not found.required:
                 doubts = (Doubt.DISPENSABLE,)
             else:

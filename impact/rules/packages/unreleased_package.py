@@ -38,12 +38,13 @@ _HELP = "bring its source into the workspace, or put a condition on the dependen
 def unreleased_package(view: TargetView, package: Package):
     target = view.target
     beside = view.underlaid or view.workspace.outside.lists_repositories
-    gone = {c.old or c.package for c in view.list_changes("package-removed", "package-renamed") if c.state == "removed"}
     seen = set()
     for dependency in view.list_dependencies(package):
         name = dependency.name
-        if name in seen or name in gone or view.is_available(name):
+        if name in seen or view.is_available(name):
             continue
+        if any(found.state == "removed" for found in view.find_reviewed("package", name)):
+            continue  # removed-package or renamed-package says so
         if not target.was_ever_released(name) or view.is_private(name) or view.find_successor(name):
             continue
         if view.unknown_contents.is_of_submodule(name):

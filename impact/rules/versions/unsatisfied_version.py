@@ -79,7 +79,7 @@ def _find_broken(dependency: Dependency, version: str) -> str:
 
 def _find_later(view: TargetView, package: Package, dependency: Dependency) -> Upcoming | None:
     """The first update of the distro whose version a bound does not allow."""
-    for ahead in view.updates:
+    for ahead, _ in view.updates:
         version = ahead.target.find_version(dependency.name) or ""
         if version and (bound := _find_broken(dependency, version)):
             data = {"version": version, "bound": bound, "horizon": ahead.name}

@@ -139,6 +139,11 @@ def find_gone_component(target: DistroTarget, package: str, component: str) -> G
     )
 
 
+def knows_components(target: DistroTarget, package: str) -> bool:
+    """Whether it is known which components a target's version of a CMake package has."""
+    return package in _KNOWN.packages and bool(target.find_library(_KNOWN.packages[package].library))
+
+
 class VersionAnswer(NamedTuple):
     """Whether a version request holds, and the version that is there."""
 
