@@ -6,7 +6,8 @@ stored, each stored version tells whether the name is there. A row is
     answered        stored versions have the name and later ones lack it, as the row says; what a version before the
                     first that has it lacks is not gone
     contradicted    some stored version says otherwise, so that the row is wrong there or its bound is inexact
-    more            answered, but the row names a replacement, or a deprecation, that nothing stored names
+    more            answered, but the row names a replacement, or a deprecation, that nothing stored names; or a target
+                    that lacks the name is not told so without the row
     bare            it is a bare name of a function or method, which does not tell whose: it may be anybody's
     unknown         no version is stored, or none on one side of the bound, or the name is of no kind that is stored
 
@@ -32,6 +33,7 @@ from pathlib import Path
 from typing import Any
 
 from ..edges.files import write_file
+from ..impact.targets.availability import Availabilities
 from ..impact.targets.changes import DISTROS
 from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.distro.known import list_known_distros
@@ -40,6 +42,7 @@ from ..impact.targets.surface.changes import Line
 from ..impact.targets.surface.fields import Definition, covers, load_fields
 from ..impact.targets.surface.offers import is_there_at
 from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.symbol import Symbol
 from ..impact.targets.version import is_at_least
 
 _SIDES = {"api": ("c++",), "python": ("python",), "header": ("header",), "cmake": ("command", "target", "variable")}
@@ -75,16 +78,35 @@ def judge_row(kind: str, package: str, old: str, new: str, removed_in: str, ros:
     return "unknown"
 
 
-def derive_bound(kind: str, package: str, old: str, ros: int) -> str:
-    """The first stored version without a name that earlier ones have, and none from then on has; empty where there is
-    none, or one in each generation of ROS."""
+def derive_bound(kind: str, package: str, old: str, ros: int) -> tuple[str, int]:
+    """The first stored version without a name that earlier ones have, and none from then on has, and its generation of
+    ROS; empty where there is none, or one in each generation."""
     side = kind.partition("-")[0]
     found = []
     for generation in (ros,) if ros else (1, 2):
         told = list(_list_presence(side, package, old, generation))
         last = max((place for place, (_, has) in enumerate(told) if has), default=len(told))
-        found += [version for version, _ in told[last + 1 : last + 2]]
-    return found[0] if len(found) == 1 else ""
+        found += [(version, generation) for version, _ in told[last + 1 : last + 2]]
+    return found[0] if len(found) == 1 else ("", 0)
+
+
+def is_told(kind: str, package: str, old: str, gone: Callable[[str], bool | None], ros: int) -> bool:
+    """Whether every distro of a generation whose version lacks a name is told so by what is stored alone."""
+    side = kind.partition("-")[0]
+    for known in list_known_distros():
+        version = _get_target(known.name).find_version(package) if known.ros == ros else None
+        if version is None or not gone(version):
+            continue
+        symbols = (Symbol(which, old, (package,)) for which in _SIDES[side])
+        found = [_get_availabilities(known.name).find_availability(symbol) for symbol in symbols]
+        if not any(one.is_missing and one.sure and not (one.evidence and one.evidence.source) for one in found):
+            return False
+    return True
+
+
+@cache
+def _get_availabilities(distro: str) -> Availabilities:
+    return Availabilities(_get_target(distro), ahead=())
 
 
 def _is_bare(package: str, name: str) -> bool:
@@ -235,25 +257,32 @@ def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]
     for group in content["changes"]:
         # Of platform libraries nothing is stored; a name that comes back, or is only deprecated, says more.
         plain = not group.get("library") and not group.get("back_in") and not group["kind"].startswith("package")
-        by_bound: dict[str, dict[str, str]] = {}
+        by_bound: dict[tuple[tuple[str, str | int], ...], dict[str, str]] = {}
         for old, new in group["names"].items():
-            found, bound = _judge(group, old, new) if plain else ("unknown", group.get("removed_in", ""))
+            found, bounds = _judge(group, old, new) if plain else ("unknown", {})
             count[group["kind"], found] += 1
             if found not in _GOES[file.name in _DERIVED]:
-                by_bound.setdefault(bound, {})[old] = new
-        kept += [{**group, **({"removed_in": bound} if bound else {}), "names": names}
-                 for bound, names in by_bound.items()]  # fmt: skip
+                by_bound.setdefault(tuple(bounds.items()), {})[old] = new
+        kept += [{**group, **dict(bounds), "names": names} for bounds, names in by_bound.items()]
     return {**content, "changes": kept}, count
 
 
-def _judge(group: dict[str, Any], old: str, new: str) -> tuple[str, str]:
-    """The verdict on a row of a group and its bound, which is that of the stored versions where they contradict it."""
+def _judge(group: dict[str, Any], old: str, new: str) -> tuple[str, dict[str, str | int]]:
+    """The verdict on a row of a group, and the bound of the stored versions where they contradict its own: with the
+    generation of ROS, which a distro names and a version does not."""
     kind, package, ros, given = group["kind"], group["package"], group.get("ros", 0), group.get("removed_in", "")
     deprecated = bool(group.get("deprecated_in"))
-    found = judge_row(kind, package, old, new, given, ros, deprecated)
-    bound = derive_bound(kind, package, old, ros) if found == "contradicted" else ""
-    better = judge_row(kind, package, old, new, bound, ros, deprecated) if bound else found
-    return (better, bound) if better in ("answered", "more") else (found, given)
+    found, bounds = judge_row(kind, package, old, new, given, ros, deprecated), {}
+    if found == "contradicted":
+        bound, generation = derive_bound(kind, package, old, ros)
+        better = judge_row(kind, package, old, new, bound, generation, deprecated) if bound else found
+        if better in ("answered", "more"):
+            found, bounds = better, {"removed_in": bound, **({"ros": generation} if given in DISTROS else {})}
+            given, ros = bound, generation
+    if found == "answered" and kind.partition("-")[0] in _SIDES:
+        tests = [(_make_gone_test(given, package, one), one) for one in ((ros,) if ros else (1, 2))]
+        found = found if all(is_told(kind, package, old, *test) for test in tests) else "more"
+    return found, bounds
 
 
 def format_content(content: dict[str, Any]) -> str:

@@ -561,12 +561,6 @@ class TargetView:
     def _is_active_on(self, target: DistroTarget, conditions: tuple[Condition, ...]) -> bool:
         return evaluate_all(conditions, self._make_environment(target)) is not False
 
-    def breaks_under(self, found: Availability, conditions: Iterable[Condition]) -> bool:
-        """True for what is missing, and for what is upcoming where these conditions hold on that horizon too."""
-        if found.state == "upcoming" and found.horizon is not None:
-            return self.is_active_on(found.horizon, conditions)
-        return found.is_missing
-
     def is_active_later(self, conditions: Collection[Condition]) -> bool:
         """The same on the newest distro."""
         return not conditions or not self.newest or self._is_active_on(self.newest, tuple(conditions))

@@ -1,8 +1,9 @@
 """Is it there, on this target? One answer for all kinds of names, from what is shipped."""
 
 import pytest
-from rosimpact.impact.targets.availability import Availabilities, Symbol, find_coming_changes, list_horizons
+from rosimpact.impact.targets.availability import Availabilities, find_coming_changes, list_horizons
 from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.symbol import CppUseForm, Symbol
 
 OLD, NEW = "tf2_geometry_msgs/tf2_geometry_msgs.h", "tf2_geometry_msgs/tf2_geometry_msgs.hpp"
 TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
@@ -37,6 +38,15 @@ TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
          "present", "", ""),
         ("foxy", Symbol("field", "srv/SwitchController.activate_controllers", ("controller_manager_msgs",)),
          "not yet", None, ""),
+        # How a name is used is asked about too.
+        ("jazzy", Symbol("c++", "rclcpp::Duration::Duration", ("rclcpp",), CppUseForm("call", 4)), "present", "", ""),
+        ("foxy", Symbol("c++", "rclcpp::GenericPublisher", ("rclcpp",), CppUseForm("name")), "not yet", "9.0.0", ""),
+        ("humble", Symbol("c++", "rclcpp::executor::Executor", ("rclcpp",), CppUseForm("name")), "removed", "9.0.0",
+         None),
+        # Components of libraries, by their versions.
+        ("melodic", Symbol("component", "signals", ("Boost",)), "present", "", ""),
+        ("noetic", Symbol("component", "signals", ("Boost",)), "removed", "", ""),
+        ("noetic", Symbol("component", "any", ("NoSuchLibrary",)), "unknown", "", ""),
         # Of platform libraries, reviewed rows tell.
         ("noetic", Symbol("c++", "CV_LOAD_IMAGE_COLOR"), "removed", None, None),
         ("jazzy", Symbol("python", "no.such.name", ("rclpy",)), "unknown", "", ""),
@@ -47,6 +57,25 @@ def test_how_a_target_stands_to_a_symbol(distro, symbol, state, since, replaceme
     assert found.state == state
     assert since is None or state == "present" or found.since == since
     assert replacement is None or state == "present" or found.replacement == replacement
+
+
+def test_a_use_that_an_update_refuses_is_upcoming_where_it_counts():
+    symbol = Symbol("component", "system", ("Boost",))
+    jazzy = Availabilities(DistroTarget("jazzy"))
+    coming = jazzy.find_on_horizon(symbol)
+    assert (coming.state, coming.library, coming.detail[:18]) == ("upcoming", True, "drop the component")
+    assert jazzy.find_on_horizon(symbol, lambda horizon: False).state == "present"
+
+
+def test_what_reviewed_rows_say_of_a_name_comes_with_what_is_to_come():
+    melodic, noetic = (Availabilities(DistroTarget(name)) for name in ("melodic", "noetic"))
+    assert [row.state for row in noetic.find_reviewed("c++", "CV_LOAD_IMAGE_COLOR")] == ["removed"]
+    assert [row.state for row in melodic.find_reviewed("c++", "CV_LOAD_IMAGE_COLOR")] == ["upcoming"]
+    lyrical = Availabilities(DistroTarget("lyrical"))
+    # CMake minds no case in names of commands, and does in those of variables.
+    states = {kind: [row.state for row in lyrical.find_reviewed(kind, "AMENT_TARGET_DEPENDENCIES")]
+              for kind in ("command", "variable")}  # fmt: skip
+    assert states == {"command": ["removed"], "variable": []}
 
 
 def test_what_will_go_is_upcoming_on_the_nearest_horizon():
