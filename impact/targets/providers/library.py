@@ -4,15 +4,17 @@ version, what their CMake packages answer to, which C++ standard they need. The 
 """
 
 import re
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
 from ..distro.conda import CHANNELS
-from ..distro.distro import DistroTarget
 from ..snapshot import DATA, read_table
 from ..version import is_at_least, parse
 from .libraries import load_libraries
+
+if TYPE_CHECKING:
+    from ..distro.distro import DistroTarget
 
 
 class _Boost(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -124,7 +126,7 @@ class Gone(NamedTuple):
     help: str
 
 
-def find_gone_component(target: DistroTarget, package: str, component: str) -> Gone | None:
+def find_gone_component(target: "DistroTarget", package: str, component: str) -> Gone | None:
     """What a target's version of a CMake package lacks of its components, None when it is there or not known."""
     for row in _KNOWN.gone:
         if row.package == package and row.component == component:
@@ -139,7 +141,7 @@ def find_gone_component(target: DistroTarget, package: str, component: str) -> G
     )
 
 
-def knows_components(target: DistroTarget, package: str) -> bool:
+def knows_components(target: "DistroTarget", package: str) -> bool:
     """Whether it is known which components a target's version of a CMake package has."""
     return package in _KNOWN.packages and bool(target.find_library(_KNOWN.packages[package].library))
 
@@ -151,7 +153,7 @@ class VersionAnswer(NamedTuple):
     version: str
 
 
-def check_version(target: DistroTarget, package: str, request: str, exact: bool) -> VersionAnswer | None:
+def check_version(target: "DistroTarget", package: str, request: str, exact: bool) -> VersionAnswer | None:
     """Whether find_package(package request [EXACT]) holds by the platform's version; None when that is not known."""
     known = _KNOWN.packages.get(package, _OTHER)
     if not known.library and target.platform not in CHANNELS and target.find_version(package) is not None:
@@ -186,7 +188,7 @@ class NeededStandard(NamedTuple):
     sure: bool
 
 
-def find_needed_standard(target: DistroTarget, include: str) -> NeededStandard | None:
+def find_needed_standard(target: "DistroTarget", include: str) -> NeededStandard | None:
     """The C++ standard that an include path needs on a target, None when nothing is known."""
     for row in _KNOWN.standards:
         if include.startswith(row.prefix):
@@ -196,7 +198,7 @@ def find_needed_standard(target: DistroTarget, include: str) -> NeededStandard |
     return None
 
 
-def find_default_standard(target: DistroTarget) -> int | None:
+def find_default_standard(target: "DistroTarget") -> int | None:
     """Year of the C++ standard that the target's compiler takes by default (1998, 2014, 2017), None when not known.
 
     Source: GCC's documentation of -std: gnu++98 before 6, gnu++14 from 6, gnu++17 from 11.
@@ -212,7 +214,7 @@ def get_year(number: int) -> int:
     return 1998 if number in (98, 3) else 2000 + number % 100
 
 
-def find_misspelled_version(target: DistroTarget, package: str) -> str:
+def find_misspelled_version(target: "DistroTarget", package: str) -> str:
     """The target's version of a library whose CMake package does not answer to this spelling of its name; empty where
     it does, or nothing is known."""
     for row in _KNOWN.exact:
@@ -244,7 +246,7 @@ class Folder(NamedTuple):
     path: str
 
 
-def find_versioned_folder(target: DistroTarget, path: str) -> Folder | None:
+def find_versioned_folder(target: "DistroTarget", path: str) -> Folder | None:
     """The folder of a version in an include path; None where there is none, or the library's version is not known."""
     found = _FOLDER.match(path)
     if found is None or found.lastgroup is None:
