@@ -31,6 +31,7 @@ import first_sight
 import mining
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options
+from rosimpact.impact.rules.rule import load_rules
 
 RIGHT = frozenset(("true", "true-but-latent"))
 PER_RULE = 2
@@ -83,8 +84,12 @@ def judged(batches: Path, only: str = "") -> list[dict]:
 
 def compare(records: Sequence[dict], said: Iterable[dict]) -> tuple[list[dict], list[dict]]:
     """Of the verdicts on one tree: those judged false that are said again, and right ones that are said no more. A
-    finding is the same if rule, path and subject are, with a severity as high."""
-    now: dict[tuple, str] = {(f["rule"], f["path"], f["subject"]): f["severity"] for f in said}
+    finding is the same if rule, path and subject are, with a severity as high. A rule that was split since means those
+    that it was split into."""
+    rules = load_rules()
+    now: dict[tuple, str] = {
+        (name, f["path"], f["subject"]): f["severity"] for f in said for name in rules[f["rule"]].names[:-1]
+    }
     again = []
     gone = []
     for record in records:

@@ -346,6 +346,24 @@ def test_a_rule_that_was_split_keeps_its_fingerprints():
     assert merged_as("lost-c-header", SPLIT) != merged_as("lost-c-header", alone)
 
 
+def test_a_rule_that_was_split_again_is_of_all_its_groups():
+    rules = load_rules()
+    split_again = ("unset-install-variable", "nonexistent-install", "missing-install")
+    assert rules["unset-install-variable"].names == (*split_again, "packages")
+    for name in split_again:
+        assert "unset-install-variable" in choose_rules(rules, select=(name,))
+    fingerprints = {
+        merge_diagnostics(
+            [(name, "", Diagnostic(At("a.cpp", 1, 1), "x", "p", kind=next(iter(rules[name].texts))))],
+            targets=(),
+            rules=rules,
+            line_text=lambda path, line: "x",
+        )[0].fingerprint
+        for name in ("unset-install-variable", "nonexistent-install")
+    }
+    assert len(fingerprints) == 1
+
+
 def test_groups_by_name():
     listed = {name: [rule.name for rule in members] for name, members in group_rules(SPLIT).items()}
     assert listed == {"lost-header": ["lost-c-header"], "lost-name": ["lost-name", "lost-macro", "lost-type"]}

@@ -119,7 +119,7 @@ def merge_diagnostics(
         for (name, severity, path, line, _, _), facts in groups.items()
         for by_target in facts
     ]
-    grouped = {rule.name: rule.group for rule in rules.values() if rule.group}
+    grouped = {rule.name: rule.groups[-1] for rule in rules.values() if rule.groups}
     return add_fingerprints(sort_findings(findings), line_text, grouped)
 
 
@@ -209,8 +209,8 @@ def add_fingerprints(
     """Findings with a fingerprint that stays the same when lines above them come and go.
 
     It is a hash of rule, path, package, subject, the line's text with white space levelled, and how many findings
-    alike stand before it. Findings are expected in file order. groups: the group by the rule, of rules that were a part
-    of another one; the group's name counts for theirs, so that baselines from before still know their findings.
+    alike stand before it. Findings are expected in file order. groups: the first group by the rule, of rules that were
+    a part of another one; the group's name counts for theirs, so that baselines from before still know their findings.
     """
     groups = groups or {}
     seen: Counter[str] = Counter()
@@ -284,22 +284,23 @@ def choose_rules(
         name: rule
         for name, rule in rules.items()
         if _rank_specificity(select or EVERYTHING, rule.names) > _rank_specificity(ignore, rule.names)
-        and (preview or not rule.preview or not {*rule.names[:2]}.isdisjoint(select))
+        and (preview or not rule.preview or not {*rule.names[:-1]}.isdisjoint(select))
     }
 
 
 def _list_known_names(rules: Iterable[Rule]) -> list[str]:
     """What a setting can name beside `all`: rules, groups and, last, families."""
     rules = list(rules)
-    return [*dict.fromkeys(name for rule in rules for name in rule.names[:2]), *sorted({rule.family for rule in rules})]
+    names = dict.fromkeys(name for rule in rules for name in rule.names[:-1])
+    return [*names, *sorted({rule.family for rule in rules})]
 
 
 def _rank_specificity(settings: Collection[str], names: Sequence[str]) -> int:
-    """How closely the names in a setting mean a rule: 4 by name, 3 by group, 2 by family, 1 with everything, 0 not at
-    all. names: those of the rule."""
+    """How closely the names in a setting mean a rule: the more, the more specific the name; 2 by family, 1 with
+    everything, 0 not at all. names: those of the rule."""
     for place, name in enumerate(names):
         if name in settings:
-            return 4 - place
+            return len(names) + 1 - place
     return int(any(name in settings for name in EVERYTHING))
 
 
@@ -472,7 +473,7 @@ def suppress(
             used.add(hit)
             silent.append(finding)
     live = {name for rule in ran for name in (rules[rule].names if rule in rules else (rule,))} | {*EVERYTHING}
-    known = {name for rule in rules.values() for name in rule.names[:2]}
+    known = {name for rule in rules.values() for name in rule.names[:-1]}
     unused = [
         (path, allow.line, name)
         for path, comments in allows.items()

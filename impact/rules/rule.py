@@ -125,7 +125,7 @@ class Rule(NamedTuple):
     """A registered rule.
 
     family: its folder. severity: the usual one. scope: see the module. preview: its precision is not measured yet.
-    doubts: what speaks against an error in all of its diagnostics. group: the rule that it was a part of once, empty
+    doubts: what speaks against an error in all of its diagnostics. group: the rule that it was a part of before, empty
     otherwise. texts: templates by kind of diagnostic. yields_to: rules that say the same with more weight.
     """
 
@@ -142,10 +142,16 @@ class Rule(NamedTuple):
     yields_to: tuple[str, ...] = ()
 
     @property
-    def names(self) -> tuple[str, str, str]:
-        """The names that mean this rule in settings and comments, the most specific first: its own, that of its group
-        (its own again where it is in none), that of its family."""
-        return self.name, self.group or self.name, self.family
+    def groups(self) -> tuple[str, ...]:
+        """The rules that it was a part of, the last one first: a rule that was split off may have been split again."""
+        former = _RULES.get(self.group)
+        return (self.group, *(former.groups if former else ())) if self.group else ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names that mean this rule in settings and comments, the most specific first: its own, those of its
+        groups, that of its family."""
+        return self.name, *self.groups, self.family
 
     @property
     def summary(self) -> str:
@@ -254,8 +260,8 @@ def group_rules(rules: Mapping[str, Rule]) -> dict[str, list[Rule]]:
     is left of the rule that the others were a part of."""
     found: dict[str, list[Rule]] = {}
     for rule in sorted(rules.values(), key=lambda rule: (rule.name != rule.group, rule.name)):
-        if rule.group:
-            found.setdefault(rule.group, []).append(rule)
+        for group in rule.groups:
+            found.setdefault(group, []).append(rule)
     for name, members in found.items():
         if name in rules and rules[name] not in members:
             members.insert(0, rules[name])

@@ -100,10 +100,17 @@ def test_what_was_judged_false_must_not_come_back(batches, tmp_path, capsys, ver
 
 
 def test_a_false_error_may_come_back_as_a_warning_only_if_it_was_an_error():
-    said = [{"rule": "r", "path": "talker/CMakeLists.txt", "subject": "a", "severity": "warning"}]
-    error, warning = record("r", "a", "false"), record("r", "a", "false") | {"severity": "warning"}
+    said = [{"rule": "unused-dependency", "path": "talker/CMakeLists.txt", "subject": "a", "severity": "warning"}]
+    error = record("unused-dependency", "a", "false")
+    warning = error | {"severity": "warning"}
     assert verdicts.compare([error], said) == ([], [])
     assert verdicts.compare([warning], said) == ([warning], [])
+
+
+def test_a_finding_of_a_rule_that_was_split_is_still_known():
+    said = [{"rule": "duplicate-target", "path": "talker/CMakeLists.txt", "subject": "a", "severity": "error"}]
+    before = record("refused-cmake-name", "a", "false")
+    assert verdicts.compare([before], said) == ([before], [])
 
 
 def test_two_findings_of_a_rule_and_repository_are_drawn_at_most():

@@ -280,6 +280,16 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         """Whether CMake looks for what package.xml declares, so that more is found and handed on than it names."""
         return any(found.how == "declared" for found in self.found)
 
+    @property
+    def builds_others(self) -> bool:
+        """Whether it downloads or calls the build of something else."""
+        return any(target.kind in ("external", "fetched") for target in self.targets)
+
+    @property
+    def may_add_targets(self) -> bool:
+        """Whether what is not read may add targets and set variables."""
+        return bool(self.unresolved) or self.builds_others or any(target.name.endswith("()") for target in self.targets)
+
 
 _CONDITIONAL = ("found", "targets", "installs", "exports", "generated", "uses", "links", "handed_on", "refused",
                 "dependency_calls")  # fmt: skip

@@ -1,7 +1,7 @@
 """The install rules of packages, as the rules on them ask for it."""
 
 import posixpath
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from ....edges.memory import cache_in_derived
 from ...model.cmake.build import Install
@@ -17,6 +17,13 @@ def read_installs(view: TargetView, package: Package) -> list[Install] | None:
     if package.build.finds_declared and packaged is None:
         return None
     return [i for i in package.build.installs if view.applies(i.conditions)]
+
+
+def list_copying_rules(view: TargetView, package: Package) -> Iterator[Install]:
+    """The install rules that surely count on the target and copy files, programs or folders."""
+    for install in read_installs(view, package) or ():
+        if install.kind in ("files", "programs", "directory") and view.is_sure(install.conditions):
+            yield install
 
 
 def is_installed(package: Package, installs: list[Install], path: str) -> bool:

@@ -196,7 +196,7 @@ def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diag
     installed = list_installed_targets(package)
     if package.build.unresolved or any("$" in name for name in (*names, *installed)):
         return
-    if any(t.kind in ("external", "fetched") for t in targets.values()):
+    if package.build.builds_others:
         return  # another build system makes libraries of its own
     for export in exports:
         item = export.item

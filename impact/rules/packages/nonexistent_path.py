@@ -79,7 +79,7 @@ def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]
             certain or Doubt.CONDITIONAL,
             kind != "outside" or view.target.was_ever_released(package.name) or Doubt.DISPENSABLE,
             not tests or (view.is_built("test") and view.roles.farm_makes_tests) or Doubt.TEST,
-            all(t.kind not in ("external", "fetched") for t in package.build.targets) or Doubt.INCOMPLETE,
+            not package.build.builds_others or Doubt.INCOMPLETE,
         )
         yield Diagnostic(use.at, subject, package.name, {"by": use.by}, kind, doubts)
 

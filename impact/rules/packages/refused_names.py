@@ -1,0 +1,32 @@
+"""Names at which CMake commands stop, as the rules on them ask for them."""
+
+from collections.abc import Iterator
+
+from ...model.cmake.build import RefusedName
+from ..vocabulary import Diagnostic, Package, TargetView, list_place_doubts
+
+# What only code that is not read can mend.
+_HIDDEN = frozenset(("branch", "no target", "no value"))
+
+
+def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[RefusedName]:
+    """The first place of each name that is refused for a reason of these kinds; none that what is not read may make or
+    set."""
+    seen = set()
+    for refused in package.build.refused:
+        if refused.kind not in kinds or (refused.kind in _HIDDEN and package.build.may_add_targets):
+            continue
+        # In other branches a target is made on other machines alone.
+        distro = any("ROS_DISTRO" in condition.text for way in refused.ways for condition in way)
+        if refused.kind == "branch" and (any(map(view.applies, refused.ways)) or not distro):
+            continue
+        if refused.name not in seen and view.applies(refused.conditions):
+            seen.add(refused.name)
+            yield refused
+
+
+def diagnose_refused(view: TargetView, package: Package, kind: str) -> Iterator[Diagnostic]:
+    """What a rule reports that all refused names of one kind are faults for."""
+    for refused in list_refused(view, package, kind):
+        doubts = list_place_doubts(view, "build", refused.conditions)
+        yield Diagnostic(refused.at, refused.name, package.name, doubts=doubts)
