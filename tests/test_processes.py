@@ -80,7 +80,7 @@ def test_processes_report_what_one_reports(tmp_path, at_once):
     together = check(ws, Options(targets, jobs=3, cache=tmp_path / "three"))
     again = check(ws, Options(targets, jobs=3, cache=tmp_path / "three"))
     rules = {finding.rule for finding in alone.findings}
-    assert {"dependency-cycle", "undeclared-package", "unresolvable-key"} <= rules
+    assert {"dependency-cycle", "undeclared-package", "unknown-dependency"} <= rules
     assert sum(finding.rule == "dependency-cycle" for finding in alone.findings) == 1
     assert alone.coverage.unresolved["include"] >= 9
     assert told(alone) == told(together) == told(again)

@@ -18,14 +18,15 @@ FIXED = (
     "packages/invalid_manifest",
     "packages/misspelt_cmake_name",
     "packages/misspelt_cmake_variable",
+    "packages/misspelt_dependency",
+    "packages/misspelt_dependency__spelling",
+    "packages/misspelt_dependency__system_package",
     "packages/missing_interface_wiring",
     "packages/missing_interface_group",
     "packages/undeclared_package",
     "packages/undeclared_package__format_1",
     "packages/unreachable_script__copied",
     "packages/unresolvable_key",
-    "packages/unresolvable_key__spelling",
-    "packages/unresolvable_key__system_package",
     "packages/wrong_dependency_kind",
     "sources/missing_include",
 )
@@ -132,7 +133,7 @@ UNTOUCHED = {
     ),
     # As eigen2 and eigen3: one letter, and another thing.
     "a digit tells versions apart": (
-        "unresolvable-key",
+        "unknown-dependency",
         ("jazzy",),
         ament(
             body=RCLCPP + "  <depend>python4-serial</depend>\n",

@@ -655,7 +655,7 @@ SILENT = {
         ("CMakeLists.txt", "find_package(sensor_msgs REQUIRED)", ""),
     ),
     "a package of one's own": Silent(
-        "unresolvable-key",
+        "misspelt-dependency",
         ("jazzy",),
         {**ament("", "exec_depend:python3-seriall"), "rosimpact.toml": '[workspace]\nprivate = ["python3-seriall"]\n'},
         ("rosimpact.toml", "python3-seriall", "python3-other"),
@@ -1194,6 +1194,6 @@ def test_a_submodule_that_is_not_checked_out_may_have_a_package_that_nobody_know
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
-    (finding,) = (one for one in report.findings if one.rule == "unresolvable-key")
+    (finding,) = (one for one in report.findings if one.rule == "unknown-dependency")
     assert finding.severity == "note"
     assert finding.message.endswith(f"may be in a submodule that was not read: `{folder}`")

@@ -285,7 +285,7 @@ ROWS = {
         ("warning", "liborocos-kdl-dev"),
     ),
     "a package of a repository": Row(
-        "unresolvable-key",
+        "misspelt-dependency",
         "noetic",
         catkin("sled", "", "catkin_package()", "exec_depend:husky_msgs"),
         ("sled/package.xml", "husky_msgs", "husky"),

@@ -1,0 +1,71 @@
+"""misspelt-dependency: a declared dependency has a name that is no package or rosdep key, but stands for one.
+
+What it does
+    Reports names in a manifest that neither rosdep nor any distro knows, where a key installs the package of Debian,
+    CMake or pkg-config that is called so, where the name is one edit away from a known one, is that of a repository
+    whose packages are called after it, of a target of the package itself, or of a build type.
+
+Why it breaks
+    `rosdep install` stops with "Cannot locate rosdep definition for [x]", and bloom refuses to release the package.
+
+Severity
+    error; warning for a name `x` or `x2` if exactly one package or key such as `x_vendor` or `libx-dev` exists, for one
+    that differs from a package of the workspace in the ending of a word, and for a target of the package.
+
+Example
+    <depend>Eigen3</depend>
+
+Use instead
+    <depend>eigen</depend>
+
+Not reported
+    Dependencies under a condition that does not hold on the target; names listed in `[workspace] private` or
+    `installed`, or that may belong to a submodule that was not read.
+"""
+
+import re
+
+from ...model.misspelling import is_slip
+from ...model.package import BUILD_TOOLS
+from ..vocabulary import Diagnostic, Doubt, Package, Remove, TargetView, Text, rule
+from .unresolved_names import find_intended, list_unknown, replace_name
+
+
+@rule(
+    group="unresolvable-key",
+    texts={
+        "misspelt": Text("`{subject}` is neither a package nor a rosdep key", "declare `{replacement}`"),
+        "system package": Text("`{subject}` is a system package, not a rosdep key", "declare `{replacement}`"),
+        "target": Text("`{subject}` is a target of `{package}`, not a package or rosdep key", "remove it"),
+        "repository": Text(
+            "`{subject}` is neither a package nor a rosdep key, but {packages} are packages",
+            "declare the packages that are used",
+        ),
+        "build type": Text("`{subject}` is a build type, not a package or rosdep key", "declare it as build_type only"),
+    },
+)
+def misspelt_dependency(view: TargetView, package: Package):
+    for name, at, _ in list_unknown(view, package):
+        intended = find_intended(view, package, name)
+        if intended is None:
+            if name in BUILD_TOOLS and not view.unknown_contents.is_of_submodule(name):
+                yield Diagnostic(at, name, package.name, kind="build type", fix=(Remove(at.path, name),))
+            continue
+        kind, names = intended
+        replacement = names[0]
+        data = {"replacement": replacement, "packages": names[:2]}
+        doubts = (Doubt.AMBIGUOUS,) if kind in ("target", "related") else ()
+        fix = ()
+        if kind == "target":
+            fix = (Remove(at.path, name),)
+        elif kind == "installing" or (kind == "near" and _is_surely_meant(name, replacement)):
+            fix = replace_name(view, package, name, replacement)
+        if kind not in ("target", "repository"):
+            kind = "system package" if kind == "installing" and view.target.find_keys(name) else "misspelt"
+        yield Diagnostic(at, name, package.name, data, kind, doubts, fix)
+
+
+def _is_surely_meant(name: str, near: str) -> bool:
+    """Whether no other name can be meant; a digit tells versions apart."""
+    plain, other = (re.sub(r"[-_.\s]", "", each.lower()) for each in (name, near))
+    return plain == other or (len(name) > 5 and is_slip(name, near))
