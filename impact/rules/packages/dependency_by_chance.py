@@ -23,14 +23,14 @@ Not reported
     package in the same role; what whoever starts launch files has; conditional code.
 """
 
-from ..vocabulary import Diagnostic, Package, TargetView, Text, Together, make_sort_key, rule
+from ..vocabulary import Diagnostic, Package, TargetView, Together, make_sort_key, rule
 from .clean_machine import collect_chance_doubts, is_chance
-from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared, list_sources
+from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, list_sources, make_texts
 
 
 @rule(
     group="undeclared-package",
-    texts=Text("{use}, but `{subject}` is not declared and comes only through {sources}", DECLARE),
+    texts=make_texts("`{subject}` is not declared and comes only through {sources}"),
 )
 def dependency_by_chance(view: TargetView, package: Package):
     for name, needs in find_undeclared(view, package).borrowed.items():
@@ -42,6 +42,7 @@ def dependency_by_chance(view: TargetView, package: Package):
                 name,
                 package.name,
                 {**describe_need(package, first), "sources": list_sources(view, package, first)},
+                find_kind(first),
                 doubts=collect_chance_doubts(view, package, first),
                 fix=declare_need(view, package, first, name),
                 together=(Together("by chance"),),

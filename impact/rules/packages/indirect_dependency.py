@@ -18,9 +18,9 @@ Not reported
     What only happens to be installed (dependency-by-chance reports it), tests, examples and conditional code.
 """
 
-from ..vocabulary import Diagnostic, Need, Package, TargetView, Text, make_sort_key, rule
+from ..vocabulary import Diagnostic, Need, Package, TargetView, make_sort_key, rule
 from .clean_machine import is_chance, is_circular, is_generated
-from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared, list_sources
+from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, list_sources, make_texts
 
 _USED = frozenset(("include", "import", "find_package", "component"))
 _TOOLS = frozenset(("catkin", "ament_cmake", "ament_cmake_auto", "cmake_modules"))
@@ -29,7 +29,7 @@ _TOOLS = frozenset(("catkin", "ament_cmake", "ament_cmake_auto", "cmake_modules"
 @rule(
     group="undeclared-package",
     severity="note",
-    texts=Text("{use}, but `{subject}` is not declared and comes with {sources}[[ (nor are {others})]]", DECLARE),
+    texts=make_texts("`{subject}` is not declared and comes with {sources}[[ (nor are {others})]]"),
 )
 def indirect_dependency(view: TargetView, package: Package):
     used = {name: found for name, needs in find_undeclared(view, package).borrowed.items()
@@ -40,7 +40,7 @@ def indirect_dependency(view: TargetView, package: Package):
     sources, others = list_sources(view, package, first)[:1], tuple(sorted(used.keys() - {name}))
     data = {**describe_need(package, first), "sources": sources, "others": others}
     fix = tuple(step for other, need in used.items() for step in declare_need(view, package, need, other))
-    yield Diagnostic(first.at, name, package.name, data, fix=fix)
+    yield Diagnostic(first.at, name, package.name, data, find_kind(first), fix=fix)
 
 
 def _find_first(view: TargetView, package: Package, name: str, needs: list[Need]) -> Need | None:

@@ -35,6 +35,8 @@ from ...model.cmake.links import list_linked_items, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .install_rules import is_installed, list_references, read_installs
 
+_OTHER_INTERPRETER = "`{subject}` is to be run by `python`, which {platform} does not have, and is installed as it is"
+
 
 @rule(
     group="missing-install",
@@ -66,10 +68,8 @@ from .install_rules import is_installed, list_references, read_installs
             "`{subject}` belongs to Python {version}, but the target has Python {own}",
             "use ament_python_install_package(), or the folder of the Python that CMake finds",
         ),
-        "interpreter": Text(
-            "`{subject}` is to be run by `python`, which {platform} does not have, and is installed as it is",
-            "{remedy}",
-        ),
+        "interpreter": Text(_OTHER_INTERPRETER, "start it with `#!/usr/bin/env python3`"),
+        "interpreter, catkin": Text(_OTHER_INTERPRETER, "install it with catkin_install_python()"),
     },
 )
 def misplaced_install(view: TargetView, package: Package):
@@ -231,9 +231,7 @@ def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagno
     target = view.target
     if target.python_major < 3 or target.python < _WITHOUT_PLAIN:
         return
-    remedy = "start it with `#!/usr/bin/env python3`"
-    if package.build_type == "catkin":
-        remedy = "install it with catkin_install_python()"
+    kind = "interpreter, catkin" if package.build_type == "catkin" else "interpreter"
     for install in installs:
         programs = install.kind == "programs" or (install.kind == "directory" and install.executable)
         if not programs or install.rewritten or not _OF_PROGRAMS.search(install.destination):
@@ -241,9 +239,9 @@ def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagno
         for path, _ in list_copied_files(install, "", package.digest.files):
             name = posixpath.basename(path)
             if path in package.digest.plain_scripts and name not in package.digest.interpreted:
-                data = {"platform": target.platform, "remedy": remedy}
+                data = {"platform": target.platform}
                 doubts = (Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
-                yield Diagnostic(install.at, name, package.name, data, "interpreter", doubts, together=_ONE_LINE)
+                yield Diagnostic(install.at, name, package.name, data, kind, doubts, together=_ONE_LINE)
 
 
 _FAULTS = (

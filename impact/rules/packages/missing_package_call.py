@@ -30,10 +30,10 @@ from collections.abc import Collection
 from ...model.cmake.interpreter import is_modelled
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 
-_HELP = "call {subject}() {where}"
+_HELP = "call {subject}()[[ after find_package({after})]][[ at the end of {file}]]"
 _CALLS = {
-    "ament_cmake": ("ament_package", "at the end"),
-    "catkin": ("catkin_package", "after find_package(catkin)"),
+    "ament_cmake": ("ament_package", {"after": "", "file": "CMakeLists.txt"}),
+    "catkin": ("catkin_package", {"after": "catkin", "file": ""}),
 }
 
 
@@ -55,7 +55,7 @@ def missing_package_call(view: TargetView, package: Package):
     foreign = {name for name in called if not is_modelled(name, ())}
     if any(name.startswith("rosbuild_") for name in called) or not foreign <= known.keys():
         return
-    wanted, where = _CALLS[package.build_type]
+    command, data = _CALLS[package.build_type]
     others = [other for other in view.list_built() if other.name != package.name]
     if package.build_type == "ament_cmake":
         found = any(_is_asked_for(other, package.name) or _is_launched(other, package.name) for other in others)
@@ -65,7 +65,7 @@ def missing_package_call(view: TargetView, package: Package):
             made = {target.name for target in build.targets if target.kind == "executable"}
             found = found or any(_is_launched(other, package.name, made) for other in others)
     kind = "" if found or package.build_type == "ament_cmake" else "installed"
-    yield Diagnostic(At(build.files[0], 1), wanted, package.name, {"where": where}, kind, (found or Doubt.DISTURBS,))
+    yield Diagnostic(At(build.files[0], 1), command, package.name, data, kind, (found or Doubt.DISTURBS,))
 
 
 def _is_asked_for(package: Package, name: str) -> bool:

@@ -37,6 +37,8 @@ from .absent_paths import is_absent
 from .ament_exports import list_installed_targets, read_ament_exports
 from .install_rules import is_installed
 
+_UNSET = "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEPENDS exports nothing"
+
 
 @rule(
     group="missing-export",
@@ -56,10 +58,8 @@ from .install_rules import is_installed
             "`{subject}` is exported as library but is a program, so find_package({package}) stops",
             "leave it out of LIBRARIES",
         ),
-        "system": Text(
-            "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEPENDS exports nothing",
-            "{advice}",
-        ),
+        "system": Text(_UNSET, "find `{subject}` first"),
+        "system, other name": Text(_UNSET, "write `{replacement}`"),
         "not installed": Text(
             "the exported library `{subject}` is not installed, so find_package({package}) stops",
             "add it to install(TARGETS ...)",
@@ -159,9 +159,9 @@ def _list_of_catkin(view: TargetView, package: Package):
         elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
             near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), None)
             other = near.upper() if near == "Eigen3" else near
-            advice = f"write `{other}`" if near else f"find `{export.item}` first"
+            kind = "system, other name" if near else "system"
             doubts = (Doubt.DISTURBS,) if near else (Doubt.DISPENSABLE,)
-            yield Diagnostic(export.at, export.item, package.name, {"advice": advice}, "system", doubts)
+            yield Diagnostic(export.at, export.item, package.name, {"replacement": other or ""}, kind, doubts)
 
 
 def _is_own(view: TargetView, package: Package, library: str) -> bool:

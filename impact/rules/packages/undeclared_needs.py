@@ -4,12 +4,38 @@ from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
 from ...model.misspelling import fold_name, is_one_edit
-from ..vocabulary import Declare, Need, Package, TargetView, translate_tag
+from ..vocabulary import Declare, Need, Package, TargetView, Text, translate_tag
 from .clean_machine import TEST_HEADERS, is_circular
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 DECLARE = "add `<{tag}>{subject}</{tag}>`[[ and `<{also}>{subject}</{also}>`]] to {manifest}"
 """The help that names what to declare, with the data of describe_need()."""
+_USES = {
+    "find_package": "CMake looks for `{used}`",
+    "part": "CMake looks for the component `{used}`",
+    "component": "CMake asks catkin for `{used}`",
+    "program": "CMake runs `{used}`",
+    "environment": "CMake reads the environment variable `{used}`",
+    "pkg-config": "pkg-config is asked for `{used}`",
+    "include": "`{used}` is included",
+    "import": "`{used}` is imported",
+    "launch": "`{used}` is used when launching",
+    "look up": "`{used}` is looked up at run time",
+    "plugin": "a plugin of `{used}` is loaded",
+    "shell": "`{used}` is run by a script",
+}
+
+
+def make_texts(rest: str, help: str = DECLARE, kind: str = "") -> dict[str, Text]:
+    """Texts by kind that say how a package uses something and then the rest, with the data of describe_need(). kind:
+    what find_kind() is given."""
+    return {f"{how}{kind}": Text(f"{use}, but {rest}", help) for how, use in _USES.items()}
+
+
+def find_kind(need: Need, kind: str = "") -> str:
+    """Which of these texts describes a need."""
+    looked_up = need.how == "launch" and need.at.path.endswith(_COMPILED)
+    return f"{'look up' if looked_up else need.how}{kind}"
 
 
 class Undeclared(NamedTuple):
@@ -60,31 +86,14 @@ def _choose_name(view: TargetView, need: Need) -> str | None:
 
 
 def describe_need(package: Package, need: Need) -> dict[str, str]:
-    """The data of a text that says what a package uses, and of DECLARE."""
+    """The data of make_texts() and of DECLARE."""
     tag, *also = translate_tag(_tag(need), package.manifest.format)
     return {
-        "use": _describe_use(need),
+        "used": need.subject,
         "tag": tag,
         "also": also[0] if also else "",
         "manifest": package.digest.manifest_path,
     }
-
-
-def _describe_use(need: Need) -> str:
-    return {
-        "find_package": f"CMake looks for `{need.subject}`",
-        "part": f"CMake looks for the component `{need.subject}`",
-        "component": f"CMake asks catkin for `{need.subject}`",
-        "program": f"CMake runs `{need.subject}`",
-        "environment": f"CMake reads the environment variable `{need.subject}`",
-        "pkg-config": f"pkg-config is asked for `{need.subject}`",
-        "include": f"`{need.subject}` is included",
-        "import": f"`{need.subject}` is imported",
-        "launch": f"`{need.subject}` is "
-        + ("looked up at run time" if need.at.path.endswith(_COMPILED) else "used when launching"),
-        "plugin": f"a plugin of `{need.subject}` is loaded",
-        "shell": f"`{need.subject}` is run by a script",
-    }[need.how]
 
 
 def declare_need(view: TargetView, package: Package, need: Need, name: str) -> tuple[Declare, ...]:

@@ -34,25 +34,28 @@ Not reported
     provide (they are counted as unresolved), unless the form of the use says that a package is meant.
 """
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, limit_severity, make_sort_key, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Together, limit_severity, make_sort_key, rule
 from .clean_machine import ASKED, collect_missing_doubts
-from .undeclared_needs import DECLARE, declare_need, describe_need, find_undeclared
+from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, make_texts
 
 _FEW = {1: 1, 2: 5}
 """So many undeclared imports, or packages that launch files start, are each reported, by the generation of ROS: who
 runs ROS 1 has most of it at hand, and its manifests were rarely complete."""
+_NOWHERE, _CONDITION = ", nowhere", ", condition"
 
 
 @rule(
     texts={
-        "": Text("{use}, but `{package}` does not depend on `{subject}`", DECLARE),
-        "nowhere": Text(
-            "{use}, but `{package}` does not depend on `{subject}`",
+        **make_texts("`{package}` does not depend on `{subject}`"),
+        **make_texts(
+            "`{package}` does not depend on `{subject}`",
             "declare it and add its repository: `{subject}` is neither in the workspace nor in {distro}",
+            _NOWHERE,
         ),
-        "condition": Text(
-            "{use}, but `{package}` declares `{subject}` only under `{condition}`",
+        **make_texts(
+            "`{package}` declares `{subject}` only under `{condition}`",
             "declare it without the condition, or use it under the same one",
+            _CONDITION,
         ),
     },
 )
@@ -76,7 +79,7 @@ def undeclared_package(view: TargetView, package: Package):
             name,
             package.name,
             data,
-            "condition" if condition else "" if known else "nowhere",
+            find_kind(first, _CONDITION if condition else "" if known else _NOWHERE),
             doubts,
             fix=declare_need(view, package, first, name) if limit_severity(*doubts) != "note" and not condition else (),
             together=at_run_time,

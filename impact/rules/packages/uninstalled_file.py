@@ -31,6 +31,17 @@ from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, ru
 from .data_files import list_copied
 from .install_rules import is_installed, list_places, list_references, read_installs
 
+_OPENED = "`{file}` is opened through the package's share folder but is not installed"
+_LAUNCHED = "`{file}` cannot be launched: the folder `{subject}` is not installed"
+_INSTALL_FOLDER = "install(DIRECTORY {subject} DESTINATION {share})"
+_ADD_FOLDER = "add `('{share}/{subject}', glob('{subject}/*'))` to data_files"
+_INSTALL_PROGRAM = "install(PROGRAMS ... DESTINATION lib/${{PROJECT_NAME}})"
+_PROGRAM = {
+    "script": "`{subject}` is started by a launch file or script but is not installed",
+    "node": "`{subject}` is a node, but no rule installs it",
+    "beside": "`{subject}` is not installed, but other programs in its folder are",
+}
+
 
 @rule(
     severity="warning",
@@ -40,21 +51,16 @@ from .install_rules import is_installed, list_places, list_references, read_inst
             "`{package}` installs nothing, but it has {folders}",
             "install(DIRECTORY {listed} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})",
         ),
-        "opened": Text(
-            "`{file}` is opened through the package's share folder but is not installed",
-            "{how}",
-        ),
+        "opened": Text(_OPENED, _INSTALL_FOLDER),
+        "opened, data_files": Text(_OPENED, _ADD_FOLDER),
         "elsewhere": Text(
             "`{file}` is opened through the package's share folder but is installed elsewhere",
             "install it as {share}/{file}",
         ),
-        "launch": Text(
-            "`{file}` cannot be launched: the folder `{subject}` is not installed",
-            "{how}",
-        ),
-        "script": Text("`{subject}` is started by a launch file or script but is not installed", "{how}"),
-        "node": Text("`{subject}` is a node, but no rule installs it", "{how}"),
-        "beside": Text("`{subject}` is not installed, but other programs in its folder are", "{how}"),
+        "launch": Text(_LAUNCHED, _INSTALL_FOLDER),
+        "launch, data_files": Text(_LAUNCHED, _ADD_FOLDER),
+        **{kind: Text(text, _INSTALL_PROGRAM) for kind, text in _PROGRAM.items()},
+        **{f"{kind}, catkin": Text(text, "catkin_install_python(PROGRAMS ...)") for kind, text in _PROGRAM.items()},
     },
 )
 def uninstalled_file(view: TargetView, package: Package):
@@ -112,11 +118,9 @@ def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagn
             build.catkin_package or build.ament_package or At(build.files[0] if build.files else installs[0].at.path, 1)
         )
         share = "${CATKIN_PACKAGE_SHARE_DESTINATION}" if catkin else "share/${PROJECT_NAME}"
-        how = f"install(DIRECTORY {folder} DESTINATION {share})"
         if package.build_type == "ament_python":
-            share = f"share/{package.name}"
-            how = f"add `('{share}/{folder}', glob('{folder}/*'))` to data_files"
-        data = {"file": name, "share": share, "how": how}
+            share, kind = f"share/{package.name}", f"{kind}, data_files" if kind != "elsewhere" else kind
+        data = {"file": name, "share": share}
         yield Diagnostic(at, folder, package.name, data, kind, together=_FOLDERS)
 
 
@@ -173,11 +177,10 @@ def _list_scripts(package: Package, installs, scripts: set[str]) -> Iterator[Dia
         beside = folder in folders and folder != package.path and "." not in name and find_folder_role(name) is None
         node = path in nodes
         if (name in scripts or beside or node) and name not in others and not is_installed(package, installs, path):
-            how = "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"
-            if package.build_type == "catkin" and path not in package.digest.shells:
-                how = "catkin_install_python(PROGRAMS ...)"
             kind = "script" if name in scripts else "beside" if beside else "node"
-            yield Diagnostic(At(path, 1), name, package.name, {"how": how}, kind, together=_ONCE)
+            if package.build_type == "catkin" and path not in package.digest.shells:
+                kind = f"{kind}, catkin"
+            yield Diagnostic(At(path, 1), name, package.name, kind=kind, together=_ONCE)
 
 
 def _list_nodes(package: Package, installs) -> frozenset[str]:

@@ -28,6 +28,8 @@ from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 from .install_rules import is_installed, read_installs
 
+_NOT_EXPORTED = "`{subject}` describes plugins of `{library}` but is not exported, so pluginlib does not find them"
+
 
 @rule(
     group="missing-install",
@@ -37,10 +39,8 @@ from .install_rules import is_installed, read_installs
             "the exported plugin description `{subject}` is not installed",
             "install(FILES {file} DESTINATION ${{CATKIN_PACKAGE_SHARE_DESTINATION}})",
         ),
-        "not exported": Text(
-            "`{subject}` describes plugins of `{library}` but is not exported, so pluginlib does not find them",
-            "{advice}",
-        ),
+        "not exported": Text(_NOT_EXPORTED, "pluginlib_export_plugin_description_file({base} {subject})"),
+        "not exported, catkin": Text(_NOT_EXPORTED, '<{base} plugin="${{prefix}}/{file}"/> in package.xml'),
     },
 )
 def uninstalled_plugin_description(view: TargetView, package: Package):
@@ -95,8 +95,6 @@ def _list_not_exported(view: TargetView, package: Package, installs) -> Iterator
             continue
         seen.add(path)
         base = plugin.base.partition("::")[0] or "BASE_PACKAGE"
-        catkin = package.build_type == "catkin"
-        advice = f'<{base} plugin="${{prefix}}/{path[len(package.path) :].lstrip("/")}"/> in package.xml'
-        advice = advice if catkin else f"pluginlib_export_plugin_description_file({base} {posixpath.basename(path)})"
-        data = {"library": name, "advice": advice}
-        yield Diagnostic(At(path, 1), posixpath.basename(path), package.name, data, "not exported", (Doubt.DISTURBS,))
+        kind = "not exported, catkin" if package.build_type == "catkin" else "not exported"
+        data = {"library": name, "base": base, "file": path[len(package.path) :].lstrip("/")}
+        yield Diagnostic(At(path, 1), posixpath.basename(path), package.name, data, kind, (Doubt.DISTURBS,))
