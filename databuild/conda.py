@@ -119,9 +119,9 @@ def read_releases(clone: Path) -> dict[str, str]:
     found: dict[str, str] = {}
     for path in ("recipe/meta.yaml", "recipe/recipe.yaml"):
         for day, text in read_history(clone, path):
-            told = _SET.search(text)
-            if told is not None:
-                found[day] = told[1]
+            reported = _SET.search(text)
+            if reported is not None:
+                found[day] = reported[1]
     rows: dict[str, str] = {}
     for day, version in sorted(found.items()):
         if version != next(reversed(rows.values()), ""):

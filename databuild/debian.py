@@ -137,10 +137,10 @@ def read_library(library: DebianLibrary, facts: LibraryFacts, release: str, text
     words: set[str] = set()
     for header in facts.headers:
         ways = (library.headers.match(f"{root}{header.path}") for root in ("", *(f"{one}/" for one in facts.roots)))
-        told = next(filter(None, ways), None)
-        text = texts.get(header.sha) if told is not None else None
-        if told is not None and text is not None and not text.refuses:
-            path = told["path"]
+        reported = next(filter(None, ways), None)
+        text = texts.get(header.sha) if reported is not None else None
+        if reported is not None and text is not None and not text.refuses:
+            path = reported["path"]
             headers[path] = HeaderSurface(()) if INNER.search(path) else text.surface
             words.update(text.words)
     if not headers:
@@ -514,8 +514,8 @@ def derive(suites: Suites, texts: Texts, clones: Path | None, output: Path) -> N
             continue
         versions = list_packaged_versions(library, suites, texts)
         if not _has_shrunk(versions):
-            told = group_rows(library, versions, reviewed, elsewhere=everywhere.has)
-            changes += [group for key, group in told if key == "changes"]
+            reported = group_rows(library, versions, reviewed, elsewhere=everywhere.has)
+            changes += [group for key, group in reported if key == "changes"]
     write(output / "changes_debian.json", "changes", changes)
     write(output / "uses_debian.json", "uses", uses)
     if clones is not None:

@@ -323,8 +323,8 @@ def list_platform_versions(library: str) -> frozenset[str]:
     """The versions of a library that platforms have."""
     import yaml
 
-    told = yaml.safe_load((DATA / "platform_versions.yaml").read_bytes())["platforms"].values()
-    return frozenset(libraries[library]["version"] for libraries in told if library in libraries)
+    reported = yaml.safe_load((DATA / "platform_versions.yaml").read_bytes())["platforms"].values()
+    return frozenset(libraries[library]["version"] for libraries in reported if library in libraries)
 
 
 def read_generators(folder: Path) -> Iterator[tuple[str, str, State]]:
@@ -438,7 +438,7 @@ def _main() -> None:
         return
     if asked.folder is None:
         parser.error("a folder of clones is needed, or --shipped")
-    told = [item.split("=") for item in asked.installed]
+    reported = [item.split("=") for item in asked.installed]
     states: dict[str, dict[str, dict[str, tuple[str, ...]]]] = defaultdict(dict)
     defining: dict[str, set[str]] = defaultdict(set)
     announcing: dict[str, set[str]] = defaultdict(set)
@@ -462,8 +462,8 @@ def _main() -> None:
     if asked.onto:
         used.update(includes.load_includes().table.paths)
     anew = {*states, *(owner for owner, _, _ in large)}
-    large += [(library, version, read_folder(Path(where))) for library, version, where in told]
-    libraries, sparse = (set(_LIBRARIES.values()) | {"boost"}) & anew | {one[0] for one in told}, set()
+    large += [(library, version, read_folder(Path(where))) for library, version, where in reported]
+    libraries, sparse = (set(_LIBRARIES.values()) | {"boost"}) & anew | {one[0] for one in reported}, set()
     for owner, version, state in large:
         sparse.add(owner)
         states[owner][version] = list_direct(
@@ -549,8 +549,8 @@ def _renumber_states(states: str, paths: tuple[str, ...], numbers: dict[str, int
     """States of a header with other numbers for its paths."""
     runs = []
     for run in states.split(";"):
-        version, *told = run.split(" ")
-        again = (n if n == "-" else str(numbers.setdefault(paths[int(n)], len(numbers))) for n in told)
+        version, *reported = run.split(" ")
+        again = (n if n == "-" else str(numbers.setdefault(paths[int(n)], len(numbers))) for n in reported)
         runs.append(" ".join((version, *again)))
     return ";".join(runs)
 

@@ -134,7 +134,7 @@ def list_packages(lists: Path, named: Iterable[str], besides: Sequence[re.Patter
             elif key in ("Size", "Version", "Source", "Section"):
                 fields[name][key] = value.strip()
     depends = read_dependencies(lists)
-    source = {name: told.get("Source", name).partition(" ")[0] for name, told in fields.items()}
+    source = {name: reported.get("Source", name).partition(" ")[0] for name, reported in fields.items()}
     sources = frozenset(source.values())
     library = {name: derive_library_name(one, sources) for name, one in source.items()}
     found: dict[str, Packaged] = {}
@@ -142,9 +142,9 @@ def list_packages(lists: Path, named: Iterable[str], besides: Sequence[re.Patter
         ring, seen = [start] if start in fields else [], {start}
         while ring:
             one = ring.pop()
-            told = fields[one]
-            if _is_development(one, told):
-                found[one] = Packaged(one, told["Version"], int(told["Size"]), library[one])
+            reported = fields[one]
+            if _is_development(one, reported):
+                found[one] = Packaged(one, reported["Version"], int(reported["Size"]), library[one])
             following = [n for n in depends.get(one, ()) if library.get(n) == library[one] and n not in seen]
             seen.update(following)
             ring += following
@@ -158,11 +158,11 @@ def derive_library_name(source: str, sources: Collection[str]) -> str:
     return source if plain != source and plain in sources else plain or source
 
 
-def _is_development(name: str, told: Mapping[str, str]) -> bool:
+def _is_development(name: str, reported: Mapping[str, str]) -> bool:
     """Whether a package is for those who compile with a library."""
-    if not (name.endswith("-dev") or told.get("Section", "").endswith("libdevel")):
+    if not (name.endswith("-dev") or reported.get("Section", "").endswith("libdevel")):
         return False
-    source = told.get("Source", name).partition(" ")[0]
+    source = reported.get("Source", name).partition(" ")[0]
     return not (is_ros_source(source) or is_of_compiler(name) or _APART.fullmatch(name))
 
 
@@ -219,8 +219,8 @@ def find_refusal(plain: str) -> str:
     message = ""
     depth = 0
     guard = ""
-    for told in _DIRECTIVE.finditer(plain):
-        what, rest = told[1], told[2].strip()
+    for reported in _DIRECTIVE.finditer(plain):
+        what, rest = reported[1], reported[2].strip()
         if what == "ifndef" and not guard and not depth:
             guard = rest
         elif what == "define" and rest == guard:
@@ -246,7 +246,7 @@ def read_packages(library: str, files: Sequence[tuple[Packaged, Path]], texts: T
         except (DebError, OSError) as error:
             unread.append((package.name, str(error)))
             continue
-        stems = {told[1] for path in (*held, *links) if (told := _LINK.match(path))}
+        stems = {reported[1] for path in (*held, *links) if (reported := _LINK.match(path))}
         read.append((package, {path: member.data for path, member in held.items()}, tuple(sorted(stems))))
     flags = [parse_pkgconfig(path, data) for _, held, _ in read for path, data in held.items() if _PC.match(path)]
     roots = {root.strip("/") for _, _, folders in flags for root in folders}
@@ -301,8 +301,8 @@ _EXPAND = re.compile(r"\$\{(\w+)\}")
 
 def parse_pkgconfig(path: str, data: bytes) -> tuple[str, tuple[str, ...], tuple[str, ...]]:
     """A pkg-config file: its name, the libraries that it links, and the folders below the system's include folder."""
-    told = _PC.match(path)
-    assert told is not None
+    reported = _PC.match(path)
+    assert reported is not None
     values: dict[str, str] = {"pcfiledir": f"/{posixpath.dirname(path)}"}
     fields: dict[str, str] = {}
     for line in data.decode("utf-8", "replace").replace("\\\n", " ").splitlines():
@@ -315,7 +315,7 @@ def parse_pkgconfig(path: str, data: bytes) -> tuple[str, tuple[str, ...], tuple
             (values if match[2] == "=" else fields)[match[1]] = text.strip()
     stems = tuple(dict.fromkeys(re.findall(r"(?<!\S)-l([\w.+-]+)", fields.get("Libs", ""))))
     folders = tuple(dict.fromkeys(_ROOT.findall(normalize_flags(fields.get("Cflags", "")))))
-    return told[1], stems, folders
+    return reported[1], stems, folders
 
 
 def normalize_flags(flags: str) -> str:
@@ -422,11 +422,11 @@ def _find_downloaded(folder: Path, package: Packaged) -> Path | None:
 
 
 def _ask_apt(configuration: Path, name: str) -> str:
-    told = subprocess.run(
+    reported = subprocess.run(
         ["apt-config", "shell", "VALUE", name],
         env={**os.environ, "APT_CONFIG": str(configuration)},
         check=True,
         capture_output=True,
         text=True,
     )
-    return told.stdout.partition("=")[2].strip().strip("'")
+    return reported.stdout.partition("=")[2].strip().strip("'")

@@ -73,8 +73,8 @@ def write(file: Path, suites: Mapping[str, Mapping[str, LibraryFacts]], texts: T
                 versions += len(each)
                 headers += sum(len(facts.headers) for _, facts in each)
                 roots = " ".join(dict.fromkeys(root for _, facts in each for root in facts.roots))
-                told = " ".join(f"{suite}={extract_upstream_version(facts.version)}" for suite, facts in each)
-                db.execute("INSERT INTO package VALUES(?, ?, ?, ?, ?)", (name, data, names, roots, told))
+                reported = " ".join(f"{suite}={extract_upstream_version(facts.version)}" for suite, facts in each)
+                db.execute("INSERT INTO package VALUES(?, ?, ?, ?, ?)", (name, data, names, roots, reported))
                 db.executemany("INSERT INTO block VALUES(?, ?, ?)", ((name, *block) for block in blocks))
             db.executemany("INSERT INTO target VALUES(?, ?)", sorted(_collect_targets(by_library).items()))
             db.executemany("INSERT INTO header VALUES(?, ?)", sorted(_find_stray_headers(by_library, debian).items()))
@@ -136,7 +136,7 @@ def _pack_library(
         empty = BuildSurface(name, version), PythonSurface(name)
         names.add(Stored(version, False, Surface(name, version, *empty, headers=tuple(headers))))
         links = (" ".join(header.links) for header in facts.headers)
-        blocks.add((path, header.includes, told) for (path, header), told in zip(headers, links, strict=True))
+        blocks.add((path, header.includes, reported) for (path, header), reported in zip(headers, links, strict=True))
     return packer.pack_versions(), names.pack_versions(), list(blocks.pack_blocks())
 
 
@@ -183,11 +183,11 @@ def _select_headers(facts: LibraryFacts, texts: Texts) -> Iterator[tuple[str, He
             yield header.path, HeaderSurface((), deprecated=f"#error {text.refuses}")
             continue
         inner = INNER.search(header.path) is not None
-        entities = () if inner else tuple(one for one in text.surface.entities if _is_told(one))
+        entities = () if inner else tuple(one for one in text.surface.entities if _is_public(one))
         yield header.path, msgspec.structs.replace(text.surface, entities=entities, announced=(), problems=(), lost=0)
 
 
-def _is_told(one: Entity) -> bool:
+def _is_public(one: Entity) -> bool:
     return not one.internal and one.access in ("", "public") and INNER_NAME.search(one.name) is None
 
 

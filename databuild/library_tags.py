@@ -88,17 +88,17 @@ def read(folder: Path, library: str, platforms: Collection[str], inner: re.Patte
     paths of headers that nobody includes. Nothing where no clone is there."""
     import pygit2
 
-    told = SOURCES.get(library)
+    reported = SOURCES.get(library)
     versions: dict[str, dict[str, bytes]] = defaultdict(dict)
     known: dict[bytes, tuple[HeaderSurface, frozenset[str]]] = {}
-    if told is None or not platforms:
+    if reported is None or not platforms:
         return
-    for where in filter(None, map(find_git_directory, sorted(folder.glob(told.names)))):
+    for where in filter(None, map(find_git_directory, sorted(folder.glob(reported.names)))):
         repository = pygit2.Repository(str(where))
         for number, tree in _find_versions(repository, min(platforms, key=parse)).items():
-            if "*" in told.names and number not in platforms:
+            if "*" in reported.names and number not in platforms:
                 continue
-            for path, blob in _list_headers(tree, told):
+            for path, blob in _list_headers(tree, reported):
                 versions[number][path] = blob.id.raw
                 if blob.id.raw not in known:
                     text = blob.data
@@ -121,7 +121,7 @@ def _find_versions(repository: pygit2.Repository, oldest: str) -> dict[str, pygi
     return {version: tree for version, tree in found.items() if is_at_least(version, first)}
 
 
-def _list_headers(tree: pygit2.Tree, told: LibraryClones) -> Iterator[tuple[str, pygit2.Blob]]:
+def _list_headers(tree: pygit2.Tree, reported: LibraryClones) -> Iterator[tuple[str, pygit2.Blob]]:
     import pygit2
 
     stack = [(tree, "")]
@@ -131,5 +131,5 @@ def _list_headers(tree: pygit2.Tree, told: LibraryClones) -> Iterator[tuple[str,
             path = f"{prefix}{entry.name}"
             if isinstance(entry, pygit2.Tree):
                 stack.append((entry, f"{path}/"))
-            elif isinstance(entry, pygit2.Blob) and (match := told.headers.match(path)) and not _ASIDE.search(path):
-                yield told.below + match["path"], entry
+            elif isinstance(entry, pygit2.Blob) and (match := reported.headers.match(path)) and not _ASIDE.search(path):
+                yield reported.below + match["path"], entry

@@ -164,9 +164,9 @@ def build(
             declared.extend(manifests.read_caches(distro, (caches[oid].data for oid in blobs)))
     known = manifests.changes_only(declared, make_version_key)
     date = _format_day(head.commit_time)
-    gathered = write.GatheredData(date, sources, distros, histories, syncs, rules, known)
+    data = write.SnapshotData(date, sources, distros, histories, syncs, rules, known)
     tell("writing", 0, 0)
-    raw = write.build_database(gathered)
+    raw = write.build_database(data)
     packed = write.write_snapshot(raw, date, sources, output)
     return BuiltSnapshot(
         date,

@@ -247,10 +247,10 @@ class Probe:
             run = subprocess.run(
                 [*self.command, f"-std=gnu++{standard}", str(source)], capture_output=True, text=True, timeout=300
             )
-        told = [int(line) for line in re.findall(r"probe\.cpp:(\d+):", run.stderr)]
+        reported = [int(line) for line in re.findall(r"probe\.cpp:(\d+):", run.stderr)]
         if run.returncode not in (0, 1) or "fatal error" in run.stderr:
             return frozenset()
-        missing = {asked[line] for line in told if line in asked}
+        missing = {asked[line] for line in reported if line in asked}
         return frozenset(asked.values()) - missing
 
 

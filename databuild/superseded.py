@@ -64,8 +64,8 @@ def judge_row(kind: str, package: str, old: str, new: str, removed_in: str, ros:
         return "bare"
     answers: list[str] = []
     for generation in (ros,) if ros else (1, 2):
-        told = list(_list_presence(side, package, old, generation))
-        found = _compare(told, _make_gone_test(removed_in, package, generation))
+        reported = list(_list_presence(side, package, old, generation))
+        found = _compare(reported, _make_gone_test(removed_in, package, generation))
         if found == "unknown":
             continue
         instead, warns = _find_replacements(side, package, old, generation)
@@ -84,9 +84,9 @@ def derive_bound(kind: str, package: str, old: str, ros: int) -> tuple[str, int]
     side = kind.partition("-")[0]
     found = []
     for generation in (ros,) if ros else (1, 2):
-        told = list(_list_presence(side, package, old, generation))
-        last = max((place for place, (_, has) in enumerate(told) if has), default=len(told))
-        found += [(version, generation) for version, _ in told[last + 1 : last + 2]]
+        reported = list(_list_presence(side, package, old, generation))
+        last = max((place for place, (_, has) in enumerate(reported) if has), default=len(reported))
+        found += [(version, generation) for version, _ in reported[last + 1 : last + 2]]
     return found[0] if len(found) == 1 else ("", 0)
 
 
@@ -116,9 +116,9 @@ def _is_bare(package: str, name: str) -> bool:
     return "::" not in name and not name.startswith(f"{head}_") and not name[:1].isupper()
 
 
-def _compare(told: list[tuple[str, bool]], gone: Callable[[str], bool | None]) -> str:
+def _compare(reported: list[tuple[str, bool]], gone: Callable[[str], bool | None]) -> str:
     """What versions that have, or lack, a name make of the bound. gone: what the bound says of a version."""
-    came = dropwhile(lambda one: not one[1], told)
+    came = dropwhile(lambda one: not one[1], reported)
     sides = {(gone(version), has) for version, has in came if gone(version) is not None}
     if not any(has for _, has in sides):
         return "unknown"
@@ -220,8 +220,8 @@ def _find_replacements(side: str, package: str, old: str, ros: int) -> tuple[set
     warns = False
     for which in _SIDES.get(side, ()):
         events = line.events.get(which, {}).get(old, ()) if line is not None else ()
-        instead.update(told.instead for event in events for told in event.told)
-        warns = warns or any(told.kind == "deprecated" for event in events for told in event.told)
+        instead.update(reported.instead for event in events for reported in event.reported)
+        warns = warns or any(reported.kind == "deprecated" for event in events for reported in event.reported)
     return instead, warns
 
 

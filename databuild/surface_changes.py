@@ -61,8 +61,8 @@ class Lines:
         found: dict[tuple[str, int], bytes] = {}
         for (package, generation), versions in self._versions.items():
             events: dict[str, dict[str, tuple[ChangeEvent, ...]]] = {}
-            for (side, name), told in sorted(self._events.get((package, generation), {}).items()):
-                events.setdefault(side, {})[name] = tuple(told)
+            for (side, name), reported in sorted(self._events.get((package, generation), {}).items()):
+                events.setdefault(side, {})[name] = tuple(reported)
             bases = _collect_bases(package, self._before[package, generation])
             approximate = tuple(self._approximate.get((package, generation), ()))
             found[package, generation] = pack(Line(tuple(versions), events, bases, approximate))
@@ -71,7 +71,7 @@ class Lines:
 
 def _may_have_been(thing: tuple[str, str], event: ChangeEvent) -> bool:
     """Whether a name of C++ seems new because the header that has it was generated before, or is not known well."""
-    return thing[0] == "c++" and all(told.kind == "added" and told.sure < 1 for told in event.told)
+    return thing[0] == "c++" and all(reported.kind == "added" and reported.sure < 1 for reported in event.reported)
 
 
 def _find_side(change: VersionChange) -> str:
@@ -90,15 +90,15 @@ def _list_events(
             continue
         name = change.name.partition("(")[0] if change.what == "parameter" else change.name
         kept = change.kind in ("deprecated", "value") or (change.kind == "default" and change.side != "c++")
-        told = ComparedThing(change.kind, change.what, change.aspects, shorten_message(change.now) if kept else "",
+        reported = ComparedThing(change.kind, change.what, change.aspects, shorten_message(change.now) if kept else "",
                     change.instead,
                     change.moved_to, change.breaks, change.sure)  # fmt: skip
         each = found.setdefault((_find_side(change), name), [])
-        if told not in each:
-            each.append(told)
+        if reported not in each:
+            each.append(reported)
     for (side, name), each in found.items():
         had, has = _find_form(package, side, name, before), _find_form(package, side, name, after)
-        if side == "c++" and had is not None and had == has and all(told.kind == "added" for told in each):
+        if side == "c++" and had is not None and had == has and all(reported.kind == "added" for reported in each):
             continue  # another header declares it too
         yield (side, name), ChangeEvent(0, tuple(each), had, has)
 

@@ -139,13 +139,13 @@ def _make_rows(kind: str, name: str, value: Any) -> Iterator[_Row]:
         for one in value.entities:
             yield "entity", name, _trim_defaults(bare(_remove_text(one)), _ENTITY)
     elif kind == "module":
-        told = value.surface
-        yield "module", name, [value.path, value.package, told.all, told.all_open, told.open, _shorten(told.deprecated),
-                               told.parsed]  # fmt: skip
-        for bound in told.names:
+        surface = value.surface
+        yield "module", name, [value.path, value.package, surface.all, surface.all_open, surface.open,
+                               _shorten(surface.deprecated), surface.parsed]  # fmt: skip
+        for bound in surface.names:
             bound = msgspec.structs.replace(bound, line=0, deprecated=_shorten(bound.deprecated))
             yield "bound", name, _trim_defaults(bare(bound), _BOUND)
-        for taken in told.imports:
+        for taken in surface.imports:
             yield "taken", name, bare(msgspec.structs.replace(taken, line=0))
     elif kind == "interface":
         yield kind, name, bare(_remove_lines(value))
@@ -287,7 +287,7 @@ def _pack_parameters(packages: Packages) -> bytes:
     found: dict[str, dict[str, None]] = {}
     for (package, _), packed in sorted(packages.items()):
         for name, events in read_packed(packed.changes, Line).events.get(PARAMETER, {}).items():
-            if any(told.kind in ("added", "removed") and told.sure >= 1 for event in events for told in event.told):
+            if any(t.kind in ("added", "removed") and t.sure >= 1 for event in events for t in event.reported):
                 found.setdefault(find_last_part(name), {})[package] = None
     return _pack_names(found)
 

@@ -95,7 +95,7 @@ def _list_released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, 
     ):
         urls.setdefault(repository, {})[url] = None
         branches.setdefault(repository, branch or "")
-    told = set()
+    reported = set()
     for repository, version, names in data.fetch(
         "SELECT r.repository, r.version, p.names FROM release r JOIN distro d ON d.id = r.distro"
         " JOIN packages p ON p.id = r.packages WHERE d.name = ? AND r.version IS NOT NULL ORDER BY r.ts",
@@ -103,8 +103,8 @@ def _list_released(target: DistroTarget, data: Snapshot) -> Iterator[tuple[str, 
     ):
         plain = version.partition("-")[0]
         for package in names.split(" "):
-            if (package, plain) not in told:
-                told.add((package, plain))
+            if (package, plain) not in reported:
+                reported.add((package, plain))
                 release = DistroVersion(target.distro, plain, tuple(
                     urls.get(repository, ())
                 ), branches.get(repository, ""),

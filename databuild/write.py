@@ -1,4 +1,4 @@
-"""Writes the gathered facts as the compressed database that is shipped."""
+"""Writes the collected facts as the compressed database that is shipped."""
 
 import hashlib
 import os
@@ -68,7 +68,7 @@ class Sync(NamedTuple):
     cut: int
 
 
-class GatheredData(NamedTuple):
+class SnapshotData(NamedTuple):
     """Everything that goes into the database. date: newest day of the data. sources: repository → commit."""
 
     date: str
@@ -93,7 +93,7 @@ class _Ids:
         return [(number, text) for text, number in self.of.items()]
 
 
-def build_database(gathered: GatheredData) -> bytes:
+def build_database(data: SnapshotData) -> bytes:
     """The SQLite database as bytes; the same facts give the same bytes with the same SQLite."""
     handle, name = tempfile.mkstemp(suffix=".sqlite")
     os.close(handle)
@@ -102,7 +102,7 @@ def build_database(gathered: GatheredData) -> bytes:
         try:
             connection.execute("PRAGMA journal_mode=OFF")
             connection.executescript(SCHEMA)
-            _fill(connection, gathered)
+            _fill(connection, data)
             connection.commit()
             connection.execute("VACUUM")
         finally:
@@ -112,26 +112,26 @@ def build_database(gathered: GatheredData) -> bytes:
         os.unlink(name)
 
 
-def _fill(connection: sqlite3.Connection, gathered: GatheredData) -> None:
+def _fill(connection: sqlite3.Connection, data: SnapshotData) -> None:
     many = connection.executemany
-    many("INSERT INTO meta VALUES(?, ?)", [("date", gathered.date), *sorted(gathered.sources.items())])
-    distros = {row.name: number for number, row in enumerate(sorted(gathered.distros), 1)}
-    many("INSERT INTO distro VALUES(?, ?, ?, ?, ?)", [(distros[row.name], *row) for row in sorted(gathered.distros)])
-    many("INSERT OR REPLACE INTO sync VALUES(?, ?, ?)", [(distros[s.distro], s.day, s.cut) for s in gathered.syncs])
+    many("INSERT INTO meta VALUES(?, ?)", [("date", data.date), *sorted(data.sources.items())])
+    distros = {row.name: number for number, row in enumerate(sorted(data.distros), 1)}
+    many("INSERT INTO distro VALUES(?, ?, ?, ?, ?)", [(distros[row.name], *row) for row in sorted(data.distros)])
+    many("INSERT OR REPLACE INTO sync VALUES(?, ?, ?)", [(distros[s.distro], s.day, s.cut) for s in data.syncs])
     repositories, packages, urls, sets, dependencies = _Ids(), _Ids(), _Ids(), _Ids(), _Ids()
     homes: set[tuple[int, int, int]] = set()
-    for name in sorted(gathered.histories):
-        _fill_history(connection, distros[name], gathered.histories[name], (repositories, packages, urls, sets), homes)
+    for name in sorted(data.histories):
+        _fill_history(connection, distros[name], data.histories[name], (repositories, packages, urls, sets), homes)
     many("INSERT INTO home VALUES(?, ?, ?)", sorted(homes))
     many(
         "INSERT OR REPLACE INTO manifest VALUES(?, ?, ?, ?, ?)",
         [
             (distros[item.distro], packages[item.package], item.version, dependencies[item.entries], item.build_type)
-            for item in gathered.manifests
+            for item in data.manifests
             if item.distro in distros
         ],
     )
-    many("INSERT OR REPLACE INTO rule VALUES(?, ?, ?, ?)", [(r.key, r.os, r.ts, r.rule) for r in gathered.rules])
+    many("INSERT OR REPLACE INTO rule VALUES(?, ?, ?, ?)", [(r.key, r.os, r.ts, r.rule) for r in data.rules])
     for table, ids in (
         ("repository", repositories),
         ("package", packages),

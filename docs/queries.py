@@ -40,9 +40,9 @@ A rule gets a `TargetView`: the workspace (`view.workspace`) as one target (`vie
 | what package.xml says | `package.manifest` |
 | what builds it: `ament_python`, `catkin` ... | `package.build_type` |
 | what CMakeLists.txt builds, installs and exports | `package.build` |
-| what setup.py, setup.cfg and pyproject.toml install | `package.digest.setup` |
-| what its files include and import | `package.digest.includes`, `package.digest.imports` |
-| which programs, files and plugins its launch files and scripts mention | `package.digest.references` |
+| what setup.py, setup.cfg and pyproject.toml install | `package.linked.setup` |
+| what its files include and import | `package.linked.includes`, `package.linked.imports` |
+| which programs, files and plugins its launch files and scripts mention | `package.linked.references` |
 | what a package uses of others, with who provides it | `view.list_needs(package)` |
 | which ROS, which distro, which version of a package or library | `view.target` |
 | whether something outside of the workspace is there | `view.find_availability(symbol)` |

@@ -190,8 +190,8 @@ def curable(ws, monkeypatch):
     def lacks(view):
         for package in view:
             if "rclcpp" not in package.declared:
-                fix = (Declare(package.digest.manifest_path, "rclcpp"),)
-                yield Diagnostic(At(package.digest.manifest_path, 1), "rclcpp", package.name, fix=fix)
+                fix = (Declare(package.linked.manifest_path, "rclcpp"),)
+                yield Diagnostic(At(package.linked.manifest_path, 1), "rclcpp", package.name, fix=fix)
 
     # Content of its own: what the shipped rules said of the same files is remembered, and must not be mixed with this.
     (ws / "a/CMakeLists.txt").write_text(CMAKE.format(ERROR + "# curable\n"))

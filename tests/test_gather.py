@@ -61,22 +61,22 @@ def short_time(monkeypatch):
 
 def test_facts_by_path(tmp_path):
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(write(tmp_path / "ws", FILES)), store)
-        assert list(gathered.kinds) == sorted(FILES.keys() - {"p/mesh.stl"})
-        assert gathered.get_facts("p/package.xml").facts.name == "p"
-        assert gathered.get_facts("p/src/node.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
-        assert gathered.get_facts("p/msg/A.msg").facts.sections[0].fields[0].name == "a"
-        assert gathered.list_paths("cpp", "msg") == ["p/msg/A.msg", "p/src/node.cpp", "p/src/same.cpp"]
-        assert gathered.problems == []
+        extraction = extract_all(WorkingTree(write(tmp_path / "ws", FILES)), store)
+        assert list(extraction.kinds) == sorted(FILES.keys() - {"p/mesh.stl"})
+        assert extraction.get_facts("p/package.xml").facts.name == "p"
+        assert extraction.get_facts("p/src/node.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
+        assert extraction.get_facts("p/msg/A.msg").facts.sections[0].fields[0].name == "a"
+        assert extraction.list_paths("cpp", "msg") == ["p/msg/A.msg", "p/src/node.cpp", "p/src/same.cpp"]
+        assert extraction.problems == []
         with pytest.raises(KeyError):
-            gathered.get_facts("p/mesh.stl")
+            extraction.get_facts("p/mesh.stl")
 
 
 def test_equal_contents_are_parsed_once_and_shared(tmp_path):
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(write(tmp_path / "ws", FILES)), store)
-        assert gathered.extracted == 4
-        assert gathered.get_facts("p/src/node.cpp") is gathered.get_facts("p/src/same.cpp")
+        extraction = extract_all(WorkingTree(write(tmp_path / "ws", FILES)), store)
+        assert extraction.extracted == 4
+        assert extraction.get_facts("p/src/node.cpp") is extraction.get_facts("p/src/same.cpp")
 
 
 def test_a_second_run_reads_and_parses_nothing(tmp_path, monkeypatch):
@@ -100,10 +100,10 @@ def test_only_what_changed_is_parsed(tmp_path):
         extract_all(WorkingTree(tmp_path / "ws"), store)
     write(tmp_path / "ws", {"p/src/node.cpp": "#include <new.h>\n", "p/src/more.cpp": "#include <more.h>\n"})
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
-        assert gathered.extracted == 2
-        assert gathered.get_facts("p/src/node.cpp").facts.includes[0].path == "new.h"
-        assert gathered.get_facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
+        assert extraction.extracted == 2
+        assert extraction.get_facts("p/src/node.cpp").facts.includes[0].path == "new.h"
+        assert extraction.get_facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
 
 
 def test_a_commit_and_a_directory_share_their_facts(tmp_path):
@@ -113,9 +113,9 @@ def test_a_commit_and_a_directory_share_their_facts(tmp_path):
     repo.create_commit("HEAD", who, who, "all", repo.index.write_tree(), [])
     with Store(tmp_path / "cache") as store:
         assert extract_all(WorkingTree(tmp_path / "ws"), store).extracted == 4
-        gathered = extract_all(GitTree(tmp_path / "ws"), store)
-        assert gathered.extracted == 0
-        assert gathered.get_facts("p/package.xml").facts.name == "p"
+        extraction = extract_all(GitTree(tmp_path / "ws"), store)
+        assert extraction.extracted == 0
+        assert extraction.get_facts("p/package.xml").facts.name == "p"
 
 
 def test_a_new_version_of_an_extractor_parses_its_files_again(tmp_path, monkeypatch):
@@ -179,11 +179,11 @@ def test_a_large_file_is_not_read(tmp_path, monkeypatch):
         tree, "read_with_id", lambda path, limit: pytest.fail(path) if "generated" in path else read(path, limit)
     )
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(tree, store)
-    assert "p/src/generated.hpp" not in gathered.kinds
-    assert [problem.path for problem in gathered.problems] == ["p/src/generated.hpp"]
-    assert "larger than 8 MB" in gathered.problems[0].message
-    assert len(gathered.kinds) == 5
+        extraction = extract_all(tree, store)
+    assert "p/src/generated.hpp" not in extraction.kinds
+    assert [problem.path for problem in extraction.problems] == ["p/src/generated.hpp"]
+    assert "larger than 8 MB" in extraction.problems[0].message
+    assert len(extraction.kinds) == 5
 
 
 def test_a_git_lfs_pointer_is_no_source(tmp_path):
@@ -191,10 +191,10 @@ def test_a_git_lfs_pointer_is_no_source(tmp_path):
     write(tmp_path / "ws", {**FILES, "p/src/data.cpp": pointer})
     for _ in ("cold", "warm"):
         with Store(tmp_path / "cache") as store:
-            gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
-        assert "p/src/data.cpp" not in gathered.kinds and "p/src/data.cpp" not in gathered.ids
-        assert [problem.path for problem in gathered.problems] == ["p/src/data.cpp"]
-        assert "git lfs pull" in gathered.problems[0].message
+            extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
+        assert "p/src/data.cpp" not in extraction.kinds and "p/src/data.cpp" not in extraction.ids
+        assert [problem.path for problem in extraction.problems] == ["p/src/data.cpp"]
+        assert "git lfs pull" in extraction.problems[0].message
 
 
 @pytest.mark.parametrize(
@@ -216,10 +216,10 @@ def test_a_file_that_cannot_be_read(tmp_path, monkeypatch, error, message):
 
     monkeypatch.setattr(tree, "read_with_id", refuse)
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(tree, store)
-        assert gathered.problems == [PathProblem("p/src/node.cpp", message)]
-        assert gathered.get_facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
-        assert "p/src/node.cpp" not in gathered.kinds
+        extraction = extract_all(tree, store)
+        assert extraction.problems == [PathProblem("p/src/node.cpp", message)]
+        assert extraction.get_facts("p/src/same.cpp").facts.includes[0].path == "rclcpp/rclcpp.hpp"
+        assert "p/src/node.cpp" not in extraction.kinds
 
 
 def failing(how):
@@ -276,13 +276,13 @@ def test_a_file_that_its_extractor_fails_on(tmp_path, monkeypatch, small_chunks,
     write(tmp_path / "ws", files)
     monkeypatch.setattr(kinds, "extract", failing(how))
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
         poisoned = ["src/copy.cpp", "src/f5.cpp", "src/f9.cpp"]
-        assert [problem.path for problem in gathered.problems] == poisoned
-        assert all(message in problem.message for problem in gathered.problems)
-        assert sorted(gathered.kinds) == sorted(files.keys() - set(poisoned)) == sorted(gathered.ids)
-        assert gathered.extracted == 23
-        assert gathered.get_facts("src/f6.cpp").facts.includes[0].path == "a6.h"
+        assert [problem.path for problem in extraction.problems] == poisoned
+        assert all(message in problem.message for problem in extraction.problems)
+        assert sorted(extraction.kinds) == sorted(files.keys() - set(poisoned)) == sorted(extraction.ids)
+        assert extraction.extracted == 23
+        assert extraction.get_facts("src/f6.cpp").facts.includes[0].path == "a6.h"
 
 
 def second_look(path):
@@ -297,13 +297,13 @@ def test_two_looks_at_a_file_take_one_visit(tmp_path, monkeypatch, small_chunks,
     read_with_id = tree.read_with_id
     monkeypatch.setattr(tree, "read_with_id", lambda path, limit: read.append(path) or read_with_id(path, limit))
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(tree, store, jobs=jobs, second=second_look)
-        second = gathered.second
+        extraction = extract_all(tree, store, jobs=jobs, second=second_look)
+        second = extraction.second
         assert len(read) == len(set(read)) == 15
-        assert gathered.extracted == 4 + 10 + 1 + 10
-        assert gathered.kinds["p/src/node.cpp"] == "cpp" and second.kinds["p/src/node.cpp"] == "flow_cpp"
-        assert "p/package.xml" in gathered.kinds and "p/package.xml" not in second.kinds
-        assert gathered.get_facts("src/f1.cpp").facts.includes[0].path == "a1.h"
+        assert extraction.extracted == 4 + 10 + 1 + 10
+        assert extraction.kinds["p/src/node.cpp"] == "cpp" and second.kinds["p/src/node.cpp"] == "flow_cpp"
+        assert "p/package.xml" in extraction.kinds and "p/package.xml" not in second.kinds
+        assert extraction.get_facts("src/f1.cpp").facts.includes[0].path == "a1.h"
         assert second.get_facts("src/f1.cpp").facts.functions[0].name == "f1"
         assert second.get_facts("p/src/node.cpp") is second.get_facts("p/src/same.cpp")
 
@@ -321,8 +321,8 @@ def test_only_the_look_that_is_new_is_taken(tmp_path):
 def test_a_second_look_alone(tmp_path):
     with Store(tmp_path / "cache") as store:
         tree = WorkingTree(write(tmp_path / "ws", FILES))
-        gathered = extract_all(tree, store, kind_of=lambda path: None, second=second_look)
-        assert not gathered.kinds and sorted(gathered.second.kinds) == ["p/src/node.cpp", "p/src/same.cpp"]
+        extraction = extract_all(tree, store, kind_of=lambda path: None, second=second_look)
+        assert not extraction.kinds and sorted(extraction.second.kinds) == ["p/src/node.cpp", "p/src/same.cpp"]
 
 
 @pytest.mark.parametrize(
@@ -337,48 +337,48 @@ def test_a_look_that_fails_leaves_the_other(tmp_path, monkeypatch, small_chunks,
     write(tmp_path / "ws", files)
     monkeypatch.setattr(kinds, "extract", lambda kind, data: (fail if kind == "flow_cpp" else extract)(kind, data))
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs, second=second_look)
-        assert gathered.problems == [] and sorted(gathered.kinds) == sorted(files)
-        assert [problem.path for problem in gathered.second.problems] == ["src/f5.cpp"]
-        assert message in gathered.second.problems[0].message
-        assert sorted(gathered.second.kinds) == sorted(files.keys() - {"src/f5.cpp"})
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs, second=second_look)
+        assert extraction.problems == [] and sorted(extraction.kinds) == sorted(files)
+        assert [problem.path for problem in extraction.second.problems] == ["src/f5.cpp"]
+        assert message in extraction.second.problems[0].message
+        assert sorted(extraction.second.kinds) == sorted(files.keys() - {"src/f5.cpp"})
 
 
 def test_what_cannot_be_read_is_named_once(tmp_path):
     write(tmp_path / "ws", {"a.cpp": "version https://git-lfs.github.com/spec/v1\n"})
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, second=second_look)
-        assert [problem.path for problem in gathered.problems] == ["a.cpp"]
-        assert not gathered.second.problems and not gathered.kinds and not gathered.second.kinds
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store, second=second_look)
+        assert [problem.path for problem in extraction.problems] == ["a.cpp"]
+        assert not extraction.second.problems and not extraction.kinds and not extraction.second.kinds
 
 
 def test_facts_that_the_store_lost_are_made_again(tmp_path):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
         store.close()
         for file in (tmp_path / "cache").iterdir():
             file.unlink()
-        assert gathered.get_facts("p/package.xml").facts.name == "p"
+        assert extraction.get_facts("p/package.xml").facts.name == "p"
 
 
 def test_stored_facts_of_another_shape_are_made_again(tmp_path):
     write(tmp_path / "ws", FILES)
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
-        row = gather_module._make_key(gathered.ids["p/package.xml"], "manifest")
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
+        row = gather_module._make_key(extraction.ids["p/package.xml"], "manifest")
         for data in (b"-\x93\x01\x02\x03", b"z rubbish", b""):
             store.put([(row, data)])
-            gathered.forget(["p/package.xml"])
-            assert gathered.get_facts("p/package.xml").facts.name == "p"
+            extraction.forget(["p/package.xml"])
+            assert extraction.get_facts("p/package.xml").facts.name == "p"
 
 
 def test_without_a_cache_folder(tmp_path, small_chunks):
     write(tmp_path / "ws", sources(20))
     write(tmp_path, {"file": ""})
     with Store(tmp_path / "file/cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=2)
-        assert gathered.get_facts("src/f3.cpp").facts.includes[0].path == "a3.h"
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=2)
+        assert extraction.get_facts("src/f3.cpp").facts.includes[0].path == "a3.h"
         assert len(store.notes) == 1
 
 
@@ -393,9 +393,9 @@ def test_interrupted_and_resumed(tmp_path, small_chunks, jobs):
     with Store(tmp_path / "cache") as store, pytest.raises(KeyboardInterrupt):
         extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs, progress=interrupt)
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
-        assert 10 <= gathered.extracted <= 40, "what was parsed stays parsed"
-        assert len(gathered.kinds) == 60
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=jobs)
+        assert 10 <= extraction.extracted <= 40, "what was parsed stays parsed"
+        assert len(extraction.kinds) == 60
 
 
 SLOW_RUN = """
@@ -436,9 +436,9 @@ def test_killed_and_resumed(tmp_path, how):
     assert "finished" not in output
     assert errors.count("Traceback") <= (1 if how == signal.SIGINT else 0), errors
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
-        assert 0 < gathered.extracted < 100, "what was parsed stays parsed"
-        assert gathered.get_facts("src/f99.cpp").facts.includes[0].path == "a99.h"
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
+        assert 0 < extraction.extracted < 100, "what was parsed stays parsed"
+        assert extraction.get_facts("src/f99.cpp").facts.includes[0].path == "a99.h"
         assert store.notes == []
 
 
@@ -463,16 +463,16 @@ def test_a_file_edited_while_it_is_read(tmp_path, monkeypatch):
     tree.list_entries()
     (tmp_path / "ws/p/src/same.cpp").write_text("#include <second.h>\n")
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(tree, store)
-        assert gathered.get_facts("p/src/same.cpp").facts.includes[0].path == "second.h"
-        assert gathered.ids["p/src/same.cpp"] == tree_module.compute_blob_id(b"#include <second.h>\n")
+        extraction = extract_all(tree, store)
+        assert extraction.get_facts("p/src/same.cpp").facts.includes[0].path == "second.h"
+        assert extraction.ids["p/src/same.cpp"] == tree_module.compute_blob_id(b"#include <second.h>\n")
 
 
 def test_an_empty_tree(tmp_path):
     with Store(tmp_path / "cache") as store:
         (tmp_path / "ws").mkdir()
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
-        assert (gathered.kinds, gathered.ids, gathered.problems, gathered.extracted) == ({}, {}, [], 0)
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
+        assert (extraction.kinds, extraction.ids, extraction.problems, extraction.extracted) == ({}, {}, [], 0)
 
 
 @pytest.mark.skipif(not processes.may_fork(), reason="processes are forked on Linux only")
@@ -490,9 +490,9 @@ def test_memory_that_another_file_took_is_not_held_against_a_file(tmp_path, monk
     files = {"src/a.cpp": "// POISON " + "x" * 1000, "src/b.cpp": "// innocent"}
     write(tmp_path / "ws", files)
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=1)
-    assert gathered.problems == []
-    assert sorted(gathered.kinds) == sorted(files)
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store, jobs=1)
+    assert extraction.problems == []
+    assert sorted(extraction.kinds) == sorted(files)
 
 
 def test_other_facts_are_made_once_and_when_asked_for(tmp_path, monkeypatch):
@@ -502,11 +502,11 @@ def test_other_facts_are_made_once_and_when_asked_for(tmp_path, monkeypatch):
     monkeypatch.setattr(kinds, "extract", lambda kind, data: taken.append(kind) or extract(kind, data))
     for _ in range(2):
         with Store(tmp_path / "cache") as store:
-            gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
-            found = gathered.look(["a.launch", "b.launch", "nothing.launch"], "flow_launch_xml")
+            extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
+            found = extraction.look(["a.launch", "b.launch", "nothing.launch"], "flow_launch_xml")
             assert sorted(found) == ["a.launch", "b.launch"]
             assert [action.kind for action in found["b.launch"].actions] == ["node"]
-            assert gathered.look(["a.launch"], "flow_launch_xml")["a.launch"] is found["a.launch"]
+            assert extraction.look(["a.launch"], "flow_launch_xml")["a.launch"] is found["a.launch"]
     assert [kind for kind in taken if kind.startswith("flow_")] == ["flow_launch_xml"]
 
 
@@ -516,9 +516,9 @@ def test_searches_are_kept_by_what_they_look_for(tmp_path, monkeypatch):
     search = kinds.search
     monkeypatch.setattr(kinds, "search", lambda *given: taken.append(given[3]) or search(*given))
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
         for words in (["changed"], ["other"], ["changed"]):
-            (found,) = gathered.look(["a.cpp"], "searched_cpp", UsageTable({}, words)).values()
+            (found,) = extraction.look(["a.cpp"], "searched_cpp", UsageTable({}, words)).values()
             assert [word.text for word in found.words] == words
     assert [table.words for table in taken] == [{"changed"}, {"other"}]
 
@@ -526,18 +526,18 @@ def test_searches_are_kept_by_what_they_look_for(tmp_path, monkeypatch):
 def test_what_can_no_longer_be_read_is_left_out(tmp_path):
     write(tmp_path / "ws", {"a.launch": LAUNCH, "b.launch": "<launch/>"})
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
         (tmp_path / "ws/a.launch").unlink()
-        assert list(gathered.look(["a.launch", "b.launch"], "flow_launch_xml")) == ["b.launch"]
+        assert list(extraction.look(["a.launch", "b.launch"], "flow_launch_xml")) == ["b.launch"]
 
 
 def test_what_was_written_to_meanwhile_is_not_kept_under_its_old_content(tmp_path):
     write(tmp_path / "ws", {"a.launch": LAUNCH})
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
         (tmp_path / "ws/a.launch").write_text("<launch/>")
-        assert gathered.look(["a.launch"], "flow_launch_xml")["a.launch"].actions == ()
+        assert extraction.look(["a.launch"], "flow_launch_xml")["a.launch"].actions == ()
     write(tmp_path / "ws", {"a.launch": LAUNCH})
     with Store(tmp_path / "cache") as store:
-        gathered = extract_all(WorkingTree(tmp_path / "ws"), store)
-        assert len(gathered.look(["a.launch"], "flow_launch_xml")["a.launch"].actions) == 1
+        extraction = extract_all(WorkingTree(tmp_path / "ws"), store)
+        assert len(extraction.look(["a.launch"], "flow_launch_xml")["a.launch"].actions) == 1

@@ -285,7 +285,7 @@ def test_rules_per_target_see_nothing_but_digests(case, cache, monkeypatch):
     with open_workspace("case", options, tree=tree) as opened:
         for view in opened.views:
             whole = [list(rule.run(view)) for rule in rules]
-            digests = [package.digest for package in opened.workspace]
+            digests = [package.linked for package in opened.workspace]
             unseen: object = _Unseen()
             # The identity speaks of what was not read, and of files outside of packages, too.
             ros, unread, outside = opened.workspace.ros, opened.workspace.unread, opened.workspace.outside
@@ -297,9 +297,9 @@ def test_rules_per_target_see_nothing_but_digests(case, cache, monkeypatch):
 def test_a_package_says_nothing_that_its_digest_does_not(ws, run, cache, tmp_path):
     with open_workspace(ws, Options(targets=("jazzy",), cache=tmp_path / "facts")) as opened:
         for package in opened.workspace:
-            kept = {name for name, value in vars(package).items() if value is not package.digest}
+            kept = {name for name, value in vars(package).items() if value is not package.linked}
             assert kept == {"name", "path", "manifest", "build", "build_type"}
-            assert all(getattr(package, name) is getattr(package.digest, name) for name in kept)
+            assert all(getattr(package, name) is getattr(package.linked, name) for name in kept)
             assert isinstance(package, Package)
 
 

@@ -157,8 +157,8 @@ def _list_in_python(data: bytes) -> Iterator[DeclaredParameter]:
         if node.func.attr.endswith("_parameters"):
             space, listed = [*node.args, None, None][:2]
             space, listed = space or given.get("namespace"), listed or given.get("parameters")
-            told = constants.find_value(space) if space is not None else None
-            start = f"{told}." if isinstance(told, str) and told else ""
+            reported = constants.find_value(space) if space is not None else None
+            start = f"{reported}." if isinstance(reported, str) and reported else ""
             for item in listed.elts if isinstance(listed, (ast.List, ast.Tuple)) else ():
                 if isinstance(item, (ast.Tuple, ast.List)) and item.elts:
                     default = item.elts[1] if len(item.elts) > 1 else None
@@ -191,9 +191,9 @@ def find_module_constants(tree: ast.Module) -> Constants:
 def _read_python_parameter(
     name: ast.expr | None, default: ast.expr | None, constants: Constants, start: str = ""
 ) -> Iterator[DeclaredParameter]:
-    told = constants.find_value(name) if name is not None else None
-    if isinstance(told, str):
-        yield DeclaredParameter(start + told, _read_python_value(default, constants))
+    reported = constants.find_value(name) if name is not None else None
+    if isinstance(reported, str):
+        yield DeclaredParameter(start + reported, _read_python_value(default, constants))
         return
     last = name.values[-1] if isinstance(name, ast.JoinedStr) and name.values else None
     last = name.right if isinstance(name, ast.BinOp) else last
@@ -207,8 +207,8 @@ def _read_python_value(node: ast.expr | None, constants: Constants) -> str | Non
     try:
         return _format_value(ast.literal_eval(node))
     except (ValueError, TypeError, SyntaxError, MemoryError):
-        told = constants.find_value(node)
-        return _format_value(told) if isinstance(told, (str, bool, int, float)) else "?"
+        reported = constants.find_value(node)
+        return _format_value(reported) if isinstance(reported, (str, bool, int, float)) else "?"
 
 
 def _format_value(value: Any) -> str:

@@ -197,15 +197,15 @@ class _Surface:
 
     def get_commands(self, path: str):
         """The commands of a CMake file of the workspace."""
-        gathered = self.workspace.gathered
-        if gathered.kinds.get(path) != "cmake":
+        extraction = self.workspace.extraction
+        if extraction.kinds.get(path) != "cmake":
             return ()
-        file = gathered.get_facts(path).facts
+        file = extraction.get_facts(path).facts
         return file.commands if isinstance(file, CMakeFile) else ()
 
     def collect_extras(self) -> tuple[set[str], set[str]]:
         """Commands and variables that come with find_package()."""
-        cmake = {path for path in self.package.digest.files if kind_by_name(path) == "cmake"}
+        cmake = {path for path in self.package.linked.files if kind_by_name(path) == "cmake"}
         by_name: dict[str, list[str]] = {}
         for path in cmake:
             by_name.setdefault(re.sub(r"\.(?:in|em)\Z", "", posixpath.basename(path)), []).append(path)
@@ -285,7 +285,7 @@ class _Surface:
                 self.note("headers" if destination.startswith("include") else "launches", f"`{item}` is installed")
             elif install.kind == "directory" and any(f"{item.rstrip('/')}/".startswith(one) for one in self.folders):
                 self.note("headers", f"`{item}` is filled while CMake runs")
-        for path, installed in list_copied_files(install, destination, self.package.digest.files):
+        for path, installed in list_copied_files(install, destination, self.package.linked.files):
             yield self.strip_prefix(path), installed
 
     def list_generated_headers(self, roots: list[str]) -> Iterator[Header]:
@@ -337,7 +337,7 @@ class _Surface:
             yield from self.list_entry_points()
 
     def list_entry_points(self) -> Iterator[InstalledProgram]:
-        files = {path: file for path, file in self.package.digest.setup}
+        files = {path: file for path, file in self.package.linked.setup}
         folders = (folder for f in files.values() for command, folder, _ in f.script_folders if command == "install")
         place = next(folders, "bin").removeprefix("$base/")
         for name in ("setup.py", "setup.cfg", "pyproject.toml"):
@@ -355,7 +355,7 @@ class _Surface:
                     self.note("launches", clause)
 
     def list_plugins(self) -> Iterator[Plugin]:
-        for path, plugin in self.package.digest.plugins:
+        for path, plugin in self.package.linked.plugins:
             if find_folder_role(self.strip_prefix(path)) is None:
                 yield Plugin(plugin.name or plugin.type, plugin.type, plugin.base)
         for export in self.exports:
@@ -374,13 +374,13 @@ class _Surface:
                 continue
             for source, installed in self.list_copied_files(install, destination):
                 found[installed.split("/", 2)[2]] = source
-        for path, file in self.package.digest.setup:
+        for path, file in self.package.linked.setup:
             if path not in (f"{self.prefix}setup.py", f"{self.prefix}setup.cfg"):
                 continue
             for destination, pattern, _ in file.data_files:
                 if f"{destination}/".startswith((f"{share[0]}/", f"{share[1]}/")):
                     wanted = re.compile(fnmatch.translate(pattern.replace("**/", "*")))
-                    for source in map(self.strip_prefix, self.package.digest.files):
+                    for source in map(self.strip_prefix, self.package.linked.files):
                         if wanted.match(source) and source.count("/") >= pattern.count("/"):
                             folder = destination.rstrip("/").split("/", 2)[2:]
                             found["/".join([*folder, posixpath.basename(source)])] = source
@@ -391,7 +391,7 @@ class _Surface:
                 yield InstalledLaunchFile(path, tuple(self.list_launch_arguments(f"{self.prefix}{source}", kind)))
 
     def list_launch_arguments(self, path: str, kind: str) -> Iterator[tuple[str, str | None]]:
-        for facts in self.workspace.gathered.look((path,), f"flow_{kind}").values():
+        for facts in self.workspace.extraction.look((path,), f"flow_{kind}").values():
             yield from launch_arguments(facts.actions)
 
 

@@ -91,9 +91,9 @@ class Clone:
         that of the last increment."""
         found: dict[tuple[str, str], dict[str, tuple[tuple[int, ...], str]]] = {}
         for name, ref in self.tags.items():
-            told = _BLOOM.fullmatch(name)
-            if told is not None:
-                distro, package, version, increment = told.groups()
+            reported = _BLOOM.fullmatch(name)
+            if reported is not None:
+                distro, package, version, increment = reported.groups()
                 each = found.setdefault((package, version), {})
                 each[distro] = max(each.get(distro, ((), "")), (parse(increment or ""), ref))
         return {key: {distro: ref for distro, (_, ref) in each.items()} for key, each in found.items()}

@@ -276,7 +276,7 @@ def _list_cpp_changes(
             sure = CONDITIONAL
         if (open_ended and change.old_header not in has) or change.old_header in lost:
             sure = min(sure, OPEN)
-        told = VersionChange(
+        reported = VersionChange(
             old.package,
             "c++",
             change.kind,
@@ -290,7 +290,7 @@ def _list_cpp_changes(
             sure=sure,
         )
         if change.kind == "removed":
-            gone = _adjust_removal(told, change, old, new, before, after)
+            gone = _adjust_removal(reported, change, old, new, before, after)
             if gone is not None and change.name in hints and gone.kind == "removed":
                 gone = msgspec.structs.replace(gone, instead=hints[change.name].new.name)  # type: ignore[union-attr]
             if gone is not None:
@@ -298,16 +298,16 @@ def _list_cpp_changes(
         elif change.kind == "moved":
             # Where the header is gone, that says all.
             if change.old_header in has and change.new_header not in after.includes(change.old_header):
-                yield msgspec.structs.replace(told, instead=change.new_header, old="", now="")
+                yield msgspec.structs.replace(reported, instead=change.new_header, old="", now="")
         elif change.kind == "deprecated":
             message = change.new.deprecated if change.new is not None else ""
-            yield msgspec.structs.replace(told, old="", now=message or "")
+            yield msgspec.structs.replace(reported, old="", now=message or "")
         else:
-            yield told
+            yield reported
 
 
 def _adjust_removal(
-    told: VersionChange,
+    reported: VersionChange,
     change: compare_cpp.CppChange,
     old: Surface,
     new: Surface,
@@ -318,7 +318,7 @@ def _adjust_removal(
     one = change.old
     assert one is not None
     if change.compatible:
-        return told
+        return reported
     name = one.name
     owner, _, last = name.rpartition("::")
     if "overload" not in change.what:
@@ -330,7 +330,7 @@ def _adjust_removal(
             if change.old_header in (place.header for place in others):
                 return None  # told of the header
             return msgspec.structs.replace(
-                told, kind="moved", moved_to=others[0].package, instead=others[0].header, breaks=True
+                reported, kind="moved", moved_to=others[0].package, instead=others[0].header, breaks=True
             )
         if after.is_reachable_by_using(name):
             return None
@@ -348,14 +348,15 @@ def _adjust_removal(
             # A method may be there with other parameters; those of the base count then.
             if one.kind not in FUNCTIONS or "override" in one.traits or compare_cpp.is_still_callable(one, found):
                 return None
-            return msgspec.structs.replace(told, kind="signature", now=format_declaration(found[0]), aspects=("types",))
+            now = format_declaration(found[0])
+            return msgspec.structs.replace(reported, kind="signature", now=now, aspects=("types",))
         if strange:
             if "override" in one.traits:
                 return None
             had = before.find_in_base(owner, last)[1]
             if not strange <= had:
-                return msgspec.structs.replace(told, sure=min(told.sure, OPEN))
-    return told
+                return msgspec.structs.replace(reported, sure=min(reported.sure, OPEN))
+    return reported
 
 
 def _list_python_changes(old: Surface, new: Surface, after: RepositorySurfaces) -> Iterator[VersionChange]:

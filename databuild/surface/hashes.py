@@ -74,8 +74,8 @@ def compute_rihs01(package: str, name: str, definition: Interface, find: Find) -
     if not _describe(package, name, definition, find, known):
         return None
     others = [known[other] for other in sorted(known) if other != whole]
-    told = {"type_description": known[whole], "referenced_type_descriptions": others}
-    return f"RIHS01_{hashlib.sha256(json.dumps(told).encode()).hexdigest()}"
+    described = {"type_description": known[whole], "referenced_type_descriptions": others}
+    return f"RIHS01_{hashlib.sha256(json.dumps(described).encode()).hexdigest()}"
 
 
 def _describe(package: str, name: str, definition: Interface, find: Find, known: dict[str, dict[str, Any]]) -> bool:

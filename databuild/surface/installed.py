@@ -275,15 +275,15 @@ def _read_interfaces(package: str, parts: Sequence[InstalledFiles]) -> Iterator[
     found: dict[str, Interface] = {}
     for part in parts:
         for path in sorted(part.paths):
-            told = wanted.match(path)
-            if told is not None and told[1] == told[3]:
-                read = interfaces.extract(part.read(path), told[3])
+            reported = wanted.match(path)
+            if reported is not None and reported[1] == reported[3]:
+                read = interfaces.extract(part.read(path), reported[3])
                 sections = tuple(
                     Section(s.name, tuple(Field(f.name, f.type, f.array, f.default, f.line) for f in s.fields),
                             s.constants)
                     for s in read.sections
                 )  # fmt: skip
-                found.setdefault(f"{told[1]}/{told[2]}", Interface(told[1], sections))
+                found.setdefault(f"{reported[1]}/{reported[2]}", Interface(reported[1], sections))
     # What genmsg makes of an action is no message that anybody wrote.
     made = {f"msg/{name[7:]}{suffix}" for name in found if name.startswith("action/")
             for suffix in ROS1_SUFFIXES["action"]}  # fmt: skip
@@ -309,12 +309,12 @@ def _read_cmake(package: str, parts: Sequence[InstalledFiles]) -> _CMake:
     for part in parts:
         for path in sorted(filter(place.match, part.paths)):
             text = part.read(path).decode("utf-8", "replace")
-            told = _CONFIGURATION.match(path.rpartition("/")[2])
-            if told is not None:
-                found.names.add(told[1])
+            reported = _CONFIGURATION.match(path.rpartition("/")[2])
+            if reported is not None:
+                found.names.add(reported[1])
             standard = max((int(number) for number in _STANDARD.findall(text)), default=0)
             found.targets.update(ExportedTarget(name, _KINDS[kind], standard) for name, kind in _IMPORTED.findall(text))
-            if not told:
+            if not reported:
                 found.commands.update(_COMMAND.findall(text))
             for names in _LIBRARIES.findall(text):
                 found.libraries.update((name, None) for name in names.split(";") if re.fullmatch(r"[\w.+]+", name))

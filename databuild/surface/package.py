@@ -43,8 +43,8 @@ def build_surfaces(tree: Tree, store: Store, jobs: int | None = None) -> dict[st
     from ...impact.model.package import Watched
     from ...impact.model.workspace import link
 
-    gathered = extract_all(tree, store, jobs=jobs, kind_of=_find_build_kind)
-    workspace = link(tree, gathered, store, None, Watched(), jobs)
+    extraction = extract_all(tree, store, jobs=jobs, kind_of=_find_build_kind)
+    workspace = link(tree, extraction, store, None, Watched(), jobs)
     builds = {package.name: surface_build.build_surface(workspace, package) for package in workspace}
     wanted: dict[str, str] = {}
     headers: dict[str, dict[str, str]] = {}
@@ -165,7 +165,7 @@ def _collect_headers(package: Package, build: BuildSurface) -> tuple[dict[str, s
 def _list_interfaces(package: Package) -> Iterator[tuple[str, Interface]]:
     made = {path: False for one in package.build.generated if not one.offered for path in one.files}
     made.update((path, True) for one in package.build.generated if one.offered for path in one.files)
-    for file in package.digest.interfaces:
+    for file in package.linked.interfaces:
         if not made.get(file.path, True):
             continue
         kind = file.definition.kind

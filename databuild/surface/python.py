@@ -68,7 +68,7 @@ def find_installed_modules(package: Package) -> InstalledModules:
 class _Installed:
     def __init__(self, package: Package):
         self.package = package
-        self.files = [path for path in package.digest.files if path.endswith((".py", ".pyx", ".so"))]
+        self.files = [path for path in package.linked.files if path.endswith((".py", ".pyx", ".so"))]
         self.all = frozenset(self.files)
         self.modules: dict[str, str] = {}
         self.unknown: list[str] = []
@@ -76,7 +76,7 @@ class _Installed:
 
     def run(self) -> None:
         package = self.package
-        setups = {path: file for path, file in package.digest.setup}
+        setups = {path: file for path, file in package.linked.setup}
         wanted = package.build_type == "ament_python"
         for install in package.build.installs:
             if install.kind == "python" and any(item.endswith("setup.py") for item in install.items):
@@ -191,7 +191,7 @@ class _Installed:
                 continue
             if made.how in ("rosidl", "catkin"):
                 kinds = {posixpath.splitext(path)[1].lstrip(".") for path in made.files} | {
-                    posixpath.basename(posixpath.dirname(interface.path)) for interface in package.digest.interfaces
+                    posixpath.basename(posixpath.dirname(interface.path)) for interface in package.linked.interfaces
                 }
                 names = {"action": ("action", "msg"), "idl": ("msg", "srv", "action")}
                 for kind in kinds:

@@ -83,7 +83,7 @@ class StoredVersions:
 
     def _list_packages_beside(self, package: str, version: str) -> Iterator[str]:
         """Other packages that were released with a version of a package."""
-        told = {package}
+        reported = {package}
         for known, names in self._data.fetch(
             "SELECT DISTINCT r.version, n.names FROM release r JOIN packages n ON n.id = r.packages"
             " JOIN home h ON h.distro = r.distro AND h.repository = r.repository JOIN package p ON p.id = h.package"
@@ -91,5 +91,5 @@ class StoredVersions:
             (package, f"{version}%"),
         ):
             if known.partition("-")[0] == version and package in names.split(" "):
-                yield from (name for name in names.split(" ") if name not in told)
-                told.update(names.split(" "))
+                yield from (name for name in names.split(" ") if name not in reported)
+                reported.update(names.split(" "))

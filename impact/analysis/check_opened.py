@@ -62,7 +62,7 @@ def check_opened(
     """
     started = time.perf_counter() if started is None else started
     rules = load_rules()
-    tree, store, gathered, workspace, targets, views, config, _, installed, shared_libraries = opened
+    tree, store, extraction, workspace, targets, views, config, _, installed, shared_libraries = opened
     chosen = select_rules(options, config)
     settings = _collect_settings(rules, config)
     sources = SourceLines(make_reader(tree))
@@ -108,7 +108,7 @@ def check_opened(
             *_list_file_only_targets({chosen_target.target.name for chosen_target in targets}, shared_libraries),
         ),
         findings=tuple(found),
-        coverage=measure_coverage(workspace, gathered, views, installed),
+        coverage=measure_coverage(workspace, extraction, views, installed),
         packages=tuple(ReportedPackage(package.name, package.path) for package in workspace),
         suppressed=tuple(now.suppressed),
         known=tuple(known),
@@ -142,7 +142,7 @@ def _find_splits(
     )
     old = {finding.package for finding, _ in parted if not finding.new}
     marked = [finding._replace(new=finding.package not in old) for finding in found]
-    allows = {path: comments for package in opened.workspace for path, comments in package.digest.allows}
+    allows = {path: comments for package in opened.workspace for path, comments in package.linked.allows}
     configured = apply_settings(marked, settings, rules)
     return suppress(configured, allows, rules=rules, ran=()).kept
 
@@ -208,7 +208,7 @@ def run_and_merge(
         )
         return apply_settings(found, settings, known)
 
-    allows = {path: comments for package in workspace for path, comments in package.digest.allows}
+    allows = {path: comments for package in workspace for path, comments in package.linked.allows}
     result = suppress(
         merge(run_rules(opened, rules.values(), crashed, before, jobs)),
         allows,
@@ -261,10 +261,10 @@ def _has_header(view: TargetView, path: str) -> bool:
 
 
 def measure_coverage(
-    workspace: Workspace, gathered: ExtractedFacts, views: Sequence[TargetView], installed: InstallSpace | None = None
+    workspace: Workspace, extraction: ExtractedFacts, views: Sequence[TargetView], installed: InstallSpace | None = None
 ) -> AnalysisCoverage:
     """How much was read and resolved."""
-    broken = {path for package in workspace for path, _, _ in package.digest.problems}
+    broken = {path for package in workspace for path, _, _ in package.linked.problems}
     unresolved: dict[str, set[str]] = {}
     for view in views:
         for kind, names in view.unresolved.items():
@@ -276,12 +276,12 @@ def measure_coverage(
     platforms = {view.target.platform for view in views if not view.target.knows_libraries}
     if platforms:
         counts["platform"] = len(platforms)
-    receivers = sum(package.digest.unresolved_receivers for package in workspace)
+    receivers = sum(package.linked.unresolved_receivers for package in workspace)
     if receivers:
         counts["receiver"] = receivers
     # A file can be read and still have something wrong with it, such as its name.
-    files = len(gathered.kinds.keys() | {problem.path for problem in gathered.problems})
-    parsed = len(gathered.kinds) - len(broken & gathered.kinds.keys())
+    files = len(extraction.kinds.keys() | {problem.path for problem in extraction.problems})
+    parsed = len(extraction.kinds) - len(broken & extraction.kinds.keys())
     if installed is not None:
         sound = sum(not binary.elf.problem for binary in installed.binaries)
         files, parsed = files + sound, parsed + sound

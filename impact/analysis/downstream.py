@@ -187,8 +187,8 @@ class _Reading:
                 steps += one.node in near
                 if hop.node not in own and (known is None or steps < known[0]):
                     found[hop.node] = (steps, hop)
-        told = sorted(found.values(), key=lambda each: each[0])
-        return tuple(msgspec.structs.replace(hop, came="") if hop.came in own else hop for _, hop in told)
+        reported = sorted(found.values(), key=lambda each: each[0])
+        return tuple(msgspec.structs.replace(hop, came="") if hop.came in own else hop for _, hop in reported)
 
     @cache_method
     def find_hops(self, out: _Out, reach: DownstreamSearch) -> list[tuple[int, Hop]]:
@@ -243,12 +243,12 @@ class _Reading:
                 self.list_downstream(nodes, [_Out(node, sent) for node in nodes or ("",)], reach),
             )  # fmt: skip
 
-    def compare_topics(self, told: Sequence[Effect]) -> Iterator[Effect]:
+    def compare_topics(self, reported: Sequence[Effect]) -> Iterator[Effect]:
         """What is new, gone or of another type or quality at either end of a topic, save what was told already."""
-        places = {(effect.path, effect.line) for effect in told}
+        places = {(effect.path, effect.line) for effect in reported}
         named = {
             (node, topic)
-            for effect in told
+            for effect in reported
             if effect.kind != "message"
             for node in effect.nodes
             for topic in effect.topics
@@ -317,9 +317,9 @@ class _Reading:
             if one.node:
                 owners.setdefault((one.path, one.line), set()).add(one.node)
                 running.setdefault(one.path, set()).add(one.node)
-        told: dict[tuple[str, str], set[str]] = {}
+        reported: dict[tuple[str, str], set[str]] = {}
         for change in compare_publishing(self.workspace, self.base):
-            told.setdefault((change.path, change.function), set()).update((change.topic, *change.topics))
+            reported.setdefault((change.path, change.function), set()).update((change.topic, *change.topics))
         for function in self.functions:
             place = (function.path, function.name, function.line)
             led = [one for one in get_flow(self.workspace).callers.list_triggers(*place) if one.trigger.kind in EVENTS]
@@ -343,7 +343,7 @@ class _Reading:
             if not topics:
                 self.silent += 1
                 continue
-            if topics <= told.get((function.path, function.name), set()):
+            if topics <= reported.get((function.path, function.name), set()):
                 continue
             nodes = tuple(sorted(node for node, each in sent.items() if each and node))
             yield Effect(
@@ -401,8 +401,8 @@ def _describe_trigger(led: Sequence[Led]) -> str:
     return f"called from `{one.callback.name}`, the callback of {of}{detail}{more}"
 
 
-def _find_facts(gathered: ExtractedFacts, path: str) -> FlowFile | None:
-    facts = gathered.get_facts(path).facts if path in gathered.kinds else None
+def _find_facts(extraction: ExtractedFacts, path: str) -> FlowFile | None:
+    facts = extraction.get_facts(path).facts if path in extraction.kinds else None
     return facts if isinstance(facts, FlowFile) else None
 
 

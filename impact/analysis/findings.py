@@ -66,12 +66,12 @@ def lower_repeats(yielded: Sequence[tuple[str, Diagnostic]], rules: Mapping[str,
     """What rules yield on one target, in order, with notes for the warnings whose cause another one tells."""
     shared = [_list_shared(rules[name], diagnostic) for name, diagnostic in yielded]
     counts = Counter(key for keys in shared for key in keys)
-    told: set[tuple[str, str, str]] = set()
+    reported: set[tuple[str, str, str]] = set()
     result = []
     for (name, diagnostic), keys in zip(yielded, shared, strict=True):
-        if not keys.keys().isdisjoint(told):
+        if not keys.keys().isdisjoint(reported):
             diagnostic = diagnostic._replace(doubts=(*diagnostic.doubts, Doubt.REPEATED))
-        told.update(key for key, few in keys.items() if counts[key] > few)
+        reported.update(key for key, few in keys.items() if counts[key] > few)
         result.append((name, diagnostic))
     return result
 

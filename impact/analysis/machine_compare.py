@@ -135,7 +135,7 @@ def _list_uses(view: TargetView, package: Package) -> Iterable[tuple[str, str, s
             yield name, "declared", ""
     if package.build_type != "ament_python":
         yield "cmake", "built with", ""
-        if package.digest.includes:
+        if package.linked.includes:
             yield "gcc", "built with", ""
-    if package.digest.imports:
+    if package.linked.imports:
         yield "python3", "run with", ""

@@ -35,8 +35,8 @@ def list_message_changes(workspace: Workspace, base: Workspace) -> Iterator[Mess
             yield MessageChange(name, "changed", packages[name, path], path, rows[0][0], why)
     for package in base:
         now = workspace.packages.get(package.name)
-        left = {(one.name, one.definition.kind) for one in now.digest.interfaces} if now is not None else set()
-        for file in package.digest.interfaces:
+        left = {(one.name, one.definition.kind) for one in now.linked.interfaces} if now is not None else set()
+        for file in package.linked.interfaces:
             if (file.name, file.definition.kind) not in left:
                 yield MessageChange(
                     f"{package.name}/{file.name}", "removed", package.name, file.path, 1, "the definition is gone"
@@ -47,7 +47,7 @@ def find_containing_types(workspace: Workspace, name: str) -> set[str]:
     """A type and all of the workspace that have a field of it, or of one that has; as `package/Name`."""
     inside: dict[str, set[str]] = {}
     for package in workspace:
-        for file in package.digest.interfaces:
+        for file in package.linked.interfaces:
             for section in file.definition.sections:
                 for field in section.fields:
                     parts = field.type.split("/")

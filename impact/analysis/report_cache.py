@@ -65,10 +65,10 @@ def report_key(read: Read, options: Options) -> bytes | None:
         found.update(repr(parts).encode("utf-8", "backslashreplace"))
 
     add(compute_code_stamp(), compute_data_stamp(), _list_updated_data(), asked, config, read.ros, targets, tree.root)
-    add(tree.problems, tree.skipped, tree.aliases, tree.repositories, read.gathered.problems)
+    add(tree.problems, tree.skipped, tree.aliases, tree.repositories, read.extraction.problems)
     add(read.discovered.packages, read.discovered.ignored, read.discovered.problems)
-    ids = read.gathered.ids
-    kinds = read.gathered.kinds
+    ids = read.extraction.ids
+    kinds = read.extraction.kinds
     for entry in tree.list_entries():
         content = ids.get(entry.path)
         state = content or tree.find_state(entry.path)

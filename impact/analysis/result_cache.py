@@ -46,7 +46,7 @@ class _Judgement(msgspec.Struct, frozen=True, array_like=True):
 
 
 def load_tracked_names(store: Store) -> Watched:
-    """The names that rules look out for, as an earlier run gathered them from the same tables."""
+    """The names that rules look out for, as an earlier run collected them from the same tables."""
     name = hashlib.sha1(f"{compute_code_stamp()} {compute_data_stamp()}".encode()).digest()
     data = store.find_memo("watched", name)
     if data is not None:

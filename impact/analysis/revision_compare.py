@@ -107,11 +107,11 @@ def read_pinned(path: Path) -> dict[str, str]:
 
 def open_base(tree: Tree, opened: OpenedWorkspace, *, jobs: int | None = None) -> OpenedWorkspace:
     """The workspace as it was in another tree, seen by the same targets."""
-    second = make_code_selector(tree) if opened.gathered.second is not None else None
+    second = make_code_selector(tree) if opened.extraction.second is not None else None
     watched = load_tracked_names(opened.store)
-    gathered = extract_all(tree, opened.store, jobs=jobs, second=second, along=watched.make_searches)
+    extraction = extract_all(tree, opened.store, jobs=jobs, second=second, along=watched.make_searches)
     linked = {
-        ros: link(tree, gathered, opened.store, ros, watched, jobs, asked=opened.asked)
+        ros: link(tree, extraction, opened.store, ros, watched, jobs, asked=opened.asked)
         for ros in {opened.workspace.ros, *(view.workspace.ros for view in opened.views)}
     }
     views = [
@@ -121,5 +121,5 @@ def open_base(tree: Tree, opened: OpenedWorkspace, *, jobs: int | None = None) -
     workspace = linked[opened.workspace.ros]
     # What is installed is of no revision.
     return opened._replace(
-        tree=tree, gathered=gathered, workspace=workspace, views=views, installed=None, shared_libraries=()
+        tree=tree, extraction=extraction, workspace=workspace, views=views, installed=None, shared_libraries=()
     )

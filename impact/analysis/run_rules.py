@@ -220,7 +220,7 @@ def _run_part(
 
 def _estimate_bytes(workspace: Workspace, packages: Collection[str]) -> int:
     """The amount of text whose extraction may take as long as the rules on these packages."""
-    files = sum(len(workspace.packages[name].digest.files) for name in packages)
+    files = sum(len(workspace.packages[name].linked.files) for name in packages)
     return (1 + len(packages)) * _PACKAGE_BYTES + files * _FILE_BYTES
 
 

@@ -68,7 +68,7 @@ class OpenedWorkspace(NamedTuple):
 
     tree: Tree
     store: Store
-    gathered: ExtractedFacts
+    extraction: ExtractedFacts
     workspace: Workspace
     targets: Sequence[Chosen]
     views: Sequence[TargetView]
@@ -89,7 +89,7 @@ class Read(NamedTuple):
 
     tree: Tree
     store: Store
-    gathered: ExtractedFacts
+    extraction: ExtractedFacts
     discovered: Discovered
     ros: int
     targets: Sequence[Chosen]
@@ -148,7 +148,7 @@ def read_workspace(
             from ..model.flow.file_selection import make_code_selector
 
             second = make_code_selector(tree)
-        gathered = extract_all(
+        extraction = extract_all(
             tree,
             store,
             jobs=options.jobs,
@@ -156,10 +156,10 @@ def read_workspace(
             second=second,
             along=lambda: load_names().make_searches(),
         )
-        discovered = discover(tree, gathered)
-        ros = detect_generation(discovered, gathered)
+        discovered = discover(tree, extraction)
+        ros = detect_generation(discovered, extraction)
         targets = choose_targets(options.targets, config, ros, tree)
-        yield Read(tree, store, gathered, discovered, ros, targets, config, load_names)
+        yield Read(tree, store, extraction, discovered, ros, targets, config, load_names)
 
 
 def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -> OpenedWorkspace:
@@ -170,13 +170,13 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
     from ..targets.asked_versions import AskedVersions
     from ..targets.providers.providers import load_providers
 
-    tree, store, gathered, discovered, ros, targets, config, tracked_names = read
+    tree, store, extraction, discovered, ros, targets, config, tracked_names = read
     asked_versions = AskedVersions(chosen.target for chosen in targets)
     generations = {chosen.target.ros for chosen in targets}
     if len(generations) == 1:
         (ros,) = generations  # packages for both are linked as the targets build them
     link_for = partial(
-        link, tree, gathered, store,
+        link, tree, extraction, store,
         watched=tracked_names(), jobs=options.jobs, discovered=discovered, asked=asked_versions,
     )  # fmt: skip
     workspace = link_for(ros)
@@ -185,7 +185,7 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
         # Packages for both are linked once more, as the targets of the other generation build them.
         both = any(build_type_of(package.manifest, 1) != build_type_of(package.manifest, 2) for package in workspace)
         linked[3 - ros] = link_for(3 - ros) if both else workspace
-    gathered.problems += [*workspace.discovered.problems, *_list_shadowed_packages(workspace)]
+    extraction.problems += [*workspace.discovered.problems, *_list_shadowed_packages(workspace)]
     asked = frozenset(chosen.target.distro for chosen in targets)
     views = [TargetView(linked[each.target.ros], each.target, load_providers(), config, asked) for each in targets]
     installed, shared_libraries = None, ()
@@ -194,9 +194,9 @@ def link_workspace(read: Read, path: str | os.PathLike[str], options: Options) -
 
         installed = built.read_space(options.install, Path(path), workspace, store, options.jobs)
         shared_libraries = built.list_shared_libraries(installed, targets, config)
-        gathered.problems += [*installed.problems, *built.list_foreign_files(installed, shared_libraries)]
+        extraction.problems += [*installed.problems, *built.list_foreign_files(installed, shared_libraries)]
     return OpenedWorkspace(
-        tree, store, gathered, workspace, targets, views, config, asked_versions, installed, shared_libraries
+        tree, store, extraction, workspace, targets, views, config, asked_versions, installed, shared_libraries
     )
 
 
@@ -292,7 +292,8 @@ def explain_nothing_analysed(path: str | os.PathLike[str], opened: OpenedWorkspa
         named = ", ".join(f"`{shown(problem.path)}`" for problem in linked[:3])
         more = f" and {len(linked) - 3} more" if len(linked) > 3 else ""
         return f"{where}: no package was found; links lead out of it ({named}{more}), follow them with --follow-links"
-    unread = [problem for problem in opened.gathered.problems if problem.path.rpartition("/")[2].startswith("package")]
+    problems = opened.extraction.problems
+    unread = [problem for problem in problems if problem.path.rpartition("/")[2].startswith("package")]
     if unread:
         named = "; ".join(f"`{shown(problem.path)}`: {problem.message}" for problem in unread[:3])
         return f"{where}: no package could be read ({named}); make the files readable"

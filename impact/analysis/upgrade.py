@@ -82,15 +82,15 @@ def compare_upgrade(
         [finding for finding in side.report.findings if not wanted.isdisjoint(finding.packages)]
         for side in (after, before)
     )
-    told, lost = compare_findings(now, then), compare_findings(then, now)
+    reported, lost = compare_findings(now, then), compare_findings(then, now)
     return Upgrade(
         old=before.report.targets[0],
         report=report,
         packages=tuple(ReportedPackage(name, folders[name]) for name in order if name in wanted),
-        breaks=tuple(group_items((f for f in told.new if _is_grave(f) and not is_late(f)), order)),
+        breaks=tuple(group_items((f for f in reported.new if _is_grave(f) and not is_late(f)), order)),
         deprecations=tuple(group_items((f for f in now if is_late(f)), order)),
-        brought=tuple(f for f in told.new if _is_grave(f) or is_late(f)),
-        both=tuple(f for f in told.both if _is_grave(f) and not is_late(f)),
+        brought=tuple(f for f in reported.new if _is_grave(f) or is_late(f)),
+        both=tuple(f for f in reported.both if _is_grave(f) and not is_late(f)),
         over=tuple(f for f in lost.new if _is_grave(f) and not is_late(f)),
         fixable=_find_fixable(report.findings, make_reader(after.tree)),
         # Of a revision, what would change is shown.

@@ -169,7 +169,7 @@ def _find_uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str,
                 undeclared.append(package.name)
         for dependency in package.manifest.dependencies:
             if dependency.name == name:
-                place = f"{package.digest.manifest_path}:{dependency.line}"
+                place = f"{package.linked.manifest_path}:{dependency.line}"
                 if place not in used:
                     used.append(place)
     return tuple(used), tuple(undeclared)

@@ -136,7 +136,7 @@ def _list_hashes(package: str, asked: str, state) -> dict[str, str]:
     known = ((
         name, compute_hash(f"{package}/{name}", ros, definition, find)
     ) for name, definition in surface.interfaces)
-    return {name: told for name, told in known if told is not None}
+    return {name: reported for name, reported in known if reported is not None}
 
 
 @contextmanager

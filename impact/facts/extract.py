@@ -191,15 +191,15 @@ def extract_all(
     jobs: processes to use, all available cores when None. progress: called with (done, total) bytes of the files whose
     facts are not known from an earlier run. KeyboardInterrupt passes through; what was parsed before it stays stored.
     """
-    gathered = ExtractedFacts(tree, store)
-    beside = gathered.second = ExtractedFacts(tree, store) if second is not None else None
+    extraction = ExtractedFacts(tree, store)
+    beside = extraction.second = ExtractedFacts(tree, store) if second is not None else None
     key = tree.make_memory_key()
     entries = tree.list_entries()
     if key is not None:
         memory = store.find_memo("stat", key)
         if memory is not None:
             tree.recall(memory)
-    gathered.problems.extend(tree.problems)
+    extraction.problems.extend(tree.problems)
 
     unread: list[_Unread] = []
     known: dict[bytes, tuple[int, str, str]] = {}
@@ -213,12 +213,12 @@ def extract_all(
         largest = max(_largest(each) for each in (kind, other) if each is not None)
         if size > largest:
             message = f"larger than {format_size(largest)} ({format_size(size)}), taken for generated and not read"
-            gathered.problems.append(PathProblem(path, message))
+            extraction.problems.append(PathProblem(path, message))
             continue
         content = known_id(path)
         if content is None:
             unread.append((size, path, tuple(each for each in (kind, other) if each is not None)))
-        for look, each in ((gathered, kind), (beside, other)):
+        for look, each in ((extraction, kind), (beside, other)):
             if look is not None and each is not None:
                 look.kinds[path] = each
                 if content is not None:
@@ -233,13 +233,13 @@ def extract_all(
 
     if unread:
         try:
-            _make(gathered, unread, jobs or processes.count_cores(), progress, along())
+            _make(extraction, unread, jobs or processes.count_cores(), progress, along())
         finally:
             _remember(tree, store, key)
-            gathered.problems.sort()
+            extraction.problems.sort()
     else:
         _remember(tree, store, key)
-    return gathered
+    return extraction
 
 
 def _make_key(content: str, kind: str) -> bytes:
@@ -261,7 +261,7 @@ def _remember(tree: Tree, store: Store, key: bytes | None) -> None:
 
 
 def _make(
-    gathered: ExtractedFacts, unread: list[_Unread], jobs: int, progress: Callable[[int, int], None] | None,
+    extraction: ExtractedFacts, unread: list[_Unread], jobs: int, progress: Callable[[int, int], None] | None,
     along: Searches,
 ) -> None:  # fmt: skip
     """Reads the files, stores the facts of those whose content is not known, and notes what failed."""
@@ -270,7 +270,7 @@ def _make(
     total = sum(size for size, _, _ in unread)
     done = 0
     paths_of: dict[tuple[str, str], list[tuple[ExtractedFacts, str]]] = {}
-    for look in _list_looks(gathered):
+    for look in _list_looks(extraction):
         for path, content in look.ids.items():
             paths_of.setdefault((content, look.kinds[path]), []).append((look, path))
 
@@ -280,7 +280,7 @@ def _make(
         if progress is not None:
             progress(min(done, total), total)
 
-    chunks = _iterate_batches(_iterate_items(gathered, unread, paths_of, report_progress), lambda item: len(item[3]))
+    chunks = _iterate_batches(_iterate_items(extraction, unread, paths_of, report_progress), lambda item: len(item[3]))
     stamps = {kind: table.stamp for kind, table in along.values()}
     with closing(_extract_chunks(chunks, jobs, along)) as finished:  # an interrupt must reach the workers at once
         for chunk, results in finished:
@@ -291,30 +291,30 @@ def _make(
                         _drop(look, path, failure)
                 else:
                     rows.append((make_fact_key(content, _find_version(kind) + stamps.get(kind, "")), packed))
-                    gathered.extracted += kind not in stamps
-            gathered.store.put(rows)
+                    extraction.extracted += kind not in stamps
+            extraction.store.put(rows)
             report_progress(sum(len(item[3]) for item in chunk))
 
 
-def _list_looks(gathered: ExtractedFacts) -> list[ExtractedFacts]:
-    return [gathered] if gathered.second is None else [gathered, gathered.second]
+def _list_looks(extraction: ExtractedFacts) -> list[ExtractedFacts]:
+    return [extraction] if extraction.second is None else [extraction, extraction.second]
 
 
 def _iterate_items(
-    gathered: ExtractedFacts,
+    extraction: ExtractedFacts,
     unread: list[_Unread],
     paths_of: dict[tuple[str, str], list[tuple[ExtractedFacts, str]]],
     advance: Callable[[int], None],
 ) -> Iterator[_Item]:
     """Reads files as they are needed and yields those whose content has no facts yet."""
-    looks = _list_looks(gathered)
+    looks = _list_looks(extraction)
     seen: set[tuple[str, str]] = set()
     for batch in _iterate_batches(unread, lambda file: file[0]):
         rows: set[bytes] = set()
         items: list[tuple[str, str, dict[str, bytes], bytes]] = []
         for expected, path, those in batch:
             try:
-                data, content = gathered.tree.read_with_id(path, max(map(_largest, those)))
+                data, content = extraction.tree.read_with_id(path, max(map(_largest, those)))
             except OSError as error:
                 reason = error.strerror or type(error).__name__
                 _mark_unreadable(looks, path, f"cannot be read: {reason[:1].lower()}{reason[1:]}")
@@ -335,7 +335,7 @@ def _iterate_items(
             seen.update((content, kind) for kind in fresh)
             rows.update(fresh.values())
             items.append((path, content, fresh, data))
-        present = gathered.store.find(rows)
+        present = extraction.store.find(rows)
         for path, content, fresh, data in items:
             lacking = tuple(kind for kind, row in fresh.items() if row not in present)
             if not lacking:
@@ -366,10 +366,10 @@ def _mark_unreadable(looks: list[ExtractedFacts], path: str, message: str) -> No
         look.ids.pop(path, None)
 
 
-def _drop(gathered: ExtractedFacts, path: str, message: str) -> None:
-    gathered.problems.append(PathProblem(path, message))
-    gathered.kinds.pop(path, None)
-    gathered.ids.pop(path, None)
+def _drop(extraction: ExtractedFacts, path: str, message: str) -> None:
+    extraction.problems.append(PathProblem(path, message))
+    extraction.kinds.pop(path, None)
+    extraction.ids.pop(path, None)
 
 
 def _extract(along: Searches, chunk: list[_Item]) -> list[_Result]:

@@ -258,7 +258,7 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
     written_old, written_new = _build_guard_ways(old), _build_guard_ways(new)
     reading = guards.NameReading(names.words, speech)
     kind = guards.compare_ways(meant_old, meant_new, reading)
-    told = (meant_old, meant_new)
+    reported = (meant_old, meant_new)
     if (meant_old, meant_new) != (written_old, written_new) and kind != "equivalent":
         written = guards.compare_ways(written_old, written_new, reading)
         if (
@@ -268,9 +268,9 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
         ):
             return "equivalent", ""  # what is asked is called otherwise, of the same things
         if written != "equivalent":
-            told = (written_old, written_new)
+            reported = (written_old, written_new)
             kind = written if kind == "changed" else kind
-    return kind, guards.explain_ways(*told, reading) if kind != "equivalent" else ""
+    return kind, guards.explain_ways(*reported, reading) if kind != "equivalent" else ""
 
 
 def _build_guard_ways(ways: Iterable[Path], meant: bool = False) -> Ways:
@@ -406,12 +406,12 @@ def _format_ways(ways: Sequence[Path], statement: PublishStatement) -> str:
         start = _describe_start(way.start) if way.start.kind not in _UNSAID else ""
         condition = (" and " if python else " && ").join(dict.fromkeys(_write_gate(gate, python) for gate in way.gates))
         by_start.setdefault(start, []).append(condition)
-    told: list[str] = []
+    reported: list[str] = []
     for start, conditions in by_start.items():
         alternatives = list(dict.fromkeys(conditions))
         text = "" if "" in alternatives else f" {'or' if python else '||'} ".join(alternatives)
-        told.append(f"{start}: {text}" if start and text else start or text)
-    text = "; ".join(one for one in dict.fromkeys(told) if one)
+        reported.append(f"{start}: {text}" if start and text else start or text)
+    text = "; ".join(one for one in dict.fromkeys(reported) if one)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 
 

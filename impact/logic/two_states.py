@@ -19,7 +19,7 @@ from .statements import PackageStatements, find_facts_kind
 from .states import Digests, compare_sides, make_digest_row, make_unread_digest
 
 _KINDS = {flow: plain for plain, flow in FLOW.items()} | {name: name for name in (*FLOW, "cmake", "setup_py")}
-"""What a file is called here, by its kind of facts, whether it was gathered for message flow or for other ends."""
+"""What a file is called here, by its kind of facts, whether it was extracted for message flow or for other ends."""
 # Starting processes costs about as much as joining packages with this many files here.
 _ALONE_FILES = 150
 
@@ -86,14 +86,14 @@ def read_bytes(workspace: Workspace, path: str) -> bytes:
 
 def _list_files(package: Package, workspace: Workspace) -> tuple[tuple[str, str, str], ...]:
     """Path in the package, content and kind of files that tell of the flow of messages, tests left out."""
-    main = workspace.gathered
+    main = workspace.extraction
     sources = [main] if main.second is None else [main.second, main]
     start = len(package.path) + 1 if package.path else 0
     found: list[tuple[str, str, str]] = []
-    for path in package.digest.files:
-        gathered = next((each for each in sources if each.kinds.get(path) in _KINDS), None)
-        if gathered is not None and find_folder_role(path[start:]) != "test":
-            found.append((path[start:], gathered.ids.get(path, ""), _KINDS[gathered.kinds[path]]))
+    for path in package.linked.files:
+        extraction = next((each for each in sources if each.kinds.get(path) in _KINDS), None)
+        if extraction is not None and find_folder_role(path[start:]) != "test":
+            found.append((path[start:], extraction.ids.get(path, ""), _KINDS[extraction.kinds[path]]))
     return tuple(found)
 
 
@@ -111,7 +111,7 @@ def _make_state(workspace: Workspace, package: Package, listed: Iterable[tuple[s
 
 
 def _is_python(workspace: Workspace, path: str) -> bool:
-    looks = (workspace.gathered.second, workspace.gathered)
+    looks = (workspace.extraction.second, workspace.extraction)
     return any(
         each is not None and path in each.kinds and each.get_facts(path).kind.endswith("python") for each in looks
     )
@@ -149,7 +149,7 @@ def _group_paths(
 
 def _load_digests(workspace: Workspace, states: Sequence[PackageState]) -> list[PackageStatements]:
     """The digests of some packages, in their order; those that are not known are made and kept."""
-    digests = Digests(workspace.gathered.store)
+    digests = Digests(workspace.extraction.store)
     known = digests.load(state.key for state in states)
     missing = [state for state in states if state.key not in known]
     if missing:
@@ -161,7 +161,7 @@ def _load_digests(workspace: Workspace, states: Sequence[PackageState]) -> list[
 
 def extract_flow_facts(workspace: Workspace, states: Sequence[PackageState]) -> ExtractedFacts:
     """The flow facts of some packages alone."""
-    main = workspace.gathered
+    main = workspace.extraction
     if main.second is not None or not states:
         return main.second or main
     wanted = {state.locate(file.path): find_facts_kind(file) for state in states for file in state.files}
@@ -172,27 +172,27 @@ _CODE = frozenset(FLOW.values())
 
 
 def _make_digests(
-    workspace: Workspace, gathered: ExtractedFacts, states: Sequence[PackageState]
+    workspace: Workspace, extraction: ExtractedFacts, states: Sequence[PackageState]
 ) -> Iterator[tuple[bytes, bytes]]:
     jobs = processes.count_cores()
     if jobs < 2 or sum(len(state.files) for state in states) < _ALONE_FILES or not processes.may_fork():
         for state in states:
-            yield _make_digest(workspace, gathered, state)
+            yield _make_digest(workspace, extraction, state)
         return
-    workspace.gathered.store.close()  # no other process may go on with a connection of this one
+    workspace.extraction.store.close()  # no other process may go on with a connection of this one
     large_first = sorted(states, key=lambda state: -len(state.files))
-    for state, made in processes.run_forked(_make_digest, large_first, jobs, workspace, gathered):
+    for state, made in processes.run_forked(_make_digest, large_first, jobs, workspace, extraction):
         yield make_unread_digest(state) if isinstance(made, processes.Died) else made
 
 
-def _make_digest(workspace: Workspace, gathered: ExtractedFacts, state: PackageState) -> tuple[bytes, bytes]:
+def _make_digest(workspace: Workspace, extraction: ExtractedFacts, state: PackageState) -> tuple[bytes, bytes]:
     """The key of a state, and its digest, packed."""
     whole = {file.path: state.locate(file.path) for file in state.files}
-    gathered.preload(whole.values())
+    extraction.preload(whole.values())
     facts = {}
     for file in state.files:
         path = whole[file.path]
-        source = gathered if find_facts_kind(file) in _CODE else workspace.gathered
+        source = extraction if find_facts_kind(file) in _CODE else workspace.extraction
         facts[file.path] = source.get_facts(path).facts if path in source.kinds else None
-    gathered.forget(whole.values())
+    extraction.forget(whole.values())
     return make_digest_row(state, facts)

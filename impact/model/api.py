@@ -17,7 +17,7 @@ from ..targets.surface.offers import Standing, find_standing
 from ..targets.surface.offers_cpp import (
     compare_defaults,
     find_lost_forms,
-    is_untold,
+    is_not_deducible,
     list_callable_forms,
     list_refused_kinds,
 )
@@ -77,7 +77,7 @@ class ChangingName:
 
     def add_line(self, events: Sequence[ChangeEvent], forms_of: _Forms) -> ChangingName:
         """The same name with the line of another generation, which goes first and says what it is."""
-        return ChangingName(self.package, self.name, events[0].told[0].what, ((events, forms_of), *self._lines))
+        return ChangingName(self.package, self.name, events[0].reported[0].what, ((events, forms_of), *self._lines))
 
     @cached_property
     def forms(self) -> tuple[AskedForm, ...]:
@@ -162,7 +162,7 @@ class ChangingName:
                 # An argument of a template may have to be written.
                 known = history() if history is not None else None
                 forms = standing.here, standing.before
-                unwritten = known is None or is_untold(known, self.name, *forms, version, last, arguments)
+                unwritten = known is None or is_not_deducible(known, self.name, *forms, version, last, arguments)
         return unwritten, False
 
 
@@ -174,7 +174,7 @@ def _list_other_forms(standing: Standing) -> list[Form]:
 
 def _has_other_default(standing: Standing) -> bool:
     """Whether the last change up to a version was one of defaults alone, which forms do not tell."""
-    return bool(standing.past) and all(told.kind == "default" for told in standing.past[-1].told)
+    return bool(standing.past) and all(reported.kind == "default" for reported in standing.past[-1].reported)
 
 
 def _is_pure(form: Form | None) -> bool:
@@ -326,7 +326,7 @@ def _collect_names(package: str, lines: Iterable[tuple[Line, _Forms]]) -> Packag
             if "<" in full or not _INTERNAL.isdisjoint(full.split("::")):
                 continue
             before = names.get(full)  # what another generation told of it
-            what = events[0].told[0].what
+            what = events[0].reported[0].what
             if before is None:
                 names[full] = ChangingName(package, full, what, ((events, forms_of),))
             else:

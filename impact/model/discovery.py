@@ -7,7 +7,7 @@ business: what they hide is in no tree.
 Differences, so that no manifest is overlooked: colcon does not look below a plain CMake or Python package; catkin does,
 and so do we, and `hidden_by` says where colcon would stop. A folder that holds only package_ROS1.xml and
 package_ROS2.xml, to be copied by a script before the build, is a package, and so is one whose manifest is broken. A
-package that is reached on two ways is reported where it really lies.
+package that is reached on two ways is generations where it really lies.
 """
 
 import fnmatch
@@ -122,20 +122,20 @@ REPOSITORY_LISTS = (".repos", ".rosinstall")
 """How files of vcstool and wstool end, which name repositories and their versions."""
 
 
-def discover(tree: Tree, gathered: ExtractedFacts) -> Discovered:
+def discover(tree: Tree, extraction: ExtractedFacts) -> Discovered:
     """Finds the packages of a tree from its paths and the facts of its manifests.
 
-    A manifest without a usable name still makes a package, so that what is wrong with it can be reported; one that
-    could not be read at all makes none, and is among the problems of `gathered`.
+    A manifest without a usable name still makes a package, so that what is wrong with it can be generations; one that
+    could not be read at all makes none, and is among the problems of `extraction`.
     """
-    return _Search(tree, gathered).run()
+    return _Search(tree, extraction).run()
 
 
 class _Search:
-    def __init__(self, tree: Tree, gathered: ExtractedFacts):
+    def __init__(self, tree: Tree, extraction: ExtractedFacts):
         self.tree = tree
-        self.gathered = gathered
-        gathered.preload(gathered.list_paths("manifest", "manifest_variant"))
+        self.extraction = extraction
+        extraction.preload(extraction.list_paths("manifest", "manifest_variant"))
         self.problems: list[PathProblem] = []
         self.unmatched: set[PathProblem] = set()
         self.files: dict[str, set[str]] = {}
@@ -221,7 +221,7 @@ class _Search:
         variants = sorted((int(m[1] or m[2]), posixpath.join(folder, name)) for name, m in matches if m)
         usual = "package.xml" in names
         path = posixpath.join(folder, "package.xml") if usual else variants[-1][1] if variants else ""
-        manifest = find_manifest(self.gathered, path)
+        manifest = find_manifest(self.extraction, path)
         if manifest is None or not (usual or manifest.name):
             return None
         given = self._read_settings(folder, names)
@@ -268,7 +268,7 @@ class _Search:
         return ""
 
     def _read(self, path: str, kind: str) -> ColconFile:
-        for file in self.gathered.look((path,), kind, on_error=self._note_unreadable).values():
+        for file in self.extraction.look((path,), kind, on_error=self._note_unreadable).values():
             return file
         return ColconFile()
 
@@ -406,19 +406,19 @@ def _list_extra_dependencies(given: dict[str, Any]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for key in _DEPENDENCY_KEYS for name in _list_strings(given.get(key))))
 
 
-def find_manifest(gathered: ExtractedFacts, path: str) -> Manifest | None:
+def find_manifest(extraction: ExtractedFacts, path: str) -> Manifest | None:
     """What a manifest says; None where there is none, or it could not be read."""
-    if path not in gathered.kinds:
+    if path not in extraction.kinds:
         return None
-    facts = gathered.get_facts(path).facts
+    facts = extraction.get_facts(path).facts
     return facts if isinstance(facts, Manifest) else None
 
 
-def detect_generation(discovered: Discovered, gathered: ExtractedFacts) -> int:
+def detect_generation(discovered: Discovered, extraction: ExtractedFacts) -> int:
     """1 or 2: which ROS generation most packages of the tree are written for, 2 where none tells."""
-    manifests = (find_manifest(gathered, place.manifest_path) for place in discovered.packages)
-    told = [ros for manifest in manifests if manifest is not None and (ros := _classify_generation(manifest))]
-    return 1 if told.count(2) * 2 < len(told) else 2
+    manifests = (find_manifest(extraction, place.manifest_path) for place in discovered.packages)
+    generations = [ros for manifest in manifests if manifest is not None and (ros := _classify_generation(manifest))]
+    return 1 if generations.count(2) * 2 < len(generations) else 2
 
 
 def _classify_generation(manifest: Manifest) -> int:

@@ -111,7 +111,7 @@ def read_installed(
     binaries = []
     names = set()
     owner = _Owner(folder, packages, owners or {})
-    told = set()
+    listed = set()
     seen = False
     for path, real in files:
         found = facts[real]
@@ -126,8 +126,8 @@ def read_installed(
         if not found.dynamic:
             continue
         names.update((path.rpartition("/")[2], *([found.soname] if found.soname else [])))
-        if real not in told:
-            told.add(real)
+        if real not in listed:
+            listed.add(real)
             binaries.append(Binary(path, os.path.dirname(real), owner.find_package(path, real), found))
     if not seen:
         unread = f" ({problems[0].path}: {problems[0].message})" if problems else ""

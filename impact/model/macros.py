@@ -48,8 +48,8 @@ class Macros:
         macros = self._tests.get(name or value, ())
         if not macros or (value and any(m.value in ("0", "OFF", "FALSE") for m in macros)):
             return condition
-        told = tuple(m for m in macros if not m.target)
-        if not told:
+        deciding = tuple(m for m in macros if not m.target)
+        if not deciding:
             given = {m.target for m in macros}
             reached = [self._follow(target) for target in targets]
             with_it = [linked for linked in reached if not given.isdisjoint(linked)]
@@ -58,8 +58,8 @@ class Macros:
             if not with_it:
                 open_ended = any("$" in item for linked in reached for item in linked)
                 return condition if open_ended else Condition("macro", "FALSE", condition.negated)
-            told = tuple(m for m in macros if any(m.target in linked for linked in with_it))
-        return Condition("macro", _join_alternatives(tuple(m.conditions for m in told)), condition.negated)
+            deciding = tuple(m for m in macros if any(m.target in linked for linked in with_it))
+        return Condition("macro", _join_alternatives(tuple(m.conditions for m in deciding)), condition.negated)
 
     @cache_method
     def _follow(self, target: str) -> frozenset[str]:

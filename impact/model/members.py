@@ -195,9 +195,9 @@ def get_nested_interface(member: FieldMember, ros: int) -> NamedInterface:
     return NamedInterface(package, ros, f"msg/{name}")
 
 
-def find_section(told: tuple[NamedInterface, str], words: list[str]) -> str | None:
+def find_section(member: tuple[NamedInterface, str], words: list[str]) -> str | None:
     """The section of a type that scopes behind an interface's name tell; None when they name something else."""
-    interface, section = told
+    interface, section = member
     for word in words:
         part = word.lower()
         if word != word.capitalize() or part not in PARTS[interface.name.partition("/")[0]] or section:

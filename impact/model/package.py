@@ -430,13 +430,13 @@ class PackageJoin:
 
     def __init__(
         self, place: PackagePlace, manifest: Manifest, build: Build, build_type: str, files: Iterable[str],
-        gathered: ExtractedFacts, watched: Watched, home: Collection[str] = frozenset(),
+        extraction: ExtractedFacts, watched: Watched, home: Collection[str] = frozenset(),
         asked: AskedVersions | None = None, changing: Changes | None = None, offered: OfferedHeaders | None = None,
     ):  # fmt: skip
         self.name, self.path, self.manifest_path = place.name or manifest.name, place.path, place.manifest_path
         self.manifest, self.build, self.build_type, self.files = manifest, build, build_type, tuple(files)
         self.generation = 2 if build_type.startswith("ament") else 1 if build_type == "catkin" else 0
-        self.kinds, self.facts, self.look = gathered.kinds, gathered.get_facts, gathered.look
+        self.kinds, self.facts, self.look = extraction.kinds, extraction.get_facts, extraction.look
         self.watched, self.home, self.asked, self.changing, self.offered = watched, home, asked, changing, offered
         self.offered_read: set[str] = set()
         self.prefix = f"{self.path}/" if self.path else ""
@@ -462,7 +462,7 @@ class PackageJoin:
             if to is not None
         )
 
-    def build_digest(self) -> LinkedPackage:
+    def build_package(self) -> LinkedPackage:
         """All that rules ask of the package."""
         allows, problems, distros = [], [], []
         of_tests = self.name.startswith("test_") or self.name.endswith(("_test", "_tests"))

@@ -158,7 +158,7 @@ class Roles:
         """True for a package that has nothing of its own and is there to bring others, as a metapackage does."""
         own = self._view.workspace.packages.get(name)
         if own is not None:
-            return own.manifest.metapackage or not (own.build.targets or own.build.installs or own.digest.imports)
+            return own.manifest.metapackage or not (own.build.targets or own.build.installs or own.linked.imports)
         return self._view.offers.is_bundle(name)
 
     def _list_dependencies(self, name: str) -> Iterable[tuple[str, str]]:

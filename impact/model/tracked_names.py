@@ -1,4 +1,4 @@
-"""The names that rules look out for, gathered from the tables of known changes."""
+"""The names that rules look out for, collected from the tables of known changes."""
 
 import hashlib
 import re

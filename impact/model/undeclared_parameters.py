@@ -34,7 +34,7 @@ class UndeclaredParameter(NamedTuple):
 def list_undeclared_parameters(view: TargetView, package: Package) -> Iterator[UndeclaredParameter]:
     """Those that files of a package set, beside which no other name of the same parameter is set, and to another value
     than that which holds without."""
-    uses = [use for use in package.digest.settings if use.role == "run"]
+    uses = [use for use in package.linked.settings if use.role == "run"]
     beside: dict[tuple[str, str, str], set[str]] = {}
     for use in uses:
         beside.setdefault((use.at.path, use.plugin, use.node), set()).add(find_last_part(use.name))
@@ -73,11 +73,11 @@ def _find_starters(view: TargetView) -> dict[str, set[str]]:
     found: dict[str, set[str]] = {}
     for package in view.workspace:
         names = [target.name for target in package.build.targets if target.kind == "executable"]
-        names += [name for _, setup in package.digest.setup for name, *_ in setup.entry_points]
-        names += [path.rpartition("/")[2].removesuffix(".py") for path in package.digest.scripts]
+        names += [name for _, setup in package.linked.setup for name, *_ in setup.entry_points]
+        names += [path.rpartition("/")[2].removesuffix(".py") for path in package.linked.scripts]
         for name in names:
             found.setdefault(name, set()).add(package.name)
-        for use in package.digest.references:
+        for use in package.linked.references:
             if use.reference.kind == "executable" and use.reference.name:
                 found.setdefault(use.reference.name, set()).add(use.reference.package)
     return found

@@ -146,10 +146,10 @@ class TargetView:
     def _select_active(self, package: Package) -> Package:
         """A package without what its CMake surely does not do on this target."""
         build = select_active(package.build, self.applies)
-        references = self._select_references(package.digest.references)
-        if build is package.build and references is package.digest.references:
+        references = self._select_references(package.linked.references)
+        if build is package.build and references is package.linked.references:
             return package
-        return Package(structs.replace(package.digest, references=references), build)
+        return Package(structs.replace(package.linked, references=references), build)
 
     def _select_references(self, references: tuple[ReferenceUse, ...]) -> tuple[ReferenceUse, ...]:
         """Without those that surely do not count on this target, and with those as unconditional that surely do."""
@@ -280,7 +280,7 @@ class TargetView:
         """Where a dependency is declared, or the first of a name."""
         if isinstance(dependency, str):
             dependency = next(one for one in package.manifest.dependencies if one.name == dependency)
-        return At(package.digest.manifest_path, dependency.line, dependency.column)
+        return At(package.linked.manifest_path, dependency.line, dependency.column)
 
     @cached_property
     def known_names(self) -> SpellingIndex:
@@ -314,7 +314,7 @@ class TargetView:
         """Top-level Python modules that packages of the workspace bring, or may bring."""
         found = {name.removesuffix("_py") for name in self.workspace.packages} | self.workspace.may_have
         for package in self.workspace:
-            found |= find_python_packages(package.digest.files)
+            found |= find_python_packages(package.linked.files)
         return frozenset(found)
 
     @cached_property
@@ -380,7 +380,7 @@ class TargetView:
     def _collect_own_interfaces(self, package: str) -> message_headers.Definitions:
         """The interfaces of a package of the workspace, by `msg/Name`."""
         known = message_headers.Definitions()
-        for file in self.workspace.packages[package].digest.interfaces:
+        for file in self.workspace.packages[package].linked.interfaces:
             made = file.definition
             folder = made.module.rpartition("/")[2] if made.kind == "idl" else made.kind
             known[f"{folder}/{file.name}"] = made
@@ -400,22 +400,22 @@ class TargetView:
         for provider in self.find_header(path):
             package = self.workspace.packages.get(provider.name) if provider.kind == "ros" else None
             if package is not None:
-                found.extend(h for h in package.digest.headers if h.removesuffix(".in").endswith(ending))
+                found.extend(h for h in package.linked.headers if h.removesuffix(".in").endswith(ending))
         return tuple(found)
 
     @cached_property
     def _header_files(self) -> frozenset[str]:
-        return frozenset(h for package in self.workspace for h in package.digest.headers)
+        return frozenset(h for package in self.workspace for h in package.linked.headers)
 
     @cached_property
     def _inner(self) -> dict[str, tuple[str, ...]]:
-        return {path: inner for package in self.workspace for path, inner in package.digest.inner}
+        return {path: inner for package in self.workspace for path, inner in package.linked.inner}
 
     @cached_property
     def _outward(self) -> dict[str, list[str]]:
         found: dict[str, list[str]] = {}
         for package in self.workspace:
-            for use in package.digest.includes:
+            for use in package.linked.includes:
                 if use.at.path in self._header_files:
                     found.setdefault(use.at.path, []).append(use.path)
         return found
@@ -582,14 +582,14 @@ class TargetView:
         if head in names or (any(head in (p.name, p.package) for p in self.find_cmake(head)) and head in names):
             return True
         roots = include_roots(head)
-        return any(i.path.startswith(roots) for i in package.digest.includes) if roots else head in names
+        return any(i.path.startswith(roots) for i in package.linked.includes) if roots else head in names
 
     @cache_method
     def is_included_under_conditions(self, package: Package, library: str) -> bool:
         """Whether a package includes headers of a library only under conditions that may not hold, as where it carries
         a copy of its own beside the platform's."""
         roots = include_roots(library)
-        found = [i for i in package.digest.includes if roots and i.path.startswith(roots)]
+        found = [i for i in package.linked.includes if roots and i.path.startswith(roots)]
         return bool(found) and not any(self.is_sure(include.conditions) for include in found)
 
     @cache_method
@@ -859,7 +859,7 @@ class TargetView:
         return tuple(sorted(self.list_needs(package), key=make_sort_key))
 
     def _collect(self, package: Package) -> Iterator[Need]:
-        digest = package.digest
+        linked = package.linked
         for found in package.build.found:
             if found.how == "pkg_check_modules" and self.applies(found.conditions):
                 yield from self._list_module_needs(found)
@@ -887,7 +887,7 @@ class TargetView:
             yield from self._list_component_needs(found, role, certain)
         if self.target.find_version("ros_environment") is not None:
             yield from self._list_environment_needs(package)
-        for include in digest.includes:
+        for include in linked.includes:
             if not self.applies(include.conditions):
                 continue
             providers = self.find_header(include.path)
@@ -903,7 +903,7 @@ class TargetView:
                 continue  # the package has one of its own
             yield Need("include", include.path, providers, include.at, include.role, self.is_sure(include.conditions),
                        True, include.public, include.targets)  # fmt: skip
-        for item in digest.imports:
+        for item in linked.imports:
             if not self.applies(item.conditions):
                 continue
             head, _, rest = item.module.partition(".")
@@ -917,7 +917,7 @@ class TargetView:
                 continue
             certain = self.is_sure(item.conditions)
             yield Need("import", item.module, providers, item.at, item.role, certain, certain and not item.lazy)
-        for use in digest.references:
+        for use in linked.references:
             reference = use.reference
             name = reference.package
             if not name and reference.kind == "plugin" and ".launch" in use.at.path:

@@ -1,8 +1,8 @@
-"""The linked workspace: every package's digest, and who in the workspace offers what.
+"""The linked workspace: every linked package, and who in the workspace offers what.
 
-A digest is remembered by the content of everything it was joined from: the names of the package's files, their content
-ids, and those of CMake files of other packages that its CMake reads. Time plays no part in it. The identity of the
-workspace is made of the digests themselves: an edit that changes none of them changes nothing that rules can see.
+A linked package is remembered by the content of everything it was joined from: the names of the package's files, their
+content ids, and those of CMake files of other packages that its CMake reads. Time plays no part in it. The identity of
+the workspace is made of the linked packages: an edit that changes none of them changes nothing that rules can see.
 """
 
 from __future__ import annotations
@@ -52,25 +52,25 @@ _ALONE_FILES = 100
 
 
 class Package:
-    """A package of the workspace: its digest, with indices made when first asked for.
+    """A package of the workspace, linked, with indices made when first asked for.
 
-    digest: all that was read of its files. path: its folder, relative to the workspace and empty for the workspace
+    linked: all that was read of its files. path: its folder, relative to the workspace and empty for the workspace
     itself. manifest: what package.xml says. build: what CMakeLists.txt builds, installs and exports, on all machines or
     on the one that it is seen from. build_type: `catkin`, `ament_cmake`, `ament_python`, `cmake` ..., for the
     generation of the workspace.
     """
 
-    digest: LinkedPackage
+    linked: LinkedPackage
     name: str
     path: str
     manifest: Manifest
     build: Build
     build_type: str
 
-    def __init__(self, digest: LinkedPackage, build: Build | None = None):
-        self.digest = digest
-        self.name, self.path = digest.name, digest.path
-        self.manifest, self.build, self.build_type = digest.manifest, build or digest.build, digest.build_type
+    def __init__(self, linked: LinkedPackage, build: Build | None = None):
+        self.linked = linked
+        self.name, self.path = linked.name, linked.path
+        self.manifest, self.build, self.build_type = linked.manifest, build or linked.build, linked.build_type
 
     def __repr__(self) -> str:
         return f"Package({self.name})"
@@ -85,31 +85,31 @@ class Package:
     def setup_files(self) -> Iterator[tuple[str, SetupFile]]:
         """Its own setup.py, setup.cfg and pyproject.toml, which install it; none where others do."""
         if self.build_type in ("ament_python", "catkin"):
-            for path, setup in self.digest.setup:
+            for path, setup in self.linked.setup:
                 if posixpath.dirname(path) == self.path:
                     yield path, setup
 
     def list_requirements(self) -> Iterator[tuple[At, str]]:
         """The Python packages that it asks for in its setup files and requirements.txt."""
-        for path, file in (*self.setup_files, *self.digest.requirements):
+        for path, file in (*self.setup_files, *self.linked.requirements):
             for requirement in file.requirements:
                 yield At(path, requirement.line), requirement.text
 
     @cached_property
     def is_interface_package(self) -> bool:
         """True when it generates messages, services or actions."""
-        return bool(self.digest.interfaces) or any(g.how in ("rosidl", "catkin") for g in self.build.generated)
+        return bool(self.linked.interfaces) or any(g.how in ("rosidl", "catkin") for g in self.build.generated)
 
     @cached_property
     def files(self) -> frozenset[str]:
         """Paths of its files, relative to the workspace."""
-        return frozenset(self.digest.files)
+        return frozenset(self.linked.files)
 
     @cached_property
     def folders(self) -> frozenset[str]:
         """Paths of the folders of its files, relative to the workspace."""
         found = set()
-        for path in self.digest.files:
+        for path in self.linked.files:
             while "/" in path:
                 path = path.rsplit("/", 1)[0]
                 if path in found:
@@ -126,39 +126,40 @@ class FilesOutside:
     """What files say that belong to no package. lists_repositories: as Discovered has it. unread_submodules: the
     folders of submodules that were not read, in order."""
 
-    def __init__(self, discovered: Discovered, gathered: ExtractedFacts):
-        self._gathered = gathered
+    def __init__(self, discovered: Discovered, extraction: ExtractedFacts):
+        self._extraction = extraction
         self.lists_repositories = discovered.lists_repositories
-        self.unread_submodules = sorted(problem.path for problem in gathered.problems if problem.is_submodule)
-        self._scripts = [path for path in gathered.list_paths("shell", "script") if discovered.find_owner(path) is None]
-        self._requirements = [p for p in gathered.list_paths("requirements") if discovered.find_owner(p) is None]
-        self._containers = [path for path in gathered.list_paths("dockerfile", "ci") if not is_vendored(path)]
+        self.unread_submodules = sorted(problem.path for problem in extraction.problems if problem.is_submodule)
+        scripts = extraction.list_paths("shell", "script")
+        self._scripts = [path for path in scripts if discovered.find_owner(path) is None]
+        self._requirements = [p for p in extraction.list_paths("requirements") if discovered.find_owner(p) is None]
+        self._containers = [path for path in extraction.list_paths("dockerfile", "ci") if not is_vendored(path)]
 
     @property
     def identity(self) -> bytes:
         """Differs whenever one of them does."""
         paths = (*self._scripts, *self._requirements, *self._containers)
-        ids = [(path, self._gathered.ids[path]) for path in paths]
+        ids = [(path, self._extraction.ids[path]) for path in paths]
         return repr((ids, self.lists_repositories, self.unread_submodules)).encode("utf-8", "backslashreplace")
 
     @cached_property
     def distro_scripts(self) -> dict[str, DistroFile]:
         """Shell scripts that name folders of distros."""
-        self._gathered.preload(self._scripts)
-        found = ((path, self._gathered.get_facts(path).distros) for path in self._scripts)
+        self._extraction.preload(self._scripts)
+        found = ((path, self._extraction.get_facts(path).distros) for path in self._scripts)
         return {path: distros for path, distros in found if distros is not None}
 
     @cached_property
     def requirements(self) -> dict[str, RequirementsFile]:
         """Files called requirements.txt."""
-        self._gathered.preload(self._requirements)
-        return {path: self._gathered.get_facts(path).facts for path in self._requirements}
+        self._extraction.preload(self._requirements)
+        return {path: self._extraction.get_facts(path).facts for path in self._requirements}
 
     @cached_property
     def containers(self) -> dict[str, ContainerFile]:
         """The workspace's own Dockerfiles and CI files."""
-        self._gathered.preload(self._containers)
-        return {path: self._gathered.get_facts(path).facts for path in self._containers}
+        self._extraction.preload(self._containers)
+        return {path: self._extraction.get_facts(path).facts for path in self._containers}
 
 
 class Workspace:
@@ -171,7 +172,7 @@ class Workspace:
         packages: Iterable[LinkedPackage],
         discovered: Discovered,
         ros: int,
-        gathered: ExtractedFacts,
+        extraction: ExtractedFacts,
         read: Callable[[str], bytes],
         identity: bytes = b"",
         whole: bool = True,
@@ -179,13 +180,13 @@ class Workspace:
         outside: FilesOutside | None = None,
     ):
         self.packages = {d.name: Package(d) for d in packages}
-        self.discovered, self.ros, self.gathered, self.read = discovered, ros, gathered, read
+        self.discovered, self.ros, self.extraction, self.read = discovered, ros, extraction, read
         # Files and folders that were not read, as submodules that are not checked out.
         self.unread = unread
-        self.outside = outside or FilesOutside(discovered, gathered)
-        # Differs whenever a digest, their order or the generation does.
+        self.outside = outside or FilesOutside(discovered, extraction)
+        # Differs whenever a linked package, their order or the generation does.
         self.identity = identity
-        # False where a package could not be joined, or its digest not be stored: the next run may tell otherwise.
+        # False where a package could not be joined, or not be stored: the next run may tell otherwise.
         self.whole = whole
         # What later joins made of it, see cache_in_derived().
         self.derived: dict[Any, Any] = {}
@@ -198,7 +199,7 @@ class Workspace:
         """Packages that are not analysed, since another of the same name stands for them."""
         present = {package.path for package in self}
         for place in self.discovered.packages:
-            if place.path not in present and place.manifest_path in self.gathered.kinds:
+            if place.path not in present and place.manifest_path in self.extraction.kinds:
                 yield place
 
     @cached_property
@@ -228,7 +229,7 @@ class Workspace:
         return _group(
             ("/".join(parts[at:]), package.name)
             for package in self
-            for path in package.digest.headers
+            for path in package.linked.headers
             for parts in (path.removesuffix(".in").split("/"),)
             for at in range(len(parts))
         )
@@ -246,7 +247,7 @@ class Workspace:
                 if head == package.name and tail:
                     yield tail
 
-        headers = ((package, path) for package in self for path in package.digest.headers)
+        headers = ((package, path) for package in self for path in package.linked.headers)
         return _group((each, package.name) for package, path in headers for each in list_spellings(package, path))
 
     @cached_property
@@ -261,7 +262,7 @@ class Workspace:
                     made.add(f"{item.target}.hpp")
                 elif item.how == "protobuf":
                     made.update(posixpath.basename(file).replace(".proto", ".pb.h") for file in item.files)
-            for path in package.digest.files:
+            for path in package.linked.files:
                 name = posixpath.basename(path)
                 if name.endswith(".ui"):
                     made.add("ui_" + name[:-3] + ".h")
@@ -276,7 +277,7 @@ class Workspace:
     @cached_property
     def interface_names(self) -> dict[str, set[str]]:
         """Package to the names of its interfaces."""
-        return {p.name: {i.name for i in p.digest.interfaces} for p in self if p.digest.interfaces}
+        return {p.name: {i.name for i in p.linked.interfaces} for p in self if p.linked.interfaces}
 
     @cached_property
     def modules(self) -> dict[str, list[str]]:
@@ -286,7 +287,7 @@ class Workspace:
     @cached_property
     def cmake_files(self) -> frozenset[str]:
         """Names of the workspace's CMake modules and configurations, without their folders."""
-        paths = (path for package in self for path in package.digest.files)
+        paths = (path for package in self for path in package.linked.files)
         return frozenset(posixpath.basename(path) for path in paths if path.endswith(".cmake"))
 
     @cached_property
@@ -294,7 +295,7 @@ class Workspace:
         """Names of find modules that packages of the tree carry for themselves, to those packages."""
         found: dict[str, set[str]] = {}
         for package in self:
-            for path in package.digest.files:
+            for path in package.linked.files:
                 if path.endswith(".cmake"):
                     name = posixpath.basename(path).removesuffix(".cmake")
                     if name.startswith("Find") and name != "Find":
@@ -309,7 +310,7 @@ class Workspace:
             found[package.name] = package.name
             if package.build.project:
                 found.setdefault(package.build.project, package.name)
-            for path in package.digest.files:
+            for path in package.linked.files:
                 if path.endswith((".cmake", ".cmake.in")):
                     match = _CONFIGURATION.match(posixpath.basename(path))
                     if match:
@@ -353,14 +354,14 @@ class Workspace:
         Only of packages whose headers all lie in the tree, or that are generated from interfaces alone."""
         found = set()
         for package in self:
-            for include in package.digest.includes:
+            for include in package.linked.includes:
                 head, _, rest = include.path.partition("/")
                 owner = self.packages.get(head)
                 if owner is None or not rest or "_export." in rest:
                     continue
                 if owner.manifest.metapackage or not self._is_closed(owner) or self.provides_header(include.path):
                     continue
-                if any(path.endswith(f"/{include.path}") for path in owner.digest.files):
+                if any(path.endswith(f"/{include.path}") for path in owner.linked.files):
                     continue  # a file that is not called like a header (`types.macro`)
                 found.add(include.path)
         return frozenset(found)
@@ -373,21 +374,21 @@ class Workspace:
         ):
             return False
         if any(
-            path.endswith((".in", ".em", ".proto", ".ui", ".fbs", ".idl", ".xtext")) for path in package.digest.files
+            path.endswith((".in", ".em", ".proto", ".ui", ".fbs", ".idl", ".xtext")) for path in package.linked.files
         ):
             return False
         if any(t.kind in ("custom", "external", "fetched", "unknown") for t in package.build.targets):
             return False
         if any("$" in path for g in package.build.generated for path in g.files):
             return False  # generates what another package lists
-        return bool(package.digest.headers or package.digest.interfaces) and not calls_unmodelled(package.build)
+        return bool(package.linked.headers or package.linked.interfaces) and not calls_unmodelled(package.build)
 
     @cached_property
     def includers(self) -> dict[str, set[str]]:
         """Package to the other packages of the workspace that include its headers."""
         found: dict[str, set[str]] = {}
         for package in self:
-            for path in {i.path for i in package.digest.includes}:
+            for path in {i.path for i in package.linked.includes}:
                 for owner in self.provides_header(path):
                     if owner != package.name:
                         found.setdefault(owner, set()).add(package.name)
@@ -403,7 +404,7 @@ def list_modules(package: Package) -> set[str]:
     """Top-level Python modules that others can import once the package is installed: `name/__init__.py` and `name.py`
     in the package's folder or its src/, and what setup.py lists."""
     found = set()
-    for path in package.digest.files:
+    for path in package.linked.files:
         if not path.endswith(".py"):
             continue
         parts = path[len(package.path) :].lstrip("/").split("/")
@@ -411,7 +412,7 @@ def list_modules(package: Package) -> set[str]:
             parts = parts[1:]
         if len(parts) == 2 and parts[1] == "__init__.py":
             found.add(parts[0])
-    for _, setup in package.digest.setup:
+    for _, setup in package.linked.setup:
         found.update(name.split(".")[0].split("/")[-1] for name in setup.packages if name and name != "*")
     return found
 
@@ -449,7 +450,7 @@ def _group(named: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
 
 def link(
     tree: Tree,
-    gathered: ExtractedFacts,
+    extraction: ExtractedFacts,
     store: Store | None,
     ros: int | None,
     watched: Watched,
@@ -458,17 +459,18 @@ def link(
     asked: AskedVersions | None = None,
 ) -> Workspace:
     """Joins the facts of a tree into a workspace. ros: 1 or 2, None to tell it from the manifests. store remembers
-    digests; None joins everything anew. jobs: processes to use, all available cores when None. discovered: the packages
-    of the tree, where they are known. asked: the versions of other packages that uses may be wrong in, all when None.
+    linked packages; None joins everything anew. jobs: processes to use, all available cores when None. discovered: the
+    packages of the tree, where they are known. asked: the versions of other packages that uses may be wrong in, all
+    when None.
     """
-    discovered = discovered or discover(tree, gathered)
-    ros = ros or detect_generation(discovered, gathered)
-    linker = _Linker(tree, gathered, discovered, ros, watched, jobs or processes.count_cores(), asked)
-    digests = linker.link_packages(store)
-    outside = FilesOutside(discovered, gathered)
+    discovered = discovered or discover(tree, extraction)
+    ros = ros or detect_generation(discovered, extraction)
+    linker = _Linker(tree, extraction, discovered, ros, watched, jobs or processes.count_cores(), asked)
+    linked = linker.link_packages(store)
+    outside = FilesOutside(discovered, extraction)
     linker.identity.update(outside.identity)
     identity = linker.identity.digest()
-    return Workspace(digests, discovered, ros, gathered, tree.read, identity, linker.whole, linker.unread, outside)
+    return Workspace(linked, discovered, ros, extraction, tree.read, identity, linker.whole, linker.unread, outside)
 
 
 def _list_conditional(manifest: Manifest) -> dict[str, Condition]:
@@ -486,18 +488,18 @@ def _list_named(manifest: Manifest, *kinds: str) -> tuple[str, ...]:
 
 
 class _Stale(NamedTuple):
-    """A digest whose package and headers of other packages say what they did, and what is remembered of these."""
+    """A linked package whose own files say what they did, and what is remembered of the headers of others."""
 
-    digest: LinkedPackage
+    linked: LinkedPackage
     headers: dict[str, str]
 
 
 class _Joined(NamedTuple):
-    """A package's digest, the same encoded (empty where its names cannot be), and, encoded, what other packages' files
+    """A linked package, the same encoded (empty where its names cannot be), and, encoded, what other packages' files
     say that it rests on: the content ids of CMake files, and headers as OfferedHeaders describes them (None: not to be
     stored)."""
 
-    digest: LinkedPackage
+    linked: LinkedPackage
     packed: bytes | memoryview
     head: bytes | None
 
@@ -511,10 +513,10 @@ _INTERFACES = frozenset(("msg", "srv", "action", "idl"))
 
 
 def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, _Stale | None]], path: str):
-    """What a process of its own does with a folder of tasks: a _Joined, with the digest in one form only."""
+    """What a process of its own does with a folder of tasks: a _Joined, with the package in one form only."""
     processes.begin_part(0, _JOIN_BYTES + len(linker.paths_of[path]) * _JOIN_BYTES_OF_FILE)
-    digest, packed, head = linker.join_one(*tasks[path])
-    return None if packed else digest, packed, head
+    linked, packed, head = linker.join_one(*tasks[path])
+    return None if packed else linked, packed, head
 
 
 def _detect_build_type(build: Build, declared: str) -> str:
@@ -530,14 +532,14 @@ class _Linker:
     def __init__(
         self,
         tree: Tree,
-        gathered: ExtractedFacts,
+        extraction: ExtractedFacts,
         discovered: Discovered,
         ros: int,
         watched: Watched,
         jobs: int,
         asked: AskedVersions | None,
     ):
-        self.tree, self.gathered, self.discovered, self.ros, self.watched = tree, gathered, discovered, ros, watched
+        self.tree, self.extraction, self.discovered, self.ros, self.watched = tree, extraction, discovered, ros, watched
         self.jobs, self.asked = jobs, asked
         self.paths_of: dict[str, list[str]] = {p.path: [] for p in discovered.packages}
         for entry in tree.list_entries():
@@ -549,11 +551,11 @@ class _Linker:
         self._extras: dict[str, tuple[str, ...]] = {}
         self.whole = True
         self.code = f"{compute_source_key(__name__)} {make_overall_version()}"
-        self.unread = frozenset(problem.path for problem in (*gathered.problems, *tree.skipped))
+        self.unread = frozenset(problem.path for problem in (*extraction.problems, *tree.skipped))
         self.identity = hashlib.sha1(f"{self.code} {ros} {sorted(self.unread)}".encode("utf-8", "backslashreplace"))
 
     def link_packages(self, store: Store | None) -> list[LinkedPackage]:
-        places = [p for p in self.discovered.packages if find_manifest(self.gathered, p.manifest_path) is not None]
+        places = [p for p in self.discovered.packages if find_manifest(self.extraction, p.manifest_path) is not None]
         keys = {p.path: self.compute_key(p) for p in places}
         decoder = msgspec.msgpack.Decoder(LinkedPackage)
         remembered = store.find_memos("digest", list(keys.values())) if store is not None else {}
@@ -572,7 +574,7 @@ class _Linker:
                 headers = {path: described for path, described in read.items() if " " in described}
                 if not all(self.offered.is_unchanged(path, described) for path, described in headers.items()):
                     continue
-                if all(self.gathered.ids.get(path, "") == oid for path, oid in read.items() if path not in headers):
+                if all(self.extraction.ids.get(path, "") == oid for path, oid in read.items() if path not in headers):
                     found[place.path] = _Joined(before, packed, None)
                 else:
                     stale[place.path] = _Stale(before, headers)
@@ -581,18 +583,18 @@ class _Linker:
         found.update(made)
         fresh: list[tuple[bytes, bytes]] = []
         for place in places:
-            digest, packed, head = found[place.path]
+            linked, packed, head = found[place.path]
             # Names that are no UTF-8 cannot be stored, and are read anew each time.
-            self.identify(packed or repr(digest).encode("utf-8", "backslashreplace"))
+            self.identify(packed or repr(linked).encode("utf-8", "backslashreplace"))
             if packed and head is not None:
                 fresh.append((keys[place.path], len(head).to_bytes(4, "big") + head + packed))
         if store is not None and fresh:
             store.remember("digest", fresh)
-        return [found[p.path].digest for p in places]
+        return [found[p.path].linked for p in places]
 
     def combine(self, places: Iterable[PackagePlace], stale: dict[str, _Stale]) -> Iterator[tuple[str, _Joined]]:
-        """Folder and join of these packages, several at once where there is much to do. stale: digests of an earlier
-        run that may still hold, by folder."""
+        """Folder and join of these packages, several at once where there is much to do. stale: those of an
+        earlier run that may still hold, by folder."""
         tasks = {p.path: (p, stale.get(p.path)) for p in places}
         order = sorted(tasks, key=lambda path: (-len(self.paths_of[path]), path))
         files = sum(len(self.paths_of[path]) for path in order)
@@ -600,7 +602,7 @@ class _Linker:
             yield from ((path, self.join_one(*tasks[path])) for path in order)
             return
         jobs = 1 if len(order) < 2 or files < _ALONE_FILES else self.jobs
-        self.gathered.store.close()  # every process opens it for itself
+        self.extraction.store.close()  # every process opens it for itself
         _ = self.watched.in_cpp  # made once and for all processes
         if self.watched.surfaces is not None or self.watched.fields is not None:
             import_module(".cpp.uses", __package__)  # once, not in every process
@@ -608,39 +610,39 @@ class _Linker:
         for path, result in processes.run_forked(_join, order, jobs, self, tasks):
             if isinstance(result, processes.Died):
                 place, _ = tasks[path]
-                yield path, self.encode_digest(self.make_failed(place, f"its analysis {result.why}"), None)
+                yield path, self.encode_package(self.make_failed(place, f"its analysis {result.why}"), None)
             else:
-                digest, packed, head = result
-                yield path, _Joined(digest or decoder.decode(packed), packed, head)
+                linked, packed, head = result
+                yield path, _Joined(linked or decoder.decode(packed), packed, head)
 
     def join_one(self, place: PackagePlace, before: _Stale | None) -> _Joined:
         try:
-            with self.gathered.defer_storing():
-                digest, read = self.join(place, before)
+            with self.extraction.defer_storing():
+                linked, read = self.join(place, before)
         except MemoryError:
             raise  # ends a process, whose package is then tried in a new one
         except Exception as error:
             # One package that nobody foresaw must not take the others with it.
             why = f"{type(error).__name__}: {error}; this is a fault of rosimpact, please report it"
-            digest, read = self.make_failed(place, why), None
-        return self.encode_digest(digest, read)
+            linked, read = self.make_failed(place, why), None
+        return self.encode_package(linked, read)
 
-    def encode_digest(self, digest: LinkedPackage, read: Any) -> _Joined:
-        """A digest with what is remembered of it."""
+    def encode_package(self, linked: LinkedPackage, read: Any) -> _Joined:
+        """A linked package with what is remembered of it."""
         try:
             head = msgspec.msgpack.encode(read) if read is not None else None
-            return _Joined(digest, msgspec.msgpack.encode(digest), head)
+            return _Joined(linked, msgspec.msgpack.encode(linked), head)
         except UnicodeEncodeError:
-            return _Joined(digest, b"", None)
+            return _Joined(linked, b"", None)
 
-    def identify(self, digest: bytes | memoryview) -> None:
-        """Takes a digest, as bytes, into the workspace's identity."""
-        self.identity.update(len(digest).to_bytes(8, "big"))
-        self.identity.update(digest)
+    def identify(self, linked: bytes | memoryview) -> None:
+        """Takes a linked package, as bytes, into the workspace's identity."""
+        self.identity.update(len(linked).to_bytes(8, "big"))
+        self.identity.update(linked)
 
     def make_failed(self, place, reason: str) -> LinkedPackage:
         """What stands for a package whose join failed: its manifest, and a problem that says so."""
-        manifest = find_manifest(self.gathered, place.manifest_path)
+        manifest = find_manifest(self.extraction, place.manifest_path)
         assert manifest is not None
         why = f"the package could not be analysed: {reason}"
         return LinkedPackage(place.name, place.path, place.manifest_path, manifest, build_type_of(manifest, self.ros),
@@ -648,26 +650,26 @@ class _Linker:
                              files=tuple(self.paths_of[place.path]))  # fmt: skip
 
     def compute_key(self, place) -> bytes:
-        """Everything of the package itself that its digest is made from."""
-        ids = self.gathered.ids
+        """Everything of the package itself that it is linked from."""
+        ids = self.extraction.ids
         asked = self.asked.identity if self.asked is not None else ""
         versions = f"{self.code}{format_limits()} {self.watched.version} {asked}"
         about = f"{versions} {self.ros} {self._extras_key} {self.offered.key} {sorted(self.home)} {place.path}\n"
-        digest = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
-        digest.update(
+        key = hashlib.sha1(about.encode("utf-8", "surrogateescape"))
+        key.update(
             "\n".join([f"{path} {ids.get(path, '')}" for path in self.paths_of[place.path]]).encode(
                 "utf-8", "surrogateescape"
             )
         )
-        return digest.digest()
+        return key.digest()
 
     @cached_property
     def home(self) -> frozenset[str]:
         """Packages of the tree of which surfaces are stored, or that define interfaces: what was released of them does
         not count here."""
         stored = self.watched.surfaces.packages if self.watched.surfaces is not None else frozenset()
-        kinds = self.gathered.kinds
-        places = (p for p in self.discovered.packages if find_manifest(self.gathered, p.manifest_path))
+        kinds = self.extraction.kinds
+        places = (p for p in self.discovered.packages if find_manifest(self.extraction, p.manifest_path))
         return frozenset(
             p.name
             for p in places
@@ -676,27 +678,27 @@ class _Linker:
 
     @cached_property
     def _extras_key(self) -> str:
-        """Which CMake files packages give their dependants; what is in them is told by the digests that read them."""
+        """Which CMake files packages give their dependants; what is in them is told by the packages that read them."""
         given = [path for place in self.discovered.packages for path in self.find_extras(place.name)]
         return hashlib.sha1("\n".join(given).encode("utf-8", "surrogateescape")).hexdigest()
 
     def join(self, place, before: _Stale | None) -> tuple[LinkedPackage, dict[str, str]]:
-        """The digest of a package, and what files of others say that it rests on. before: a digest of the very same
+        """A linked package, and what files of others say that it rests on. before: a linked package of the very same
         files of its own; where the CMake files of others still say the same, it holds."""
-        gathered = self.gathered
-        manifest = find_manifest(gathered, place.manifest_path)
+        extraction = self.extraction
+        manifest = find_manifest(extraction, place.manifest_path)
         assert manifest is not None
         files = self.paths_of[place.path]
-        gathered.preload(files)
+        extraction.preload(files)
         read: dict[str, str] = {}
 
         def read_cmake(path: str):
             path = posixpath.normpath(path)
-            if gathered.kinds.get(path) != "cmake":
+            if extraction.kinds.get(path) != "cmake":
                 return None
             if not (path.startswith(place.path + "/") or not place.path):
-                read[path] = gathered.ids.get(path, "")
-            file = gathered.get_facts(path)
+                read[path] = extraction.ids.get(path, "")
+            file = extraction.get_facts(path)
             return file.facts if file is not None else None
 
         build = (
@@ -718,20 +720,20 @@ class _Linker:
         )
         ignored = tuple(self.list_ignored(build, read))
         build = msgspec.structs.replace(build, made=(*build.made, *ignored)) if ignored else build
-        if before is not None and build == before.digest.build:
-            return before.digest, {**read, **before.headers}
+        if before is not None and build == before.linked.build:
+            return before.linked, {**read, **before.headers}
         build_type = _detect_build_type(build, build_type_of(manifest, self.ros))
         joined = PackageJoin(
-            *(place, manifest, build, build_type, files, gathered),
+            *(place, manifest, build, build_type, files, extraction),
             *(self.watched, self.home, self.asked, self.changing, self.offered),
         )
-        digest = joined.build_digest()
-        return digest, {**read, **{path: self.offered.describe(path) for path in joined.offered_read}}
+        linked = joined.build_package()
+        return linked, {**read, **{path: self.offered.describe(path) for path in joined.offered_read}}
 
     @cached_property
     def offered(self) -> OfferedHeaders:
         """The headers that packages offer each other."""
-        return OfferedHeaders(self.paths_of, self.gathered)
+        return OfferedHeaders(self.paths_of, self.extraction)
 
     @cached_property
     def changing(self) -> Changes | None:
@@ -752,9 +754,9 @@ class _Linker:
                 folders, rules = ["", *itertools.accumulate(path.split("/")[:-1], "{}/{}".format)], []
                 for folder in folders:
                     file = f"{folder}/.gitignore" if folder else ".gitignore"
-                    if self.gathered.kinds.get(file) == "gitignore":
-                        read[file] = self.gathered.ids.get(file, "")
-                        facts = self.gathered.get_facts(file)
+                    if self.extraction.kinds.get(file) == "gitignore":
+                        read[file] = self.extraction.ids.get(file, "")
+                        facts = self.extraction.get_facts(file)
                         rules.append((folder, facts.facts.patterns if facts is not None else ()))
                 if rules and (is_ignored(path, rules) or (install.kind == "directory" and holds_ignored(path, rules))):
                     yield path

@@ -33,8 +33,8 @@ def lay_out(pieces: Sequence[LinePart], style: Style, indent: int, hang: int) ->
     line, used, gap = " " * indent, indent, ""
     for piece in pieces:
         room = max(_LEAST, style.width - hang)
-        told = escape(piece.text)
-        text = told + shorten_path(escape(piece.path), room - measure(told))
+        reported = escape(piece.text)
+        text = reported + shorten_path(escape(piece.path), room - measure(reported))
         if gap and piece.hang is None and used + len(gap) + measure(text) > style.width:
             yield line
             line, used, gap = " " * hang, hang, ""

@@ -86,8 +86,8 @@ def _format_command(report: Report, finding: Finding, folder: str) -> str:
             properties["endColumn"] = str(max(finding.column, shown.start + shown.width))
     shown = "".join(f"\n{label}: {line}" for label, line in evidence.format_lines(finding))
     text = finding.message + shown + (f"\nhelp: {finding.help}" if finding.help else "")
-    told = ",".join(f"{key}={_escape_property(value)}" for key, value in properties.items())
-    return f"::{_COMMAND[finding.severity]} {told}::{_escape_data(text)}"
+    reported = ",".join(f"{key}={_escape_property(value)}" for key, value in properties.items())
+    return f"::{_COMMAND[finding.severity]} {reported}::{_escape_data(text)}"
 
 
 def _format_targets(report: Report, finding: Finding) -> str:

@@ -61,8 +61,8 @@ def _build_impact(report: Report) -> dict[str, Any] | None:
     for effect in report.impact.effects[:_MOST_EFFECTS]:
         near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in effect.reaches))
         more = len(near) - _MOST_REACHED
-        told = ", ".join(near[:_MOST_REACHED]) + (f" and {more} more" if more > 0 else "")
-        rows.append([f"{effect.kind} {effect.change}", effect.subject, effect.path, effect.line, effect.why, told])
+        reported = ", ".join(near[:_MOST_REACHED]) + (f" and {more} more" if more > 0 else "")
+        rows.append([f"{effect.kind} {effect.change}", effect.subject, effect.path, effect.line, effect.why, reported])
     return {"summary": summarize(report.impact), "rows": rows, "left": max(0, len(report.impact.effects) - len(rows))}
 
 

@@ -54,8 +54,8 @@ def summarize(impact: Impact) -> str:
     if not impact.effects:
         return f"no change that message flow knows of{silent}"
     counts = Counter(effect.kind for effect in impact.effects)
-    told = ", ".join(format_count(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
-    return f"{told} changed; {format_count(len(impact.reached), 'node')} of {impact.of:,} reached{silent}"
+    reported = ", ".join(format_count(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
+    return f"{reported} changed; {format_count(len(impact.reached), 'node')} of {impact.of:,} reached{silent}"
 
 
 def group_effects(effects: Iterable[Effect]) -> list[list[Effect]]:
@@ -115,10 +115,10 @@ def _render_tree(effect: Effect, names: dict[str, str], everything: bool, style:
                 continue
             done.update(hop.node for hop in fresh)
             kind = "" if fresh[0].kind == "topic" else f" ({fresh[0].kind})"
-            told = _format_names([names.get(hop.node, hop.node) for hop in fresh])
+            reported = _format_names([names.get(hop.node, hop.node) for hop in fresh])
             place = LinePart("", path=f"{fresh[0].path}:{fresh[0].line}")
             indent = 6 + 2 * min(depth, 8)
-            line = [LinePart(f"{style.symbols[3]} {told}"), LinePart(f"{fresh[0].name}{kind}"), place]
+            line = [LinePart(f"{style.symbols[3]} {reported}"), LinePart(f"{fresh[0].name}{kind}"), place]
             yield from _render(line, style, indent, indent + 4)
             for hop in fresh:
                 yield from walk(hop.node, depth + 1)
@@ -135,8 +135,8 @@ def render_short(impact: Impact, style: Style, base: str = "", most: int = _MOST
     lines: list[str] = []
     for group in group_effects(impact.effects)[:most]:
         for effect in group[:_MOST_NODES]:
-            told = effect if len(group) == 1 else msgspec.structs.replace(effect, why="")
-            lines += _render_head(told, names, style)
+            reported = effect if len(group) == 1 else msgspec.structs.replace(effect, why="")
+            lines += _render_head(reported, names, style)
         if len(group) > _MOST_NODES:
             lines.append(f"  and {len(group) - _MOST_NODES} more")
         near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in group[0].reaches))

@@ -105,8 +105,8 @@ def describe_missed(logic: Logic, packages: Sequence[str], topics: Sequence[str]
 def summarize(logic: Logic) -> str:
     """What was found and what was looked at, on one line."""
     counts = Counter(change.kind for _, change in logic.changes)
-    told = [f"{counts[kind]} {kind}" for kind in KINDS if counts[kind]]
-    found = ", ".join(told) or "no change of the logic of publishing"
+    reported = [f"{counts[kind]} {kind}" for kind in KINDS if counts[kind]]
+    found = ", ".join(reported) or "no change of the logic of publishing"
     coverage = logic.coverage
     parts = [
         f"{format_count(coverage.commits, 'commit')} of {escape(logic.repository)} ({escape(logic.range)})",

@@ -73,9 +73,9 @@ def _describe_use(uses: Sequence[DependencyUse], name: str) -> str:
     subjects: dict[str, list[str]] = {}
     for use in uses:
         subjects.setdefault(_TAKES.get(use.how, ""), []).extend(each for each in use.subjects if each != name)
-    told = [f"{verb} {_format_names(list(dict.fromkeys(each)))}" for verb, each in subjects.items() if each]
+    reported = [f"{verb} {_format_names(list(dict.fromkeys(each)))}" for verb, each in subjects.items() if each]
     how = next((use.how for use in uses if use.how != "declared"), "declared")
-    return ", ".join(told) or _IS.get(how, how)
+    return ", ".join(reported) or _IS.get(how, how)
 
 
 def _format_names(names: list[str]) -> str:
@@ -91,10 +91,10 @@ def _format_summary(found: Machines, style: Style) -> str:
         for target in _get_targets(found)
         if (alone := format_severities((h for h in found.harms if target.name in h.findings[0].targets), " and "))
     ]
-    told = ", ".join(parts) or "nothing breaks on only one of them"
+    reported = ", ".join(parts) or "nothing breaks on only one of them"
     both = f"{format_count(found.both, 'finding')} on both" if found.both else ""
     versions = f"different versions: {len(found.versions):,} of what it uses, {found.others:,} others"
-    return f" {style.symbols[4]} ".join(part for part in (told, both, versions) if part)
+    return f" {style.symbols[4]} ".join(part for part in (reported, both, versions) if part)
 
 
 def render_json(found: Machines, version: str) -> str:

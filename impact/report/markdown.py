@@ -28,14 +28,14 @@ def render(report: Report) -> str:
     head = [f"**rosimpact** {format_verdict(report)}", ""]
     tail = ["", f"<sub>{_render_tail(report, findings)}</sub>"]
     order = {"error": 0, "warning": 1}
-    told = [finding for finding in put_different_first(findings) if finding.severity in order]
-    told.sort(key=lambda finding: order[finding.severity])
+    reported = [finding for finding in put_different_first(findings) if finding.severity in order]
+    reported.sort(key=lambda finding: order[finding.severity])
     if report.impact is not None and report.impact.effects:
         from .impact import summarize
 
         tail.insert(0, f"\nMessage flow: {escape_markdown(summarize(report.impact))}")
     room = _LINES - len(head) - len("\n".join(tail).split("\n"))
-    groups = group_alike(told)
+    groups = group_alike(reported)
     left = groups[room - 1 :] if len(groups) > room else []
     rows = [_render_row(report, group) for group in groups[: len(groups) - len(left)]]
     if left:
@@ -82,9 +82,9 @@ def _render_row(report: Report, alike: list[Finding]) -> str:
     if len(alike) > 1:
         named = ", ".join([*places[1:], "…"] if len(alike) > len(places) else places[1:])
         others = f" and {format_count(len(alike) - 1, 'more place')} ({named}):"
-    told = set(re.split(r"[\s,;()]+", finding.message)).issuperset(finding.targets)
+    reported = set(re.split(r"[\s,;()]+", finding.message)).issuperset(finding.targets)
     everywhere = len(finding.targets) == len(report.targets)
-    names = "" if told or everywhere else f" ({escape_markdown(', '.join(finding.targets))})"
+    names = "" if reported or everywhere else f" ({escape_markdown(', '.join(finding.targets))})"
     where = f"{places[0]}{others} " if finding.path else ""
     text = f"- {_SYMBOL[finding.severity]} {where}{escape_markdown(_shorten(finding.message))}{names}"
     return text + (f"; {escape_markdown(_shorten(finding.help))}" if finding.help else "")

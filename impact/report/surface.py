@@ -67,8 +67,8 @@ def render_diff_text(found: SurfaceDifference, style: Style, everything: bool) -
             title = f"{_TITLES[name]}: {len(groups[name])}"
             if name in ("changed", "added") and not everything:
                 counts = Counter(c.what for c in groups[name])
-                told = ", ".join(f"{number} {_pluralize(what, number)}" for what, number in counts.most_common())
-                lines += ["", *lay_out([LinePart(f"{title} ({told})", "dim")], style, 0, 2)]
+                reported = ", ".join(f"{number} {_pluralize(what, number)}" for what, number in counts.most_common())
+                lines += ["", *lay_out([LinePart(f"{title} ({reported})", "dim")], style, 0, 2)]
                 continue
             lines += ["", paint(style, _ROLES[name], title)]
             at = ""
@@ -134,12 +134,12 @@ def add_hashes(change: VersionChange, old: Mapping[str, str], new: Mapping[str, 
 
 def describe_remedy(change: VersionChange) -> str:
     """What to do now, in a clause; empty where that is not known."""
-    told = []
+    reported = []
     if change.instead:
-        told.append(f"perhaps `{change.instead}`" if change.kind == "removed" else f"now `{change.instead}`")
+        reported.append(f"perhaps `{change.instead}`" if change.kind == "removed" else f"now `{change.instead}`")
     if change.moved_to:
-        told.append(f"in package {change.moved_to}")
-    return f"help: {', '.join(told)}" if told else ""
+        reported.append(f"in package {change.moved_to}")
+    return f"help: {', '.join(reported)}" if reported else ""
 
 
 def _pluralize(what: str, number: int) -> str:

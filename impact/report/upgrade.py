@@ -56,13 +56,13 @@ def _list_old_errors(found: Upgrade) -> list[Finding]:
 
 def describe_fixable(found: Upgrade) -> str:
     """How much of the work can be done by the tool, empty without any."""
-    told = []
+    reported = []
     for items, noun in ((found.breaks, "item"), (found.deprecations, "deprecation")):
         some = [item for item in items if found.count_fixes(item)]
         whole = sum(found.count_fixes(item) == len(item.findings) for item in some)
         part = f" ({len(some) - whole:,} more in part)" if whole < len(some) else ""
-        told += [f"{whole:,} of {format_count(len(items), noun)}{part}"] if some else []
-    return f"{' and '.join(told)} can be fixed: {found.command}" if told else ""
+        reported += [f"{whole:,} of {format_count(len(items), noun)}{part}"] if some else []
+    return f"{' and '.join(reported)} can be fixed: {found.command}" if reported else ""
 
 
 def describe_rest(found: Upgrade) -> list[str]:

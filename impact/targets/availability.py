@@ -475,7 +475,8 @@ def _find_older_name(offer: PackageOffer, offered: Offered) -> str:
     if offered.state != "absent":
         return ""
     every = offer.line.events.get(offered.side, {})
-    return next((old for old, events in every.items() for e in events for t in e.told if t.instead == offered.name), "")
+    changes = ((old, thing) for old, events in every.items() for event in events for thing in event.reported)
+    return next((old for old, thing in changes if thing.instead == offered.name), "")
 
 
 def _merge_evidence(offer: PackageOffer, offered: Offered) -> Evidence:

@@ -141,7 +141,7 @@ def _find_deciding_event(change: str, side: str, events: Sequence[ChangeEvent], 
         return found if found is not None and classify_event(side, found) == "come" else None
     past = [event for event in events if event.place <= place]
     if change == "deprecated":
-        return next((e for e in reversed(past) if any(told.kind == "deprecated" for told in e.told)), None)
+        return next((e for e in reversed(past) if any(reported.kind == "deprecated" for reported in e.reported)), None)
     if not past or (classify_event(side, past[-1]) == "gone") != (change == "removed"):
         return None
     return past[-1]
@@ -157,8 +157,8 @@ def add_target_states(
     finding, versions and days are left out rather than shown; None when nothing remains.
     """
     spoken = frozenset(spoken_of)
-    told = next((target for target in targets if target.name in spoken), None)
-    evidence = add_surfaces(evidence, told) if told is not None else evidence
+    reported = next((target for target in targets if target.name in spoken), None)
+    evidence = add_surfaces(evidence, reported) if reported is not None else evidence
     found = tuple(one for target in targets if (one := _make_target_state(evidence, target, providers)) is not None)
     expected = (evidence.change != "added") != evidence.ahead
     if any(one.holds != expected for one in found if one.target in spoken):

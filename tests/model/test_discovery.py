@@ -28,9 +28,9 @@ def find(root, files, ask=discover):
     (root / "ws").mkdir(exist_ok=True)
     tree = WorkingTree(root / "ws")
     with Store(root / "cache") as store:
-        gathered = extract_all(tree, store, jobs=1)
-        found = discover(tree, gathered)
-        return found if ask is discover else ask(found, gathered)
+        extraction = extract_all(tree, store, jobs=1)
+        found = discover(tree, extraction)
+        return found if ask is discover else ask(found, extraction)
 
 
 A, B = manifest("a"), manifest("b")

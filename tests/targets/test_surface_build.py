@@ -38,8 +38,8 @@ def surface(tmp_path_factory):
             (folder / "arm" / path).write_text(textwrap.dedent(text))
         tree = WorkingTree(folder)
         with Store(tmp_path_factory.mktemp("cache")) as store:
-            gathered = extract_all(tree, store, jobs=1, kind_of=wanted)
-            workspace = link(tree, gathered, store, None, Watched(), 1)
+            extraction = extract_all(tree, store, jobs=1, kind_of=wanted)
+            workspace = link(tree, extraction, store, None, Watched(), 1)
             return build_surface(workspace, workspace.packages["arm"])
 
     return make

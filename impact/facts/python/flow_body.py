@@ -1,4 +1,4 @@
-"""A Python function's or class's facts while they are gathered."""
+"""A Python function's or class's facts while they are extracted."""
 
 from __future__ import annotations
 

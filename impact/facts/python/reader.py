@@ -743,9 +743,9 @@ class PythonReader(ObjectUses, SourceText):
             # moveit_configs_utils looks for <robot>_moveit_config unless told the package.
             named = keywords.get("package_name")
             robot = keywords.get("robot_name") or (node.args[0] if node.args else None)
-            told = self.find_text(named or robot) if named is not None or robot is not None else None
-            if isinstance(told, str) and PACKAGE_NAME.fullmatch(told):
-                self.refer_to("package", told if named is not None else f"{told}_moveit_config", "", node)
+            value = self.find_text(named or robot) if named is not None or robot is not None else None
+            if isinstance(value, str) and PACKAGE_NAME.fullmatch(value):
+                self.refer_to("package", value if named is not None else f"{value}_moveit_config", "", node)
         elif node.func.__class__ is ast.Name:
             self.calls.append((self.scope, node.func.id, node, self.conditional))  # type: ignore[attr-defined]
         if function in CALLBACK_CALLS and self.has_interfaces:

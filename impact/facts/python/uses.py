@@ -480,13 +480,13 @@ class ObjectUses(PythonValues):
     def list_typed_names(self) -> tuple[TypedName, ...]:
         """What the names are that others can import, as far as types show."""
         objects = {name: self.scope.objects.get(name, "") for name in self.scope.bound - self.declared_global}
-        found = [TypedName(name, (told,)) for name, type_ in {**objects, **self.results}.items()
-                 if name not in self.classes and (told := self._tell_type(type_))]  # fmt: skip
+        found = [TypedName(name, (reported,)) for name, type_ in {**objects, **self.results}.items()
+                 if name not in self.classes and (reported := self._tell_type(type_))]  # fmt: skip
         for name in self.scope.bound & self.classes.keys():
             one = self.classes[name]
             found.append(TypedName(name, tuple(map(self._tell_type, one.bases)), f" {' '.join(sorted(one.members))} "))
             held = ((f"{name}.{attribute}", self._tell_type(type_)) for attribute, type_ in one.objects.items())
-            found += [TypedName(attribute, (told,)) for attribute, told in held if told]
+            found += [TypedName(attribute, (reported,)) for attribute, reported in held if reported]
         return tuple(sorted(found, key=lambda one: one.name))
 
     def _tell_type(self, type_: str) -> str:

@@ -32,14 +32,14 @@ def add_target_dependencies(run: Interpreter, call: CommandCall, args: list[Word
 
 def _tell_arguments(run: Interpreter, call: CommandCall) -> tuple[tuple[str, At, tuple[str, ...]], ...]:
     """The arguments of a call as DependencyCall has them."""
-    told: list[tuple[str, At, tuple[str, ...]]] = []
+    arguments: list[tuple[str, At, tuple[str, ...]]] = []
     for template in call.templates:
         words = split_words(run.expand([template]))
         unsure = any(not word.sure or word.conditions or "$" in word for word in words)
         if template.quoted or unsure or run.locate(template.at) != template.at:
             return ()
-        told.append((template.raw, template.at, tuple(map(str, words))))
-    return tuple(told)
+        arguments.append((template.raw, template.at, tuple(map(str, words))))
+    return tuple(arguments)
 
 
 _EXPORTS = {

@@ -40,7 +40,7 @@ def collect_installed_headers(package: Package) -> InstalledHeaders:
         if not f"{destination}/".startswith("include/"):
             continue
         known = known and not any("$" in item for item in install.items)
-        for path, place in list_copied_files(install, destination, package.digest.files):
+        for path, place in list_copied_files(install, destination, package.linked.files):
             if HEADER_NAME.search(place):
                 found[path] = place
     if package.build.finds_declared:

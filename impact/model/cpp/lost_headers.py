@@ -61,7 +61,7 @@ class LostHeaders:
     def __init__(self, view: TargetView, package: Package):
         self._view = view
         self._package = package
-        self._reaches = {path: [view.find_outward(p) for p in found] for path, found in package.digest.reaches}
+        self._reaches = {path: [view.find_outward(p) for p in found] for path, found in package.linked.reaches}
         self._year = view.compute_language(package)
 
     @cache_method

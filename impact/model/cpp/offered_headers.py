@@ -16,14 +16,14 @@ class OfferedHeaders:
     """The headers below the folders `include` of packages. folders: the paths of the files of each package, by its
     folder. What several packages offer under one path is left out, since it depends on the build which is taken."""
 
-    def __init__(self, folders: Mapping[str, Iterable[str]], gathered: ExtractedFacts):
-        self.gathered = gathered
+    def __init__(self, folders: Mapping[str, Iterable[str]], extraction: ExtractedFacts):
+        self.extraction = extraction
         self._paths: dict[str, str] = {}
         self._owners: dict[str, str] = {}
         for folder, paths in folders.items():
             below = f"{folder}/include/" if folder else "include/"
             for path in paths:
-                if path.startswith(below) and gathered.kinds.get(path) == "cpp":
+                if path.startswith(below) and extraction.kinds.get(path) == "cpp":
                     include = path[len(below) :]
                     self._paths[include] = "" if include in self._paths else path
                     self._owners[path] = folder
@@ -48,7 +48,7 @@ class OfferedHeaders:
         return frozenset(at for at in walk([header], self._list_included) if self._get_facts(at) is not None)
 
     def _get_facts(self, header: str) -> CppFile | None:
-        return self.gathered.get_facts(header).facts
+        return self.extraction.get_facts(header).facts
 
     @cache_method
     def _list_included(self, header: str) -> tuple[str, ...]:
@@ -62,16 +62,16 @@ class OfferedHeaders:
         return tuple(found)
 
     def describe(self, header: str) -> str:
-        """What a digest that rests on a header remembers of it: its content id, then what its code says, without
-        comments, and which headers it includes."""
+        """What a linked package that rests on a header remembers of it: its content id, then what its code says,
+        without comments, and which headers it includes."""
         facts = self._get_facts(header)
         included = hashlib.sha1("\n".join(self._list_included(header)).encode("utf-8", "surrogateescape")).hexdigest()
-        return f"{self.gathered.ids[header]} {facts.code if facts is not None else ''}{included[:8]}"
+        return f"{self.extraction.ids[header]} {facts.code if facts is not None else ''}{included[:8]}"
 
     def is_unchanged(self, header: str, described: str) -> bool:
         """Whether a header says what it did when it was described."""
         content, _, code = described.partition(" ")
-        now = self.gathered.ids.get(header, "")
+        now = self.extraction.ids.get(header, "")
         return now == content or (header in self._owners and self.describe(header).partition(" ")[2] == code)
 
 

@@ -352,9 +352,9 @@ class Resolver:
                     return CppType(full)
         if self.scope is not None:
             for full in meanings:
-                told = self._find_interface(full)
-                if told is not None:
-                    return told
+                member = self._find_interface(full)
+                if member is not None:
+                    return member
         outer, _, last = name.rpartition("::")
         if outer and _POINTED.fullmatch(last):
             inner = self.resolve_name(outer, place, depth + 1)
@@ -408,13 +408,13 @@ class Resolver:
         assert self.scope is not None
         parts = name.split("::")
         for at in range(len(parts) - 1, max(-1, len(parts) - 4), -1):
-            told = self._find_plain_interface(parts[: at + 1])
-            if told is None:
+            member = self._find_plain_interface(parts[: at + 1])
+            if member is None:
                 continue
-            pointer = any(_POINTED.fullmatch(part) for part in parts[at + 1 :]) or told[2]
-            section = find_section(told[:2], [part for part in parts[at + 1 :] if not _POINTED.fullmatch(part)])
+            pointer = any(_POINTED.fullmatch(part) for part in parts[at + 1 :]) or member[2]
+            section = find_section(member[:2], [part for part in parts[at + 1 :] if not _POINTED.fullmatch(part)])
             if section is not None:
-                return CppType("", pointer=pointer, interface=told[0], section=section)
+                return CppType("", pointer=pointer, interface=member[0], section=section)
         return None
 
     def _find_plain_interface(self, parts: list[str]) -> tuple[NamedInterface, str, bool] | None:
@@ -436,8 +436,8 @@ class Resolver:
     def _select_section(self, type_: CppType, words: list[str]) -> CppType | None:
         assert type_.interface is not None
         pointer = type_.pointer or any(_POINTED.fullmatch(word) for word in words)
-        told = type_.interface, type_.section
-        section = find_section(told, [word for word in words if not _POINTED.fullmatch(word)])
+        member = type_.interface, type_.section
+        section = find_section(member, [word for word in words if not _POINTED.fullmatch(word)])
         return type_._replace(section=section, pointer=pointer) if section is not None else None
 
     def list_own_lineage(self, class_: str) -> tuple[CppClass, ...]:

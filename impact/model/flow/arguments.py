@@ -121,9 +121,10 @@ class CommandLine:
             if self.code.identify(get_outer(call.callee), fn) != wanted:
                 continue
             names = tuple(a.text for a in call.arguments if a.kind == "text")
-            told = {a.text: _evaluate_literal(a.parts[0]) for a in call.arguments if a.kind == "keyword" and a.parts}
             kept = ("dest", "default", "nargs", "action")
-            yield names, {key: value for key, value in told.items() if key in kept and value is not None}
+            keywords = (a for a in call.arguments if a.kind == "keyword" and a.parts and a.text in kept)
+            values = {keyword.text: _evaluate_literal(keyword.parts[0]) for keyword in keywords}
+            yield names, {key: value for key, value in values.items() if value is not None}
 
 
 def _evaluate_literal(value: FlowExpr) -> object:
@@ -144,10 +145,10 @@ def _evaluate_literal(value: FlowExpr) -> object:
 
 def _read(options, name: str, arguments: Sequence[str] | None) -> tuple[str, str] | None:
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
-    for names, told in options:
+    for names, keywords in options:
         # What cannot be built of literals is left out.
         with contextlib.suppress(Exception):
-            parser.add_argument(*names, **told)
+            parser.add_argument(*names, **keywords)
     default = next((action.default for action in parser._actions if action.dest == name), None)
     if arguments is not None:
         with contextlib.redirect_stderr(io.StringIO()), contextlib.suppress(SystemExit, Exception):

@@ -84,8 +84,8 @@ def _describe_qos(endpoint: Endpoint) -> Qos | str:
     """What is told; how it is written counts where nothing else is known, and where it is written never."""
     if endpoint.qos is None:
         return Qos()
-    told = structs.replace(endpoint.qos, written="")
-    return _PLACE.sub("lambda", endpoint.qos.written) if told == Qos() and endpoint.qos.written else told
+    reported = structs.replace(endpoint.qos, written="")
+    return _PLACE.sub("lambda", endpoint.qos.written) if reported == Qos() and endpoint.qos.written else reported
 
 
 def _collect_guards(publishes: Sequence[Publish]) -> frozenset:

@@ -110,11 +110,11 @@ class EscapeAnalysis:
         """By file the packages and libraries it uses whose names are not known."""
         found: dict[str, list[str]] = {}
         for package in self.workspace:
-            for include in package.digest.includes:
+            for include in package.linked.includes:
                 head, slash, _ = include.path.partition("/")
                 if slash and not self._is_plain(head) and not self.workspace.provides_header(include.path):
                     found.setdefault(include.at.path, []).append(head)
-            for imported in package.digest.imports:
+            for imported in package.linked.imports:
                 head = imported.module.split(".")[0]
                 known = head in sys.stdlib_module_names or head in self.workspace.modules or self._is_plain(head)
                 if head and not known:

@@ -52,9 +52,9 @@ def compute_stamp(workspace: Workspace, second: ExtractedFacts | None = None) ->
     """Differs whenever something does that message flow, or what launch files start, is joined from. second: the flow
     facts alone, for what is joined of nothing else."""
     found = hashlib.sha1(workspace.identity + compute_code_stamp().encode())
-    gathered = second or workspace.gathered
-    for path in sorted(gathered.kinds):
-        if second is not None or gathered.kinds[path] in _READ:
-            row = f"{path} {gathered.ids.get(path, '')} {gathered.kinds[path]}\n"
+    extraction = second or workspace.extraction
+    for path in sorted(extraction.kinds):
+        if second is not None or extraction.kinds[path] in _READ:
+            row = f"{path} {extraction.ids.get(path, '')} {extraction.kinds[path]}\n"
             found.update(row.encode("utf-8", "surrogateescape"))
     return found.digest()

@@ -88,7 +88,7 @@ def list_launches(workspace: Workspace, code: Callable[[], Join], jobs: int = 1)
     """What the launch files that no other includes start, with the defaults of their arguments. Remembered by the
     content of all that it rests on. code: gives the code of the workspace, joined; not called where nothing is
     started. jobs: processes to use."""
-    store, key = workspace.gathered.store, compute_stamp(workspace)
+    store, key = workspace.extraction.store, compute_stamp(workspace)
     return recall(store, "launches", key, tuple[Launch, ...], lambda: tuple(_find_launches(workspace, code, jobs)))
 
 
@@ -98,7 +98,7 @@ def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) ->
         followed = _follow(workspace, files)
         yield from _start(workspace, code(), followed) if followed else ()
         return
-    workspace.gathered.store.close()  # another process opens it for itself
+    workspace.extraction.store.close()  # another process opens it for itself
     with processes.Workers(_run_within_limits, 1, _follow, workspace) as workers:
         workers.give(files)
         join = code()
@@ -164,7 +164,7 @@ def _list_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
     """(package, path, path within the package) of launch files; those of tests are left out."""
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
-        for path in sorted(package.digest.files):
+        for path in sorted(package.linked.files):
             inner = path[start:]
             if is_launch(inner) and find_folder_role(inner) != "test":
                 yield package.name, path, inner

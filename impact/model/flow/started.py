@@ -53,7 +53,7 @@ class InWorkspace:
         return self._get_facts(place, "flow_parameters") if place else None
 
     def _get_facts(self, place: str, kind: str) -> Any:
-        return self.workspace.gathered.look((place,), kind).get(place)
+        return self.workspace.extraction.look((place,), kind).get(place)
 
 
 def classify_launch_file(path: str) -> str:

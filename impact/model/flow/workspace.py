@@ -40,7 +40,7 @@ class WorkspaceFlow:
     """The message flow of a workspace; each part is worked out once, when it is asked for."""
 
     def __init__(self, workspace: Workspace):
-        self._workspace, self._store = workspace, workspace.gathered.store
+        self._workspace, self._store = workspace, workspace.extraction.store
         # Processes to use.
         self.jobs = 1
 
@@ -94,15 +94,15 @@ def link_for_flow(tree: Tree, store: Store, jobs: int | None = None, progress: P
         kind = find_kind(path)
         return kind if kind in _BUILD else None
 
-    gathered = extract_all(
+    extraction = extract_all(
         tree, store, jobs=jobs, progress=progress, kind_of=select_build, second=make_code_selector(tree)
     )
-    return link(tree, gathered, store, None, Watched(), jobs)
+    return link(tree, extraction, store, None, Watched(), jobs)
 
 
 def get_facts(workspace: Workspace) -> ExtractedFacts:
-    """The flow facts of a workspace: those gathered with it, or else read now."""
-    main = workspace.gathered
+    """The flow facts of a workspace: those extracted with it, or else read now."""
+    main = workspace.extraction
     if main.second is None:
         main.second = extract_all(main.tree, main.store, kind_of=make_code_selector(main.tree))
     return main.second
@@ -110,12 +110,12 @@ def get_facts(workspace: Workspace) -> ExtractedFacts:
 
 def list_code(workspace: Workspace) -> dict[str, str]:
     """The code of the packages, by path the package it belongs to; tests are left out."""
-    gathered = get_facts(workspace)
+    extraction = get_facts(workspace)
     found: dict[str, str] = {}
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
-        for path in package.digest.files:
-            if path in gathered.kinds and find_folder_role(path[start:]) != "test":
+        for path in package.linked.files:
+            if path in extraction.kinds and find_folder_role(path[start:]) != "test":
                 found[path] = package.name
     return found
 
@@ -155,14 +155,14 @@ def list_built(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[
 
 def _collect_plugins(package: Package) -> dict[str, str]:
     """Classes of a package by the names that its plugin descriptions give them."""
-    return {plugin.name: plugin.type for _, plugin in package.digest.plugins if plugin.name and plugin.type}
+    return {plugin.name: plugin.type for _, plugin in package.linked.plugins if plugin.name and plugin.type}
 
 
 def _find_scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, str]:
     """Python programs of a package: entry points, installed programs, and files that run when they are started."""
-    present = set(package.digest.files)
+    present = set(package.linked.files)
     found: dict[str, str] = {}
-    for path, setup in package.digest.setup:
+    for path, setup in package.linked.setup:
         folder = path.rpartition("/")[0]
         for name, target, _, _ in setup.entry_points:
             module, _, function = target.partition(":")
@@ -173,7 +173,7 @@ def _find_scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, 
                     break
     reached = {where.partition(":")[0] for where in found.values()}
     programs = {item for install in package.build.installs if install.kind == "programs" for item in install.items}
-    runs = [path for path in package.digest.files if path in files and _runs(files[path])]
+    runs = [path for path in package.linked.files if path in files and _runs(files[path])]
     for path in (*sorted(programs & files.keys()), *runs):
         name = path.rpartition("/")[2]
         if path not in reached and name not in ("setup.py", "conf.py"):
@@ -195,10 +195,10 @@ def join_code(workspace: Workspace) -> Join:
     """The code of a workspace, joined."""
     from .join import Join
 
-    gathered = get_facts(workspace)
+    extraction = get_facts(workspace)
     packages = list_code(workspace)
-    gathered.preload(packages)
-    facts = {path: gathered.get_facts(path).facts for path in packages}
+    extraction.preload(packages)
+    facts = {path: extraction.get_facts(path).facts for path in packages}
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
     defined = DefinedInterfaces(workspace.interface_names, workspace.ros)
     return Join(files, packages.__getitem__, list_built(workspace, files), workspace.ros, defined=defined)

@@ -66,7 +66,7 @@ def find_uses(facts: PythonFile, own: frozenset[str], changing: Changing, types:
     types: what these have. path: of the file.
     Besides what PythonUse tells, how is `import` for a module that is imported, `from` for a name that is imported from
     one, or a constant, and has not changed, and `name` for any other name."""
-    told: set[str] = set()
+    reported: set[str] = set()
     for item in facts.imports:
         head = item.module.partition(".")[0]
         if item.level or head in own or not changing.is_stored(head):
@@ -75,13 +75,13 @@ def find_uses(facts: PythonFile, own: frozenset[str], changing: Changing, types:
             yield PythonUse(item.module, "import", item.line, item.column, None, "", item.lazy, True, item.conditions)
         for word in item.names:
             name = f"{item.module}.{word}"
-            if word != "*" and name not in told and not changing.may_change(name):
-                told.add(name)
+            if word != "*" and name not in reported and not changing.may_change(name):
+                reported.add(name)
                 yield PythonUse(name, "from", item.line, item.column, None, "", item.lazy, True, item.conditions)
     for attribute in facts.attributes:
         head, *_, word = attribute.text.split(".")
         concerned = changing.may_change(attribute.text)
-        constant = word.isupper() and attribute.text.count(".") > 1 and attribute.text not in told
+        constant = word.isupper() and attribute.text.count(".") > 1 and attribute.text not in reported
         if head not in own and (concerned or (constant and changing.is_stored(head))):
             yield PythonUse(
                 attribute.text, "name" if concerned else "from", attribute.line, attribute.column, None, "",

@@ -55,8 +55,8 @@ def find_changing_members(uses: Iterable[FieldUse], scope: InterfaceScope) -> It
 def _resolve_type(text: str, scope: InterfaceScope) -> MemberType | None:
     """The type that `pkg.kind.Name` or `pkg.kind.Name.Request` is."""
     package, kind, name, *rest = text.split(".")
-    for told in scope.by_name.get(name, ()):
-        if told[0].package == package and told[0].name.startswith(f"{kind}/"):
-            section = find_section(told, rest)
-            return MemberType(told[0], section) if section is not None else None
+    for member in scope.by_name.get(name, ()):
+        if member[0].package == package and member[0].name.startswith(f"{kind}/"):
+            section = find_section(member, rest)
+            return MemberType(member[0], section) if section is not None else None
     return None

@@ -26,7 +26,7 @@ class ScriptSetup:
 
     def __init__(self, package: Package):
         self._package = package
-        self._files = {path: file for path, file in package.digest.setup if posixpath.dirname(path) == package.path}
+        self._files = {path: file for path, file in package.linked.setup if posixpath.dirname(path) == package.path}
         self.settings = posixpath.join(package.path, "setup.cfg")
         """The path of setup.cfg, which may be missing."""
 
@@ -89,7 +89,7 @@ def list_started_programs(view: TargetView, package: Package) -> dict[str, bool]
     """Programs of the package that the workspace starts with `ros2 run` or as nodes, and whether in any case."""
     found: dict[str, bool] = {}
     for other in view.list_built():
-        for use in other.digest.references:
+        for use in other.linked.references:
             reference = use.reference
             if reference.kind == "executable" and reference.package == package.name:
                 sure = use.role == "run" and not reference.conditional
@@ -128,7 +128,7 @@ def _list_of_cmake(package: Package) -> dict[str, set[str]] | None:
     libraries = {target.name for target in build.targets if target.kind in ("library", "module")}
     for install in build.installs:
         if install.kind in ("python", "export"):
-            if install.kind == "python" and package.digest.setup:
+            if install.kind == "python" and package.linked.setup:
                 return None
             continue
         for item in install.items:
@@ -136,7 +136,7 @@ def _list_of_cmake(package: Package) -> dict[str, set[str]] | None:
                 return None
             if install.kind == "directory":
                 inside = item.rstrip("/") + "/"
-                for path in package.digest.files:
+                for path in package.linked.files:
                     if path.startswith(inside):
                         rest = path[len(inside) :] if item.endswith("/") else path[len(posixpath.dirname(item)) + 1 :]
                         folder = posixpath.dirname(posixpath.join(install.destination, rest))
@@ -163,7 +163,7 @@ def _is_node(package: Package, setup: SetupFile, module: str) -> bool:
     stem = module.replace(".", "/")
     places = {posixpath.join(package.path, root, f"{stem}{end}") for root in ("", "src", setup.package_dirs.get("", ""))
               for end in (".py", "/__init__.py")}  # fmt: skip
-    return any(use.at.path in places and use.module.partition(".")[0] == "rclpy" for use in package.digest.imports)
+    return any(use.at.path in places and use.module.partition(".")[0] == "rclpy" for use in package.linked.imports)
 
 
 def _is_data(package: Package, setup: SetupFile, name: str) -> bool:

@@ -40,12 +40,12 @@ def changed_behaviour(views: Sequence[TargetView]) -> Iterator[tuple[TargetView,
         return
     table = load_uses("behaviour")
     workspace = views[0].workspace
-    own = {function for package in workspace for function in package.digest.functions}
+    own = {function for package in workspace for function in package.linked.functions}
     before = find_previous_lts(views[0].target.distro) if len(views) == 1 else None
     fresh: dict[str, bool] = {}
     for package in workspace:
         seen: set[tuple[str, str]] = set()
-        for use in package.digest.uses:
+        for use in package.linked.uses:
             row = table.get(use.text)
             if row is None or row.pattern is None or use.role not in ("build", "run"):
                 continue
@@ -77,6 +77,6 @@ def _is_relevant(view: TargetView, package: Package, use: NameUse, row: ChangeRo
     """Whether a use is compiled or run on a target that has the package in some version."""
     if not view.builds(package) or behaves_differently(row, view.target) is None or not view.applies(use.conditions):
         return False
-    if use.language == "yaml" and is_of_another_distro(view, use.at.path, package.digest.files):
+    if use.language == "yaml" and is_of_another_distro(view, use.at.path, package.linked.files):
         return False
     return view.may_concern(package, row.package, use.at.path)

@@ -103,7 +103,7 @@ def _find_row(view: TargetView, label: str) -> Availability | None:
 
 
 def _list_reviewed_of(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
-    uses = [(use, found) for use in package.digest.uses if (found := _find_row(view, use.text)) is not None]
+    uses = [(use, found) for use in package.linked.uses if (found := _find_row(view, use.text)) is not None]
     if not uses:
         return
     # A method that the package or what it is built with declares may be meant wherever its name is called.
@@ -111,8 +111,8 @@ def _list_reviewed_of(view: TargetView, package: Package) -> Iterator[Diagnostic
         view.workspace.packages[name] for name in view.build_environment(package) if name in view.workspace.packages
     ]
     own = {
-        "cpp": {function for each in within for function in each.digest.functions},
-        "python": {method for each in within for method in each.digest.methods},
+        "cpp": {function for each in within for function in each.linked.functions},
+        "python": {method for each in within for method in each.linked.methods},
     }
     for use, found in uses:
         if (

@@ -44,7 +44,7 @@ def deprecated_name(view: TargetView):
                 yield diagnose(use.found, use.at, use.name, package.name)
     for package in view:
         gone = tuple(f"{use.name}." for use in list_python_uses(view, package) if use.found.state == "removed")
-        names = [(_KINDS[use.language], use.text, use.at, use.conditions) for use in package.digest.names]
+        names = [(_KINDS[use.language], use.text, use.at, use.conditions) for use in package.linked.names]
         names += [(use.kind, use.name, use.at, use.conditions) for use in package.build.uses]
         for kind, text, at, conditions in names:
             row = next((row for row in view.find_reviewed(kind, text) if row.state == "deprecated"), None)

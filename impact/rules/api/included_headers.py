@@ -41,7 +41,7 @@ class IncludedHeaders:
         for both generations of ROS also those of files for the other one, unless they are surely compiled here."""
         view = self._view
         foreign = _list_files_of_other_generation(view, package)
-        for include in package.digest.includes:
+        for include in package.linked.includes:
             path = include.path
             if path in self._quiet or not view.applies(include.conditions):
                 continue
@@ -112,7 +112,7 @@ def _list_files_of_other_generation(view: TargetView, package: Package) -> froze
     """The C++ files of a package for both generations that are for the one which the target is not of."""
     own, other = (_CLIENT_LIBRARIES[ros] for ros in (view.target.ros, 3 - view.target.ros))
     including = {
-        client: frozenset(i.at.path for i in package.digest.includes if i.path.startswith(client))
+        client: frozenset(i.at.path for i in package.linked.includes if i.path.startswith(client))
         for client in (own, other)
     }
     return including[other] - including[own] if including[own] else frozenset()
@@ -140,7 +140,7 @@ def find_misspelt(view: TargetView, package: Package, path: str, includer: str =
     if answered or len(path.rpartition("/")[2]) < _SHORTEST:
         return None
     bare = "/" not in path
-    for header in package.digest.headers:
+    for header in package.linked.headers:
         own = header.rpartition("/")[2] if bare else f"/{header}".rpartition("/include/")[2]
         if is_slip(path, own) or _ENDING.sub("", path).lower() == _ENDING.sub("", own).lower():
             return own
@@ -202,7 +202,7 @@ def _has_known_headers(view: TargetView, name: str) -> bool:
 @cache_in_derived
 def _list_file_names(view: TargetView) -> frozenset[str]:
     """The names of all files of the workspace."""
-    files = (path for package in view.workspace for path in package.digest.files)
+    files = (path for package in view.workspace for path in package.linked.files)
     return frozenset(path.rpartition("/")[2] for path in files)
 
 
@@ -210,10 +210,10 @@ def _find_other_ending(package: Package, path: str, includer: str) -> str | None
     """The path of the header that lies where a relative path leads, with another ending."""
     place = posixpath.normpath(posixpath.join(posixpath.dirname(includer), path))
     last = path.lstrip("./")
-    if place in package.files or any(f"/{header}".endswith(f"/{last}") for header in package.digest.files):
+    if place in package.files or any(f"/{header}".endswith(f"/{last}") for header in package.linked.files):
         return None
     stem = _ENDING.sub("", place)
-    for header in package.digest.headers:
+    for header in package.linked.headers:
         if header != place and _ENDING.sub("", header) == stem:
             return posixpath.join(posixpath.dirname(path), posixpath.basename(header))
     return None
@@ -225,4 +225,4 @@ def is_bridge(view: TargetView, package: Package) -> bool:
     if view.target.ros != 2:
         return False
     bridged = "ros1_bridge" in view.collect_declared(package)
-    return bridged or any(include.path.startswith("ros/") for include in package.digest.includes)
+    return bridged or any(include.path.startswith("ros/") for include in package.linked.includes)

@@ -147,12 +147,12 @@ def _find_never_generated(view: TargetView, path: str) -> Fault | None:
 
 def collect_c_header_doubts(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt, ...] | None:
     """What speaks against an error where a file includes a header of C; None where the file may be about C."""
-    beside = {i.path for i in package.digest.includes if i.at.path == include.at.path} - {include.path}
+    beside = {i.path for i in package.linked.includes if i.at.path == include.at.path} - {include.path}
     if include.role == "aside" or include.path + "pp" in beside:
         return None
     if not any(path.startswith("rclcpp") for path in beside):
         return None
-    own = any(path == include.at.path and inner for path, inner in package.digest.inner)
+    own = any(path == include.at.path and inner for path, inner in package.linked.inner)
     if own or not is_header(include.at.path) or not view.is_sure(include.conditions):
         return (Doubt.UNCOMPILED,)  # what the package's own headers bring along is not followed
     machine, wanted = view.machine, include.path + "pp"

@@ -20,10 +20,10 @@ def tell_replacement(view: TargetView, package: Package, call: DependencyCall) -
         return _LINKING
     items = [word for word in words[1:] if word != "SYSTEM"]
     forms = {item: find_link_form(view, item) for item in items if item not in _KEYWORDS}
-    told = [link for item in items for link in ((item,) if item in _KEYWORDS else (forms[item] or LinkForm()).links)]
+    links = [link for item in items for link in ((item,) if item in _KEYWORDS else (forms[item] or LinkForm()).links)]
     keyword = _find_keyword(package, call, words) if not items or items[0] not in _KEYWORDS else ""
     more = ["..."] if any(form is None or form.folders or form.definitions for form in forms.values()) else []
-    return f"{_LINKING}({' '.join(dict.fromkeys([call.target, *filter(None, [keyword]), *told, *more]))})"
+    return f"{_LINKING}({' '.join(dict.fromkeys([call.target, *filter(None, [keyword]), *links, *more]))})"
 
 
 def make_link_fix(view: TargetView, package: Package) -> tuple[FixAction, ...]:

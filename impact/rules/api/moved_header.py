@@ -36,7 +36,7 @@ from .diagnosis import build_availability_texts, build_data
 def moved_header(view: TargetView):
     known: dict[str, Availability | None] = {}
     for package in view:
-        for include in package.digest.includes:
+        for include in package.linked.includes:
             path = include.path
             if path not in known:
                 rows = (row for row in view.find_reviewed("header", path) if row.state == "deprecated")

@@ -98,7 +98,7 @@ def _lies_beside(package: Package, include: IncludeUse, folder: str) -> bool:
 def parameter_header(view: TargetView):
     headers = ParameterHeaders(view)
     for package in view:
-        for include in package.digest.includes:
+        for include in package.linked.includes:
             fault = headers.find_fault(package, include)
             if fault is not None and view.applies(include.conditions):
                 kind, replacement = fault
@@ -111,7 +111,7 @@ def parameter_header(view: TargetView):
 def _list_unlinked(view: TargetView, package: Package, headers: ParameterHeaders) -> Iterator[Diagnostic]:
     targets = {t.name: t for t in package.build.targets}
     seen = set()
-    for include in package.digest.includes:
+    for include in package.linked.includes:
         library = include.path.rpartition("/")[2].removesuffix(".hpp")
         if headers.owner.get(library) != package.name or not view.is_sure(include.conditions):
             continue

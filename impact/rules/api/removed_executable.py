@@ -51,8 +51,8 @@ from .diagnosis import (
     },
 )
 def removed_executable(view: TargetView, package: Package):
-    files = frozenset(package.digest.files)
-    for use in package.digest.references:
+    files = frozenset(package.linked.files)
+    for use in package.linked.references:
         reference = use.reference
         if is_of_another_distro(view, use.at.path, files) or (view.target.ros == 2 and use.at.path.endswith(".test")):
             continue

@@ -69,8 +69,8 @@ def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterato
             if later.horizon is not None and view.is_active_on(later.horizon, conditions):
                 seen.add(name)
                 data = {"distro": later.horizon.name, "replacement": later.replacement}
-                told = "upcoming, renamed" if later.replacement else "upcoming"
-                found = Diagnostic(at, name, package.name, data, told, doubts)
+                reported = "upcoming, renamed" if later.replacement else "upcoming"
+                found = Diagnostic(at, name, package.name, data, reported, doubts)
                 yield Upcoming(found, name, later.horizon, (at.path, at.line))
             continue
         gone = rows.get("removed")

@@ -42,9 +42,9 @@ _HELP = "[[set `{replacement}`]]"
     },
 )
 def removed_parameter(view: TargetView, package: Package):
-    files = frozenset(package.digest.files)
+    files = frozenset(package.linked.files)
     # What a reviewed row about a value says at the same place says more.
-    explained = {(use.at.path, use.at.line) for use in package.digest.uses if use.language == "yaml"}
+    explained = {(use.at.path, use.at.line) for use in package.linked.uses if use.language == "yaml"}
     for one in list_undeclared_parameters(view, package):
         at, offered = one.use.at, one.offered
         if (at.path, at.line) in explained or is_of_another_distro(view, at.path, files):

@@ -51,8 +51,8 @@ from .diagnosis import (
 def removed_plugin(view: TargetView, package: Package):
     declared = _list_declared(view)
     own = set().union(*declared.values())
-    files = frozenset(package.digest.files)
-    for use in package.digest.references:
+    files = frozenset(package.linked.files)
+    for use in package.linked.references:
         name = use.reference.name
         # The type of a transmission is a word for whoever reads the description; nothing loads it as it stands.
         if use.reference.kind != "plugin" or name in own or name.startswith(("$", "transmission_interface/")):
@@ -103,9 +103,9 @@ def _list_declared(view: TargetView) -> dict[str, set[str]]:
     """Names of the plugins and components of each package of the workspace."""
     found: dict[str, set[str]] = {}
     for package in view.workspace:
-        names = {name for _, plugin in package.digest.plugins for name in (plugin.name, plugin.type) if name}
+        names = {name for _, plugin in package.linked.plugins for name in (plugin.name, plugin.type) if name}
         components = (export.item for export in package.build.exports if export.how == "component")
-        found[package.name] = names.union(components, package.digest.registered)
+        found[package.name] = names.union(components, package.linked.registered)
     return found
 
 

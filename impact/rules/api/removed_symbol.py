@@ -74,7 +74,7 @@ def removed_symbol(view: TargetView):
 def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> Iterator[Diagnostic | Upcoming]:
     """What the tables of known changes tell."""
     headers = _Headers(view, package)
-    for use in package.digest.names:
+    for use in package.linked.names:
         if "::" in use.text and use.text in rows.own:
             continue  # the workspace defines it
         kind = "python" if use.language == "python" else "c++"
@@ -153,7 +153,7 @@ class _Headers:
     def _included(self) -> dict[str, set[str]]:
         """What each file includes of others, with what the package's own headers do, since any of them may come
         before."""
-        includes = self._package.digest.includes
+        includes = self._package.linked.includes
         found: dict[str, set[str]] = {}
         found[""] = shared = {i.path for i in includes if is_header(i.at.path)}
         for include in includes:

@@ -18,10 +18,10 @@ class ReviewedNames:
         self.own = {
             use.text
             for package in view.workspace
-            for use in package.digest.names
+            for use in package.linked.names
             if use.language == "cpp" and is_header(use.at.path) and "::" not in use.text and not use.text.isupper()
         }
-        self.own.update(name for package in view.workspace for name in package.digest.defined)
+        self.own.update(name for package in view.workspace for name in package.linked.defined)
 
     def find(self, use: NameUse) -> list[Availability]:
         """The rows on a name that is gone, or changed its meaning."""

@@ -97,7 +97,7 @@ def undefined_name(view: TargetView):
 
 
 def _list_uses(view: TargetView, package: Package) -> Iterator[tuple[ImportUse, str]]:
-    for use in package.digest.undefined:
+    for use in package.linked.undefined:
         if view.is_sure(use.conditions):
             yield use, use.names[0]
 
@@ -124,14 +124,14 @@ def _may_be_of_another(view: TargetView, package: Package, module: str) -> bool:
 
 def _find_lacking_elsewhere(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Imports from modules of other packages of the workspace that do not exist or do not define the name."""
-    for use in package.digest.imports:
+    for use in package.linked.imports:
         owners = view.workspace.modules.get(use.module.partition(".")[0], ())
         if len(owners) != 1 or owners[0] == package.name or not view.is_sure(use.conditions):
             continue
         owner = view.workspace.packages[owners[0]]
         if _may_be_of_another(view, owner, use.module):
             continue
-        for name in owner.digest.python_offer.list_lacking(use.module, use.names):
+        for name in owner.linked.python_offer.list_lacking(use.module, use.names):
             kind = "module of another" if name == use.module else "imported"
             data = {"module": use.module, "owner": owner.name}
             yield Diagnostic(use.at, name, package.name, data, kind, _collect_import_doubts(view, use))
@@ -143,7 +143,7 @@ def _collect_import_doubts(view: TargetView, use: ImportUse) -> tuple[Doubt | bo
 
 def _is_own(package: Package, kind: str, module: str) -> bool:
     """Whether a module that is not there has, by its first name, to be one of the package."""
-    return kind != "module" or module.partition(".")[0] in package.digest.modules
+    return kind != "module" or module.partition(".")[0] in package.linked.modules
 
 
 def _is_of_python2(name: str) -> bool:

@@ -56,7 +56,7 @@ def unknown_field(view: TargetView):
     own = {
         member.name
         for package in view.workspace
-        for interface in package.digest.interfaces
+        for interface in package.linked.interfaces
         for section in interface.definition.sections
         for member in (*section.fields, *section.constants)
     }
@@ -67,7 +67,7 @@ def unknown_field(view: TargetView):
 
 
 def _list_members(view: TargetView, package: Package, own: set[str]) -> Iterator[Diagnostic | Upcoming]:
-    for use in package.digest.members:
+    for use in package.linked.members:
         if (not use.sure and use.member in own) or _is_reviewed(view, *_list_spellings(use)):
             continue
         # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
@@ -93,7 +93,7 @@ def _is_reviewed(view: TargetView, *names: str) -> bool:
 
 def _list_imports(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
     """Interfaces that Python imports."""
-    for imported in package.digest.imports:
+    for imported in package.linked.imports:
         head, _, kind = imported.module.partition(".")
         if kind not in ("msg", "srv", "action"):
             continue
@@ -107,15 +107,15 @@ def _list_imports(view: TargetView, package: Package) -> Iterator[Diagnostic | U
 
 def _list_of_workspace(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Interfaces that Python imports from a package of the workspace which does not have them, or not there."""
-    for imported in package.digest.imports:
+    for imported in package.linked.imports:
         name, _, kind = imported.module.partition(".")
         owner = view.workspace.packages.get(name)
         if owner is None or not owner.is_interface_package or not view.is_sure(imported.conditions):
             continue
-        interfaces = {i.name: posixpath.splitext(i.path)[1].lstrip(".") for i in owner.digest.interfaces}
+        interfaces = {i.name: posixpath.splitext(i.path)[1].lstrip(".") for i in owner.linked.interfaces}
         doubts = (*list_place_doubts(view, imported.role), not imported.lazy or Doubt.LATE)
         for one in imported.names:
-            if not kind and one in interfaces and one not in owner.digest.modules:
+            if not kind and one in interfaces and one not in owner.linked.modules:
                 data = {"interface": name, "module": f"{name}.{interfaces[one]}"}
                 yield Diagnostic(imported.at, one, package.name, data, "root", doubts)
             elif kind in ("msg", "srv", "action") and not _may_have(owner, one, interfaces):
@@ -131,7 +131,7 @@ def _may_have(owner: Package, name: str, interfaces: dict[str, str]) -> bool:
         return True
     if any("$" in path or posixpath.basename(path).partition(".")[0] not in interfaces for path in listed):
         return True
-    return name in owner.digest.modules or any(name.startswith(one) for one in interfaces)
+    return name in owner.linked.modules or any(name.startswith(one) for one in interfaces)
 
 
 def _list_spellings(use: MemberUse) -> tuple[str, ...]:

@@ -29,7 +29,7 @@ class UnservedUse(NamedTuple):
 def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
     """Uses of C++ names, in the order of the digest. What the target does not compile, and what reviewed tables speak
     of is left out. What an update of the distro breaks is upcoming."""
-    if not package.digest.cpp_api:
+    if not package.linked.cpp_api:
         return
     calls = {
         find_function(row.symbol.name, "cpp")
@@ -37,10 +37,10 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
         if row.state != "upcoming" and view.offers.find_package(row.package) is None  # else its surfaces know more
     }
     near = view.build_environment(package)
-    own = {name for one in view.workspace for name in one.digest.defined}
+    own = {name for one in view.workspace for name in one.linked.defined}
     unserved: list[tuple[CppApiUse, Availability]] = []
     overridden: set[tuple[str, str]] = set()
-    for use in package.digest.cpp_api:
+    for use in package.linked.cpp_api:
         if use.package not in near or use.name in own or not view.applies(use.conditions):
             continue
         if use.package in view.workspace.may_have:
@@ -85,14 +85,14 @@ def _collect_cpp_doubts(view: TargetView, use: CppApiUse, found: Availability) -
 @cache_in_derived
 def list_python_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
     """The same of Python; what the workspace provides is left out."""
-    if not package.digest.python_api:
+    if not package.linked.python_api:
         return
     patterns = {
         (use.at.path, use.at.line)
-        for use in package.digest.uses
+        for use in package.linked.uses
         if use.language == "python" and _is_reviewed(view, "use", (use.text,))
     }
-    for one in package.digest.python_api:
+    for one in package.linked.python_api:
         use = one.use
         head = use.name.partition(".")[0]
         if head in view.own_modules or not use.alone or not view.is_sure(use.conditions):

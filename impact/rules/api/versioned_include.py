@@ -34,7 +34,7 @@ _INCLUDE = "[[include `{replacement}`]]"
     },
 )
 def versioned_include(view: TargetView, package: Package):
-    for include in package.digest.includes:
+    for include in package.linked.includes:
         path = include.path
         folder = find_versioned_folder(view.target, path)
         if folder is None or not view.applies(include.conditions) or view.workspace.provides_header(path):

@@ -47,14 +47,14 @@ _ENDS = ("is never closed", *(f"without {block}()" for block in _BLOCKS))
 )
 def unmatched_cmake_block(workspace: Workspace):
     for package in workspace:
-        manifest = package.digest.manifest_path
-        reported = {path for path, line, _ in package.digest.problems if path != manifest or not line}
+        manifest = package.linked.manifest_path
+        reported = {path for path, line, _ in package.linked.problems if path != manifest or not line}
         for at, reason in package.build.unresolved:
             if at.path not in reported and reason.endswith(_ENDS):
                 reported.add(at.path)
                 data = {"problem": reason}
                 yield Diagnostic(at, at.path.rpartition("/")[2], package.name, data, "block", (Doubt.INCOMPLETE,))
-        for path, line, message in package.digest.problems:
+        for path, line, message in package.linked.problems:
             if path in package.build.files and path.endswith("CMakeLists.txt"):
                 if unclosed := _UNCLOSED.fullmatch(message):
                     yield Diagnostic(At(path, line), unclosed[1], package.name, {}, "command")

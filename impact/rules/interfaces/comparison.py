@@ -33,8 +33,8 @@ def find_changed_sections(workspace: Workspace, base: Workspace) -> Iterator[Sec
         before = base.packages.get(package.name)
         if before is None:
             continue
-        paths = {file.path for file in package.digest.interfaces}
-        for file in package.digest.interfaces:
+        paths = {file.path for file in package.linked.interfaces}
+        for file in package.linked.interfaces:
             old = _find_old(before, file, paths)
             if old is None or old.definition == file.definition:
                 continue
@@ -51,7 +51,7 @@ def _find_old(before: Package, file: InterfaceFile, paths: Container[str]) -> In
     """The file at the base that a definition was: the one at its place, else one of its name and kind whose place no
     file has any more. A package for both generations has two of a name (msg/X.msg and msg/ros2/X.msg). paths: of the
     package's definitions now."""
-    alike = [i for i in before.digest.interfaces if (i.name, i.definition.kind) == (file.name, file.definition.kind)]
+    alike = [i for i in before.linked.interfaces if (i.name, i.definition.kind) == (file.name, file.definition.kind)]
     here = next((one for one in alike if one.path == file.path), None)
     return here or next((one for one in alike if one.path not in paths), None)
 
@@ -70,14 +70,14 @@ def find_users(workspace: Workspace, package: str, name: str) -> tuple[str, ...]
             continue
         includes = any(
             i.path.startswith(package + "/") and is_interface_header(i.path.partition("/")[2], (name,))
-            for i in other.digest.includes
+            for i in other.linked.includes
         )
         imports = any(
-            i.module.split(".")[0] == package and (name in i.names or not i.names) for i in other.digest.imports
+            i.module.split(".")[0] == package and (name in i.names or not i.names) for i in other.linked.imports
         )
         fields = any(
             f.type in (f"{package}/{name}", f"{package}/msg/{name}") or (other.name == package and f.type == name)
-            for i in other.digest.interfaces
+            for i in other.linked.interfaces
             for s in i.definition.sections
             for f in s.fields
         )

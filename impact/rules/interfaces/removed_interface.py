@@ -32,18 +32,18 @@ _REMOVED = "`{subject}` was removed; used by {users:nothing in the workspace}"
 def removed_interface(workspace: Workspace, base: Workspace):
     packages_with: dict[tuple[str, str], list[str]] = {}
     for package in workspace:
-        for file in package.digest.interfaces:
+        for file in package.linked.interfaces:
             packages_with.setdefault((file.name, file.definition.kind), []).append(package.name)
     for before in base:
         package = workspace.packages.get(before.name)
-        for file in before.digest.interfaces:
+        for file in before.linked.interfaces:
             others = packages_with.get((file.name, file.definition.kind), [])
             if package is not None and package.name in others:
                 continue
             users = find_users(workspace, before.name, file.name)
             replacement = f"{others[0]}/{file.name}" if others else ""
             yield Diagnostic(
-                At(package.digest.manifest_path, 1) if package else At(file.path, 1),
+                At(package.linked.manifest_path, 1) if package else At(file.path, 1),
                 f"{before.name}/{file.name}",
                 before.name,
                 {"users": users, "replacement": replacement},

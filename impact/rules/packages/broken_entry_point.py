@@ -34,7 +34,7 @@ from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule
     },
 )  # fmt: skip
 def broken_entry_point(view: TargetView, package: Package):
-    for file, setup in package.digest.setup:
+    for file, setup in package.linked.setup:
         folder = posixpath.dirname(file)
         if folder != package.path or package.build_type != "ament_python":
             continue

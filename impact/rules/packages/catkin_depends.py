@@ -66,7 +66,7 @@ def catkin_depends(view: TargetView, package: Package):
                 kind = "build"
             else:
                 continue
-        data = {"tag": tag, "manifest": package.digest.manifest_path} if kind in ("run", "build") else {}
+        data = {"tag": tag, "manifest": package.linked.manifest_path} if kind in ("run", "build") else {}
         yield Diagnostic(export.at, name, package.name, data, kind, (sure or Doubt.INCOMPLETE,))
 
 

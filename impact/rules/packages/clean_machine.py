@@ -154,7 +154,7 @@ def _stops_another(view: TargetView, package: Package, need: Need) -> bool:
     for other in view.list_built():
         if other.name == package.name:
             continue
-        for include in other.digest.includes:
+        for include in other.linked.includes:
             if include.role != "build" or not include.targets or not view.is_sure(include.conditions):
                 continue
             if need.subject not in view.find_outward((include.path,))[0]:

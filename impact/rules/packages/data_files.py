@@ -22,7 +22,7 @@ class DataFiles(NamedTuple):
 def read_data_files(package: Package) -> DataFiles | None:
     """The data_files of an ament_python package; None where not all of them can be told, or where it installs nothing
     at all."""
-    own = [(path, setup) for path, setup in package.digest.setup if posixpath.dirname(path) == package.path]
+    own = [(path, setup) for path, setup in package.linked.setup if posixpath.dirname(path) == package.path]
     code = next((path for path, _ in own if posixpath.basename(path) == "setup.py"), None)
     if package.build_type != "ament_python" or code is None:
         return None
@@ -44,7 +44,7 @@ def list_copied(package: Package) -> list[Install] | None:
     rules = []
     for place, path in data.files:
         pattern = posixpath.normpath(posixpath.join(package.path, path))
-        items = tuple(file for file in package.digest.files if _matches(file, pattern))
+        items = tuple(file for file in package.linked.files if _matches(file, pattern))
         rules.append(Install("files", items or (pattern,), place, At(data.setup, 1)))
     return rules
 

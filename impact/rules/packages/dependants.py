@@ -16,7 +16,7 @@ def is_compiled_elsewhere(view: TargetView, package: Package, header: str) -> bo
         and name in view.find_outward((include.path,))[1]
         for other in view.list_built()
         if other.name != package.name
-        for include in other.digest.includes
+        for include in other.linked.includes
     )
 
 

@@ -109,7 +109,7 @@ def _has_shared_library(view: TargetView, name: str) -> bool:
 def fix_kind(view: TargetView, package: Package, name: str, tag: str, kinds: Set[str]) -> tuple[Declare | Remove, ...]:
     """Declares a name for more than it is declared for. What is declared for tests alone is declared anew, since
     `depend` beside `test_depend` says one thing twice."""
-    path = package.digest.manifest_path
+    path = package.linked.manifest_path
     if is_circular(view, package, name):
         return ()
     if kinds == {"test"} and tag == "depend":

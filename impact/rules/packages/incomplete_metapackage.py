@@ -49,4 +49,4 @@ def incomplete_metapackage(view: TargetView, package: Package):
     if missing[0] in view.list_transitive({package.name, *declared}):
         return
     tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
-    yield Diagnostic(At(package.digest.manifest_path, 1), missing[0], package.name, {"tag": tag})
+    yield Diagnostic(At(package.linked.manifest_path, 1), missing[0], package.name, {"tag": tag})

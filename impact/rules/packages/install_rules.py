@@ -54,7 +54,7 @@ def list_places(package: Package, installs: Iterable[Install]) -> frozenset[str]
         return None
     found: set[str] = set()
     for rule in rules:
-        for _, place in list_copied_files(rule, posixpath.normpath(rule.destination), package.digest.files):
+        for _, place in list_copied_files(rule, posixpath.normpath(rule.destination), package.linked.files):
             while place and place not in found:
                 found.add(place)
                 place = posixpath.dirname(place)
@@ -73,7 +73,7 @@ def _list_all_references(view: TargetView) -> dict[str, dict[str, set[str]]]:
     found: dict[str, dict[str, set[str]]] = {}
     for package in view.workspace:
         installs = read_installs(view, package) or []
-        for use in package.digest.references:
+        for use in package.linked.references:
             r = use.reference
             example = use.role == "aside" and r.package == package.name and is_installed(package, installs, use.at.path)
             if r.package and r.name and (use.role == "run" or example):

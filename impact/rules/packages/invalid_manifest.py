@@ -45,7 +45,7 @@ _HELP = "[[write `{replacement}`]]"
 )
 def invalid_manifest(workspace: Workspace):
     for package in workspace:
-        manifest, path = package.manifest, package.digest.manifest_path
+        manifest, path = package.manifest, package.linked.manifest_path
         misspelt = {}
         for tag, text, line in manifest.unknown_tags:
             misspelt[line] = tag

@@ -100,7 +100,7 @@ def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
         return False
     others = [i for i in package.build.installs if i is not install and i.kind in ("directory", "files")]
     start = posixpath.normpath(folder) + "/"
-    headers = {h[len(start) :] for h in package.digest.headers if h.startswith(start)}
+    headers = {h[len(start) :] for h in package.linked.headers if h.startswith(start)}
     if any(is_installed(package, others, start + h) for h in headers):
         return False
     if headers and any(item.rstrip("/") in ("include", install.destination.rstrip("/")) for item in exported):
@@ -109,20 +109,20 @@ def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
         include.path in headers and include.role == "build" and include.targets and view.is_sure(include.conditions)
         for other in view.list_built()
         if other.name != package.name
-        for include in other.digest.includes
+        for include in other.linked.includes
     )
 
 
 def _list_not_executable(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Scripts that are installed as data, where programs belong, or that no other rule installs as programs."""
     programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
-    scripts = {*package.digest.scripts, *package.digest.shells}
+    scripts = {*package.linked.scripts, *package.linked.shells}
     for install in installs:
         among_programs = _OF_PROGRAMS.search(install.destination)
         if install.kind == "directory" and not install.executable and among_programs:
-            copied = [path for path, _ in list_copied_files(install, "", package.digest.files) if path in scripts]
+            copied = [path for path, _ in list_copied_files(install, "", package.linked.files) if path in scripts]
         elif install.kind == "files":
-            copied = [path for item in install.items if (path := posixpath.normpath(item)) in package.digest.scripts]
+            copied = [path for item in install.items if (path := posixpath.normpath(item)) in package.linked.scripts]
         else:
             continue
         for path in copied:
@@ -131,7 +131,7 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
             if not started or path in programs or inside.endswith(_RUN_BY):
                 continue
             name = posixpath.basename(path)
-            if name in package.digest.interpreted:
+            if name in package.linked.interpreted:
                 continue
             sure = among_programs or _is_node(view, package, path)
             doubts = (bool(sure) or Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
@@ -145,7 +145,7 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
 
 def _is_node(view: TargetView, package: Package, script: str) -> bool:
     """True for a node of ROS 1, which rosrun and roslaunch start from the package's share folder too."""
-    return view.target.ros == 1 and any(i.at.path == script and i.module == "rospy" for i in package.digest.imports)
+    return view.target.ros == 1 and any(i.at.path == script and i.module == "rospy" for i in package.linked.imports)
 
 
 _ONE_LINE = (Together("interpreter"),)
@@ -236,9 +236,9 @@ def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagno
         programs = install.kind == "programs" or (install.kind == "directory" and install.executable)
         if not programs or install.rewritten or not _OF_PROGRAMS.search(install.destination):
             continue
-        for path, _ in list_copied_files(install, "", package.digest.files):
+        for path, _ in list_copied_files(install, "", package.linked.files):
             name = posixpath.basename(path)
-            if path in package.digest.plain_scripts and name not in package.digest.interpreted:
+            if path in package.linked.plain_scripts and name not in package.linked.interpreted:
                 data = {"platform": target.platform}
                 doubts = (Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
                 yield Diagnostic(install.at, name, package.name, data, kind, doubts, together=_ONE_LINE)

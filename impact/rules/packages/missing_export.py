@@ -104,7 +104,7 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
 
 
 def _collect_passed_on_doubts(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
-    if is_only_loaded(view, package) and not package.digest.public_headers:
+    if is_only_loaded(view, package) and not package.linked.public_headers:
         return (Doubt.UNCOMPILED,)  # without headers nobody links it
     if _comes_with_client_library(view, name):
         return (Doubt.DISPENSABLE,)
@@ -163,7 +163,7 @@ def _find_field_owners(package: Package, files: Collection[str]) -> set[str]:
     """The other packages of whose messages the fields in these files are, and those of actions are made."""
     owners = {
         find_field_owner(package, field.type)
-        for interface in package.digest.interfaces
+        for interface in package.linked.interfaces
         if interface.path in files
         for section in interface.definition.sections
         for field in section.fields

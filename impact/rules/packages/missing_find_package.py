@@ -83,7 +83,7 @@ def missing_find_package(view: TargetView, package: Package):
     near, prefixes = SpellingIndex({*view.collect_declared(package), *found}), {f.prefix for f in package.build.found}
     seen = set()
     for at, name in list_given_names(view, package):
-        if name in reachable or name in seen or name in package.digest.modules or name == package.name:
+        if name in reachable or name in seen or name in package.linked.modules or name == package.name:
             continue
         seen.add(name)
         if not view.is_package(name) and (name in prefixes or view.find_cmake(name) or near.find_nearest(name)):
@@ -177,7 +177,7 @@ def _find_vendored_libraries(view: TargetView, package: Package):
         linked = {fold(link.item) for t in package.build.targets for link in t.links}
         if fold(library) in linked:
             continue
-        use = next((i for i in package.digest.includes if i.path.startswith(root) and i.targets), None)
+        use = next((i for i in package.linked.includes if i.path.startswith(root) and i.targets), None)
         if use is None or not view.is_sure(use.conditions):
             continue
         others = view.list_transitive(name for name in found if name != vendor)

@@ -49,7 +49,7 @@ def missing_include_directories(view: TargetView, package: Package):
         include = next(
             (
                 i
-                for i in package.digest.includes
+                for i in package.linked.includes
                 if target.name in i.targets
                 and view.is_sure(i.conditions)
                 and any(p.kind == "ros" and p.name not in view.workspace.packages for p in view.find_header(i.path))

@@ -56,7 +56,7 @@ def missing_install(view: TargetView, package: Package):
     if any("$" in item for item in installed) or (any(i.kind == "export" for i in installs) and not installed):
         return
     exported = {e.item for e in package.build.exports if e.how == "libraries"}
-    plugins = {posixpath.basename(c.library).removeprefix("lib").removesuffix(".so") for _, c in package.digest.plugins}
+    plugins = {posixpath.basename(c.library).removeprefix("lib").removesuffix(".so") for _, c in package.linked.plugins}
     linked = {link.item for t in package.build.targets if t.name in installed for link in t.links if link.how == "link"}
     for target in package.build.targets:
         if (
@@ -103,7 +103,7 @@ def _is_started(view: TargetView, package: Package, name: str) -> bool:
     """True when an installed launch file starts a program of the package in any case."""
     for other in view.list_built():
         installs = [i for i in other.build.installs if view.is_sure(i.conditions)]
-        for use in other.digest.references:
+        for use in other.linked.references:
             r = use.reference
             if (r.package, r.name, r.kind, use.role) != (package.name, name, "executable", "run") or r.conditional:
                 continue

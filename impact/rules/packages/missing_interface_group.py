@@ -48,7 +48,7 @@ def missing_interface_group(view: TargetView, package: Package):
         if generated.how == "rosidl" and view.is_sure(generated.conditions) and not is_for_tests(generated.conditions):
             stops = generated.installed and is_at_least(view.target.find_version("rosidl_cmake") or "0", _ASKS)
             doubts = (stops or Doubt.DISTURBS,)
-            join = Declare(package.digest.manifest_path, _GROUP, "member_of_group")
+            join = Declare(package.linked.manifest_path, _GROUP, "member_of_group")
             fix = (join,) if package.manifest.format >= 3 else ()  # groups came with it
             yield Diagnostic(generated.at, _GROUP, package.name, doubts=doubts, fix=fix)
             break

@@ -39,7 +39,7 @@ def missing_interface_wiring(view: TargetView, package: Package):
     generates = any(g.how == "catkin" for g in package.build.generated)
     configures = any(g.how == "reconfigure" for g in package.build.generated)
     wanted: dict[tuple[str, str], list] = {}
-    for include in package.digest.includes:
+    for include in package.linked.includes:
         head, _, rest = include.path.partition("/")
         if not rest or not view.applies(include.conditions):
             continue

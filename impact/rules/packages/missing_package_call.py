@@ -75,7 +75,7 @@ def _is_asked_for(package: Package, name: str) -> bool:
 def _is_launched(package: Package, name: str, programs: Collection[str] | None = None) -> bool:
     """Whether launch files or scripts of a package start or open something of another one; only the named programs of
     it, where they are given."""
-    references = (use.reference for use in package.digest.references)
+    references = (use.reference for use in package.linked.references)
     return any(
         r.package == name and (programs is None or (r.kind == "executable" and r.name in programs)) for r in references
     )

@@ -42,7 +42,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_plac
 def nonexistent_executable(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     if view.target.ros == 1:
         return
-    for use in package.digest.references:
+    for use in package.linked.references:
         reference = use.reference
         owner = view.workspace.packages.get(reference.package)
         if use.role == "test" or reference.kind != "executable" or "$" in reference.name or not reference.name:

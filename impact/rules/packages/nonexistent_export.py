@@ -123,7 +123,7 @@ def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagno
             folder = posixpath.normpath(export.item)
         elif export.how == "ament_export_include_directories" and posixpath.normpath(export.item) == "include":
             folder = posixpath.join(package.path, "include")
-        headers = [path for path in package.digest.headers if path.startswith(f"{folder}/")]
+        headers = [path for path in package.linked.headers if path.startswith(f"{folder}/")]
         if not headers or any(is_installed(package, installs, path) for path in headers):
             continue
         place = "${CATKIN_GLOBAL_INCLUDE_DESTINATION}" if catkin else "include"

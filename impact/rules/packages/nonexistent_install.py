@@ -70,6 +70,6 @@ def _may_be_empty(package: Package, path: str) -> bool:
     """Whether a folder may be one for headers or built files that git cannot keep while it is empty, and not
     one of `include` beside others that are there."""
     above = f"{posixpath.dirname(path)}/"
-    if "/include/" in f"/{above}" and any(name.startswith(above) for name in package.digest.files):
+    if "/include/" in f"/{above}" and any(name.startswith(above) for name in package.linked.files):
         return False
     return re.search(r"(^|/)(include|lib|bin)(/|$)", path) is not None

@@ -166,7 +166,7 @@ _OPENED = re.compile(r"\.(?:launch|launch\.(?:py|xml|yaml)|ya?ml|urdf|xacro|srdf
 
 def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Files in share folders of the workspace that a launch file opens in any case."""
-    for use in package.digest.references:
+    for use in package.linked.references:
         r = use.reference
         owner = view.workspace.packages.get(r.package)
         if r.kind != "file" or use.role != "run" or r.conditional or owner is None or "launch" not in use.at.path:

@@ -49,7 +49,7 @@ _PATTERN = re.compile(r"[*?\[]|^/")
 def nonexistent_setup_path(view: TargetView, package: Package):
     if package.build_type != "ament_python":
         return
-    for file, setup in package.digest.setup:
+    for file, setup in package.linked.setup:
         folder = posixpath.dirname(file)
         if folder != package.path:
             continue

@@ -47,5 +47,5 @@ def undeclared_by_script(view: TargetView, package: Package):
         if not ros or own or view.is_met(providers, closure) or view.unknown_contents.may_come_along(package):
             continue
         name = providers[0].name
-        data = {"found": found.name, "manifest": package.digest.manifest_path}
+        data = {"found": found.name, "manifest": package.linked.manifest_path}
         yield Diagnostic(found.at, name, package.name, data)

@@ -92,7 +92,7 @@ def describe_need(package: Package, need: Need) -> dict[str, str]:
         "used": need.subject,
         "tag": tag,
         "also": also[0] if also else "",
-        "manifest": package.digest.manifest_path,
+        "manifest": package.linked.manifest_path,
     }
 
 
@@ -106,7 +106,7 @@ def declare_need(view: TargetView, package: Package, need: Need, name: str) -> t
         return ()
     if is_circular(view, package, name) or not view.is_available(name):
         return ()
-    return (Declare(package.digest.manifest_path, name, _tag(need)),)
+    return (Declare(package.linked.manifest_path, name, _tag(need)),)
 
 
 def _tag(need: Need) -> str:

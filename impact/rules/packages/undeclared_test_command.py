@@ -47,7 +47,7 @@ def undeclared_test_command(view: TargetView, package: Package):
         reported.add(name)
         if name in view.build_environment(package) or name in view.list_transitive(f.name for f in package.build.found):
             continue
-        path = package.digest.manifest_path
+        path = package.linked.manifest_path
         yield Diagnostic(
             use.at,
             name,

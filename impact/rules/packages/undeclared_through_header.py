@@ -35,7 +35,7 @@ from .clean_machine import collect_compile_doubts
     ),
 )
 def undeclared_through_header(view: TargetView, package: Package):
-    if not package.digest.includes or view.unknown_contents.may_come_along(package):
+    if not package.linked.includes or view.unknown_contents.may_come_along(package):
         return
     closure = view.may_bring(package)
     reported: set[str] = {package.name}
@@ -52,7 +52,7 @@ def undeclared_through_header(view: TargetView, package: Package):
                 need.at,
                 name,
                 package.name,
-                {"include": need.subject, "header": header, "manifest": package.digest.manifest_path},
+                {"include": need.subject, "header": header, "manifest": package.linked.manifest_path},
                 doubts=collect_compile_doubts(view, package, need),
             )
 

@@ -67,7 +67,7 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
         found = {one.name for one in other.build.found if view.is_sure(one.conditions)}
         if package.name not in found:
             continue  # missing-find-package reports it
-        for include in other.digest.includes:
+        for include in other.linked.includes:
             path = headers.get(include.path)
             if path is None or not include.targets or not view.is_sure(include.conditions):
                 continue
@@ -90,7 +90,7 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
 def _list_written(package: Package) -> dict[str, str]:
     """Headers of the package, by what dependants may write where a folder called include is searched."""
     found: dict[str, str] = {}
-    for path in package.digest.headers:
+    for path in package.linked.headers:
         inside = f"/{path}"
         while "/include/" in inside:
             inside = inside.partition("/include/")[2]
@@ -121,7 +121,7 @@ def _find_kind(view: TargetView, package: Package) -> str:
 def _list_libraries(package: Package) -> dict[str, str]:
     """Headers of the package, each with the installed library alone that compiles it."""
     made = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
-    return {path: names[0] for path, names in package.digest.source_targets if len(names) == 1 and names[0] in made}
+    return {path: names[0] for path, names in package.linked.source_targets if len(names) == 1 and names[0] in made}
 
 
 def _is_unlinked(package: Package, include: IncludeUse, library: str) -> bool:

@@ -79,13 +79,13 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     exports = [e for e in package.build.exports if view.applies(e.conditions)]
     if exports_something(exports):
         return
-    if not package.digest.public_headers or package.build.finds_declared or first is None:
+    if not package.linked.public_headers or package.build.finds_declared or first is None:
         return
     installed = list_installed_targets(package)
     alone = _has_headers_alone(view, package)
     if not alone and not any(t.kind in ("library", "interface") and t.name in installed for t in package.build.targets):
         return
-    if not any("/include/" in f"/{h}" for h in package.digest.public_headers):
+    if not any("/include/" in f"/{h}" for h in package.linked.public_headers):
         return
     # Plugins of a base class of its own: it is there for others to include.
     own_base = any(e.how == "plugin_description" and e.context == package.name for e in exports)
@@ -101,13 +101,13 @@ def _list_without_folder(view: TargetView, package: Package, ament: AmentExports
     if "ament_export_include_directories" in ament.hows or "cfg_extras" in ament.hows or build.unresolved:
         return
     targets = list(list_exported_targets(package))
-    headers = [path for path in package.digest.public_headers if "/include/" in f"/{path}"]
+    headers = [path for path in package.linked.public_headers if "/include/" in f"/{path}"]
     if not targets or not headers or any("$" in link.item for t in targets for link in t.links if link.how != "ament"):
         return
     given = {place for rule_ in build.installs if rule_.kind == "targets" for place in rule_.includes}
     if given or any(target.installed_includes for target in build.targets):
         return
-    compiled = {name for path, names in package.digest.source_targets if path in headers for name in names}
+    compiled = {name for path, names in package.linked.source_targets if path in headers for name in names}
     for target in targets:
         if (target.name in compiled or target.kind == "interface") and view.is_sure(target.conditions):
             yield Diagnostic(target.at, target.name, package.name, kind="folder", doubts=(Doubt.DISTURBS,))
@@ -126,17 +126,17 @@ def _has_headers_alone(view: TargetView, package: Package) -> bool:
 def _list_without_library(view: TargetView, package: Package, exports: list[CMakeExport]) -> Iterator[Diagnostic]:
     """Libraries that nothing in the package links or loads, and whose headers alone are exported."""
     folders = tuple(f"{posixpath.normpath(e.item)}/" for e in exports if e.how in _OF_FOLDERS)
-    if not folders or package.build.unresolved or package.digest.registered or package.digest.plugins:
+    if not folders or package.build.unresolved or package.linked.registered or package.linked.plugins:
         return
     if any(e.how in _OFFERS or "$" in e.item for e in exports):
         return
     catkin = package.build.catkin_package is not None
     if catkin and package.name in view.workspace.includers:
         return  # unexported-header looks at those who include them
-    public = [p for p, _ in package.digest.source_targets if p.startswith(folders)] if catkin else ()
-    offered = frozenset(public or package.digest.public_headers)
+    public = [p for p, _ in package.linked.source_targets if p.startswith(folders)] if catkin else ()
+    offered = frozenset(public or package.linked.public_headers)
     linked = {link.item for target in package.build.targets for link in target.links}
-    headers = {name for path, names in package.digest.source_targets if path in offered for name in names} - linked
+    headers = {name for path, names in package.linked.source_targets if path in offered for name in names} - linked
     # Those who find a package of catkin in the devel space ask for no install rule.
     made = headers if catkin else headers & list_installed_targets(package)
     for target in package.build.targets:

@@ -37,7 +37,7 @@ def ungenerated_interface(view: TargetView, package: Package) -> Iterator[Diagno
     if not given or package.build.unresolved or any("$" in path or "*" in path for path in given):
         return
     names = {posixpath.basename(path).lower() for path in given}
-    for interface in package.digest.interfaces:
+    for interface in package.linked.interfaces:
         inside = interface.path[len(package.path) :].lstrip("/")
         folder, _, name = inside.partition("/")
         if folder in _FOLDERS and "/" not in name and name.endswith(f".{folder}") and name.lower() not in names:

@@ -47,7 +47,7 @@ def ungiven_package(view: TargetView, package: Package):
         return
     # Many files of a target include the same headers.
     includes = dict.fromkeys(
-        (i.path, i.targets, i.role) for i in package.digest.includes if i.targets and view.is_sure(i.conditions)
+        (i.path, i.targets, i.role) for i in package.linked.includes if i.targets and view.is_sure(i.conditions)
     )
     targets = {t.name: t for t in package.build.targets}
     find_given = cache(partial(_find_given, targets))

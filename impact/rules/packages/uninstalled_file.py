@@ -126,7 +126,7 @@ def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagn
 
 def _list_below(package: Package, folder: str) -> list[str]:
     """The files of a folder of the package."""
-    return [path for path in package.digest.files if path.startswith(f"{folder}/")] if folder in package.folders else []
+    return [path for path in package.linked.files if path.startswith(f"{folder}/")] if folder in package.folders else []
 
 
 def _lies_in(places: frozenset[str] | None, package: str, inside: str) -> bool:
@@ -153,7 +153,7 @@ def _list_launch_folders(package: Package, installs) -> Iterator[tuple[str, str]
     programs = {item for install in installs if install.kind == "targets" for item in install.items}
     catkin = package.build_type == "catkin"
     siblings = catkin and any(i.kind == "directory" and i.destination.split("/")[0] == "share" for i in installs)
-    for use in package.digest.references:
+    for use in package.linked.references:
         path, r = use.at.path, use.reference
         own = siblings or ((r.kind, r.package) == ("executable", package.name) and r.name in programs)
         if use.role == "run" and path in files and (own if catkin else _LAUNCH.search(path)):
@@ -172,13 +172,13 @@ def _list_scripts(package: Package, installs, scripts: set[str]) -> Iterator[Dia
     programs = [item for i in installs if i.kind == "programs" for item in i.items]
     nodes = _list_nodes(package, installs)
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
-    for path in (*package.digest.scripts, *package.digest.shells):
+    for path in (*package.linked.scripts, *package.linked.shells):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         beside = folder in folders and folder != package.path and "." not in name and find_folder_role(name) is None
         node = path in nodes
         if (name in scripts or beside or node) and name not in others and not is_installed(package, installs, path):
             kind = "script" if name in scripts else "beside" if beside else "node"
-            if package.build_type == "catkin" and path not in package.digest.shells:
+            if package.build_type == "catkin" and path not in package.linked.shells:
                 kind = f"{kind}, catkin"
             yield Diagnostic(At(path, 1), name, package.name, kind=kind, together=_ONCE)
 
@@ -192,6 +192,6 @@ def _list_nodes(package: Package, installs) -> frozenset[str]:
     has_programs = made or any(i.kind == "programs" or i.executable for i in installs)
     if not installs or (has_programs and package.build.ament_package is None):
         return frozenset()
-    nodes = {use.at.path for use in package.digest.imports if use.module.partition(".")[0] in _OF_NODES}
-    inside = {path: path[len(package.path) :].lstrip("/") for path in package.digest.scripts if path in nodes}
+    nodes = {use.at.path for use in package.linked.imports if use.module.partition(".")[0] in _OF_NODES}
+    inside = {path: path[len(package.path) :].lstrip("/") for path in package.linked.scripts if path in nodes}
     return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_PROGRAMS and find_folder_role(i) is None)

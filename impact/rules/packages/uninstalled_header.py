@@ -42,15 +42,15 @@ _DETAIL = re.compile(r"/(?:detail|details|impl|internal)/")
     ),
 )
 def uninstalled_header(view: TargetView, package: Package):
-    if not package.build.files or not package.digest.public_headers:
+    if not package.build.files or not package.linked.public_headers:
         return
     installed = collect_installed_headers(package)
     if not installed.known:
         return
     made = set(package.build.made)
     reported = set()
-    written = dict(package.digest.written_inner)
-    for path, inner in package.digest.inner:
+    written = dict(package.linked.written_inner)
+    for path, inner in package.linked.inner:
         place = installed.headers.get(path)
         if place is None or find_folder_role(path[len(package.path) :].lstrip("/")):
             continue

@@ -56,7 +56,7 @@ def _list_descriptions(view: TargetView, package: Package, installs) -> Iterator
         value = export.attributes.get("plugin", "")
         if not value.startswith("${prefix}"):
             continue
-        at, file = At(package.digest.manifest_path, export.line), value[len("${prefix}/") :]
+        at, file = At(package.linked.manifest_path, export.line), value[len("${prefix}/") :]
         path = posixpath.normpath(posixpath.join(package.path, file))
         if is_installed(package, installs, path):
             continue
@@ -72,7 +72,7 @@ def _is_shipped(view: TargetView, package: Package, installs, description: str) 
     """True when a library that the description names is installed, so that the plugins are there for others."""
     if package.build.unresolved:
         return False
-    libraries = (posixpath.basename(c.library) for path, c in package.digest.plugins if path == description)
+    libraries = (posixpath.basename(c.library) for path, c in package.linked.plugins if path == description)
     names = {name.removeprefix("lib").removesuffix(".so") for name in libraries}
     return any(
         item in names and view.is_sure(i.conditions) for i in installs if i.kind == "targets" for item in i.items
@@ -84,8 +84,8 @@ def _list_not_exported(view: TargetView, package: Package, installs) -> Iterator
     libraries = {t.output_name or t.name: t for t in package.build.targets if t.kind in ("library", "module")}
     exports = {value.rpartition("/")[2] for e in package.manifest.exports for value in e.attributes.values()}
     exports |= {posixpath.basename(e.item) for e in package.build.exports if e.how == "plugin_description"}
-    seen = {p.type for path, p in package.digest.plugins if posixpath.basename(path) in exports}
-    for path, plugin in package.digest.plugins:
+    seen = {p.type for path, p in package.linked.plugins if posixpath.basename(path) in exports}
+    for path, plugin in package.linked.plugins:
         name = posixpath.basename(plugin.library).removeprefix("lib").removesuffix(".so")
         target = libraries.get(name)
         if plugin.type in seen or path in seen or target is None or is_installed(package, installs, path):

@@ -45,7 +45,7 @@ def unlinked_beside(view: TargetView, package: Package):
     targets = {t.name: t for t in package.build.targets}
     links: dict[str, set[str] | None] = {}
     seen = set()
-    includes = [i for i in package.digest.includes if i.path.startswith(_ROOTS) and view.is_sure(i.conditions)]
+    includes = [i for i in package.linked.includes if i.path.startswith(_ROOTS) and view.is_sure(i.conditions)]
     for root, word in _LIBRARIES if includes else ():
         users: dict[str, IncludeUse] = {}
         for include in includes:

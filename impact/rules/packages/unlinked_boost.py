@@ -84,7 +84,7 @@ def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Itera
     targets = {t.name: t for t in package.build.targets}
     given: dict[str, _BoostComponents | None] = {}
     seen = set()
-    for include in package.digest.includes:
+    for include in package.linked.includes:
         component = find_compiled_component(include.path, boost)
         if component is None or component in seen or include.role == "aside" or not view.is_sure(include.conditions):
             continue

@@ -57,7 +57,7 @@ def unlinked_library(view: TargetView, package: Package):
         return
     includes = [
         (i, word)
-        for i in package.digest.includes
+        for i in package.linked.includes
         if i.targets and i.path.startswith(_STARTS)
         for start, word in _COMPILED
         if i.path.startswith(start) and view.is_sure(i.conditions)

@@ -40,7 +40,7 @@ def unlinked_opencv(view: TargetView, package: Package):
         return
     calls = [
         use
-        for use in package.digest.names
+        for use in package.linked.names
         if use.text in OPENCV_FUNCTIONS and use.role == "build" and view.is_sure(use.conditions)
     ]
     if not calls or any("$" in f.name for f in build.found):

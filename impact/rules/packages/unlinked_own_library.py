@@ -50,10 +50,10 @@ def unlinked_own_library(view: TargetView, package: Package):
     for target in package.build.targets:
         for source in target.sources:
             compiling.setdefault(source, []).append(target.name)
-    links = {name: list_linked_items(package, name) for name in targets} if package.digest.own_calls else {}
+    links = {name: list_linked_items(package, name) for name in targets} if package.linked.own_calls else {}
     known = {name for f in package.build.found for name in (f.name, f.prefix)} | {"catkin"}
     seen = set()
-    for source, other, function in package.digest.own_calls:
+    for source, other, function in package.linked.own_calls:
         definers = set(compiling.get(other, ()))
         for name in compiling.get(source, ()):
             target = targets[name]

@@ -67,7 +67,7 @@ def _list_without_client(view: TargetView, package: Package):
         if (t.kind == "executable" or (t.kind == "library" and not t.static and t.name in offered))
         and t.name not in linked and t.sources and view.is_sure(t.conditions)
     }  # fmt: skip
-    for include in package.digest.includes if programs else ():
+    for include in package.linked.includes if programs else ():
         client, item = _CLIENTS.get(include.path, ("", ""))
         if not client or client in view.workspace.packages or not view.is_sure(include.conditions):
             continue
@@ -96,7 +96,7 @@ def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         return
     exported = CatkinExports(view)
     includes: dict[str, list[IncludeUse]] = {}
-    for include in package.digest.includes:
+    for include in package.linked.includes:
         if include.role == "build" and view.is_sure(include.conditions):
             for name in include.targets:
                 includes.setdefault(name, []).append(include)

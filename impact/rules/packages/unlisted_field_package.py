@@ -52,7 +52,7 @@ def unlisted_field_package(view: TargetView, package: Package):
     listed = {file for g in generated for file in g.files}
     given = {name for g in generated for name, _ in g.dependencies} | _list_implied(view, listed)
     seen = set()
-    for interface in package.digest.interfaces:
+    for interface in package.linked.interfaces:
         if interface.path not in listed:
             continue
         for line, text in interface.definition.unread:
@@ -63,7 +63,7 @@ def unlisted_field_package(view: TargetView, package: Package):
             for field in section.fields:
                 owner, name = find_field_owner(package, field.type), field.type.rpartition("/")[2]
                 if not owner and field.type not in primitive and "<" not in field.type:
-                    names = {i.name for i in package.digest.interfaces}
+                    names = {i.name for i in package.linked.interfaces}
                     if field.type not in names and field.type not in seen:
                         seen.add(field.type)
                         data = {"replacement": make_full_name(field.type, "") if field.type in _FROM_ROS1 else ""}

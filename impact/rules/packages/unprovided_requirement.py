@@ -37,7 +37,7 @@ from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
     },
 )
 def unprovided_requirement(view: TargetView, package: Package) -> Iterator[Diagnostic]:
-    imported = {use.module.partition(".")[0] for use in package.digest.imports}
+    imported = {use.module.partition(".")[0] for use in package.linked.imports}
     by_name = {normalize_name(module): module for module in imported}
     reported: set[str] = set()
     for at, text in package.list_requirements():

@@ -128,7 +128,7 @@ def _find_repository_stem(view: TargetView, package: str) -> str:
 
 def replace_name(view: TargetView, package: Package, name: str, guess: str) -> tuple[Replace | Remove, ...]:
     """Writes another name, or takes the wrong one out where that is declared beside it."""
-    path = package.digest.manifest_path
+    path = package.linked.manifest_path
     declared = view.collect_declared(package)
     if guess in declared:
         return (Remove(path, name),) if declared[name] <= declared[guess] else ()

@@ -136,7 +136,7 @@ def _is_compiled_with(view: TargetView, package: Package, variable: str, stem: s
             continue
         if any("$" not in item and fold(stem) in fold(item) for item in items):
             continue
-        includes = (i for i in package.digest.includes if target.name in i.targets and view.is_sure(i.conditions))
+        includes = (i for i in package.linked.includes if target.name in i.targets and view.is_sure(i.conditions))
         if any((p.package or p.name) in owners for i in includes for p in view.find_header(i.path)[:1]):
             return True
     return False

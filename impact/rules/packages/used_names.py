@@ -5,25 +5,25 @@ from ..vocabulary import Package, TargetView
 
 def shows_uses(package: Package) -> bool:
     """Whether the files of a package tell what it uses: it is no metapackage, and has code or launch files."""
-    digest = package.digest
-    if package.manifest.metapackage or (package.build_type == "ament_python" and not digest.imports):
+    linked = package.linked
+    if package.manifest.metapackage or (package.build_type == "ament_python" and not linked.imports):
         return False
-    return bool(digest.includes or digest.imports or digest.references)
+    return bool(linked.includes or linked.imports or linked.references)
 
 
 def list_used_names(view: TargetView, package: Package) -> frozenset[str]:
     """Names of packages and keys that something in a package means: includes, imports, launch files, interfaces,
     exports, commands of CMake, or words of YAML and robot descriptions; also what they mean on other targets alone."""
-    digest, build = view.workspace.packages.get(package.name, package).digest, package.build
+    linked, build = view.workspace.packages.get(package.name, package).linked, package.build
     return frozenset((
         *(provider.name for need in view.list_needs(package) for provider in need.providers),
         *(name for made in build.generated for name, _ in made.dependencies),
         *(export.item for export in build.exports),
-        *(f.type.split("/")[0] for i in digest.interfaces for s in i.definition.sections for f in s.fields),
-        *(include.path.split("/", 1)[0] for include in digest.includes),
-        *(item.module.split(".")[0] for item in digest.imports),
-        *(use.reference.package for use in digest.references),
-        *digest.named,
+        *(f.type.split("/")[0] for i in linked.interfaces for s in i.definition.sections for f in s.fields),
+        *(include.path.split("/", 1)[0] for include in linked.includes),
+        *(item.module.split(".")[0] for item in linked.imports),
+        *(use.reference.package for use in linked.references),
+        *linked.named,
     ))  # fmt: skip
 
 

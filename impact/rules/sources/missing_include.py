@@ -56,12 +56,12 @@ _LOST = "`{name}` is used without `<{subject}>`, "
 )
 def missing_include(view: TargetView):
     # Macros that a file of the workspace defines, maybe where nothing else does.
-    defined = frozenset().union(*(package.digest.defined for package in view.workspace))
+    defined = frozenset().union(*(package.linked.defined for package in view.workspace))
     for package in view:
         headers, places = LostHeaders(view, package), _Places(package)
         precompiled = any(use.name == "target_precompile_headers" for use in package.build.uses)
         reported: set[tuple[str, str]] = set()
-        for need in package.digest.needed_headers:
+        for need in package.linked.needed_headers:
             if need.role == "aside" or need.name in defined or not view.applies(need.conditions):
                 continue
             if owner := _find_lacking_owner(view, package, need):
@@ -97,7 +97,7 @@ def _find_lacking_owner(view: TargetView, package: Package, need: NeededHeader) 
     owner = workspace.packages.get(made.package) if made is not None and made.ros == view.target.ros else None
     if made is None or owner is None or owner.name == package.name or not workspace.interface_names.get(owner.name):
         return ""
-    if owner.digest.source_targets or owner.build.unresolved:
+    if owner.linked.source_targets or owner.build.unresolved:
         return ""  # it may have classes of its own
     if any(g.how == "reconfigure" for g in owner.build.generated):
         return ""
@@ -110,10 +110,10 @@ class _Places:
     """The files of a package that its targets compile, and the headers that it installs."""
 
     def __init__(self, package: Package):
-        sources = package.digest.source_targets
+        sources = package.linked.source_targets
         built = {t.name for t in package.build.targets if t.kind != "test" and not is_for_tests(t.conditions)}
         self._compiled = {path for path, targets in sources if built.intersection(targets)}
-        self._public = package.digest.public_headers
+        self._public = package.linked.public_headers
         self._offered = {path for path, _ in sources}.intersection(self._public)
 
     def compiles(self, need: NeededHeader) -> bool:
@@ -137,7 +137,7 @@ def _include(view: TargetView, package: Package, need: NeededHeader, header: str
     includes none outside of conditions."""
     standard = [
         i
-        for i in package.digest.includes
+        for i in package.linked.includes
         if i.at.path == need.at.path
         and i.at.line < need.at.line
         and not i.conditions

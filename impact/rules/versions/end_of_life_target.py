@@ -20,4 +20,4 @@ def end_of_life_target(view: TargetView):
     if ended and ended <= view.target.data_date:
         first = next(iter(view.workspace), None)
         if first is not None:
-            yield Diagnostic(At(first.digest.manifest_path, 1), view.target.distro, first.name, {"date": ended})
+            yield Diagnostic(At(first.linked.manifest_path, 1), view.target.distro, first.name, {"date": ended})

@@ -47,7 +47,7 @@ from ..vocabulary import At, Diagnostic, Doubt, TargetView, Text, list_place_dou
 )
 def hard_coded_distro(view: TargetView) -> Iterator[Diagnostic]:
     for package in view:
-        for path, file in package.digest.distros:
+        for path, file in package.linked.distros:
             role = find_folder_role(path[len(package.path) :].lstrip("/")) or "run"
             yield from _list_uses(view, path, file, package.name, role)
     for path, file in view.workspace.outside.distro_scripts.items():

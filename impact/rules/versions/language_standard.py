@@ -47,7 +47,7 @@ _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{n
 def language_standard(view: TargetView):
     default = find_default_standard(view.target)
     for package in view:
-        if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto") or not package.digest.includes:
+        if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto") or not package.linked.includes:
             continue
         if view.target.ros == 1:
             yield from _check_ros1(view, package, default)
@@ -63,21 +63,21 @@ def _check_ros1(view: TargetView, package: Package, default: int | None):
         return
     if not fixed and may_be_set_elsewhere(view, package):
         return
-    told = set()
+    reported = set()
     # Qt's targets ask for C++11 themselves, as Qt does since 5.7 (its release notes).
     raised = is_at_least(view.target.find_library("qt") or "5.7", "5.7")
     sure = bool(fixed) or not (raised and any(f.name.startswith(("Qt5", "Qt6")) for f in package.build.found))
     standards = find_standards(view, package)
-    for include in package.digest.includes:
+    for include in package.linked.includes:
         have = max([year, *(standards[t] for t in include.targets if t in standards)])
         if have >= 2020 or include.role != "build" or not include.targets or not view.is_sure(include.conditions):
             continue
         need = find_needed_standard(view.target, include.path) or _find_library_need(include.path)
-        if need is None or need.package in told or get_year(need.standard) <= have:
+        if need is None or need.package in reported or get_year(need.standard) <= have:
             continue
         if not need.package and (need.standard == 17 and not fixed):
             continue  # often beside std::experimental, under a test of the compiler
-        told.add(need.package)
+        reported.add(need.package)
         own = need.package in view.workspace.packages
         known = need.sure and sure and not own and not may_be_raised(view, package, include.targets)
         doubts = (known or Doubt.INCOMPLETE,)
@@ -98,7 +98,7 @@ def _check_ros2(view: TargetView, package: Package, default: int | None):
     own = {t.name: get_year(t.standard) for t in package.build.targets if t.standard}
     standards = find_standards(view, package)
     newest = view.newest
-    for include in package.digest.includes:
+    for include in package.linked.includes:
         if include.role != "build" or not include.targets or not view.is_sure(include.conditions):
             continue
         if any(own.get(t, 0) > have or standards.get(t, 0) > max(have, default) for t in include.targets):

@@ -55,7 +55,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_plac
 def python_version(view: TargetView):
     def find(package: Package, target: DistroTarget) -> Iterator[RejectedUse]:
         reported = set()
-        for use in package.digest.syntax:
+        for use in package.linked.syntax:
             if use.needs == 2 and use.at.path not in reported:
                 reported.add(use.at.path)
                 yield RejectedUse(use, use.what, "python 2")
@@ -68,8 +68,8 @@ def python_version(view: TargetView):
 
     yield from report_refused(view, find)
     for package in view if view.target.python_major == 2 else ():
-        others = set(package.digest.scripts) - set(package.digest.plain_scripts)  # which may be for Python 3
-        for use in package.digest.syntax:
+        others = set(package.linked.scripts) - set(package.linked.plain_scripts)  # which may be for Python 3
+        for use in package.linked.syntax:
             doubts = list_place_doubts(view, use.role)
             if use.needs not in (2, NO_PYTHON) and use.plain:
                 yield Diagnostic(use.at, use.what, package.name, kind="python 3", doubts=doubts)

@@ -40,7 +40,7 @@ from ..vocabulary import Doubt, Package, TargetView, Text, rule
 )
 def removed_python_module(view: TargetView):
     def find(package: Package, target: DistroTarget) -> Iterator[RejectedUse]:
-        for item in package.digest.imports:
+        for item in package.linked.imports:
             if not view.is_sure(item.conditions) or item.module.split(".")[0] in view.workspace.modules:
                 continue
             if was_ever_in_stdlib(item.module) and not is_in_stdlib(item.module, target.python, 3):

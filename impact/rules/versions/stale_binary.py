@@ -134,5 +134,5 @@ def _find_place(view: TargetView, package: str, binaries: list[Binary], installe
     """The package's manifest; of a package that is not in the workspace, the first file itself."""
     known = view.workspace.packages.get(package)
     if known is not None:
-        return At(known.digest.manifest_path, 0)
+        return At(known.linked.manifest_path, 0)
     return At(f"{installed.label}/{min(binary.path for binary in binaries)}", 0)

@@ -65,8 +65,8 @@ def release_day(distro: str) -> str:
 
 @functools.lru_cache(maxsize=4)
 def _load_known_distros(data: Snapshot) -> dict[str, KnownDistro]:
-    told = data.fetch("SELECT name, facts FROM distro_fact")
-    facts = {name: msgspec.json.decode(text, type=DistroFacts) for name, text in told}
+    reported = data.fetch("SELECT name, facts FROM distro_fact")
+    facts = {name: msgspec.json.decode(text, type=DistroFacts) for name, text in reported}
     found = []
     for number, name, ros, python, status, first in data.fetch(
         "SELECT id, name, ros, python, status, min(ts) FROM distro LEFT JOIN release ON distro = id"

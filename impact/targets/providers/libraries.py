@@ -90,8 +90,8 @@ class SystemLibraries:
     @cache_method
     def list_versions(self, library: str) -> dict[str, str]:
         """The version of a library in each Debian release that was read, oldest first."""
-        told = self._query_first("SELECT versions FROM package WHERE name = ?", library)
-        found = dict(one.split("=") for one in told.split())
+        reported = self._query_first("SELECT versions FROM package WHERE name = ?", library)
+        found = dict(one.split("=") for one in reported.split())
         return {f"debian {suite}": version for suite, version in found.items()}
 
     @cache_method
@@ -229,14 +229,14 @@ class SystemLibraries:
         has: Callable[[BuildSurface], bool | None],
     ) -> Presence:
         versions = dict.fromkeys(self.list_versions(library).values())
-        told = {one: has(build) for one in versions if (build := self.build(library, one, _NAMED))}
+        reported = {one: has(build) for one in versions if (build := self.build(library, one, _NAMED))}
         exact = version_of(library)
-        before, after = (exact, exact) if exact in told else self.find_range(library, platform)
-        states = {told.get(version) for version in (before, after) if version}
+        before, after = (exact, exact) if exact in reported else self.find_range(library, platform)
+        states = {reported.get(version) for version in (before, after) if version}
         # What the oldest release lacks and a later one has came with that: it was not there before either.
-        complete = (before and after) or (after and told.get(after) is False)
+        complete = (before and after) or (after and reported.get(after) is False)
         here = states.pop() if complete and len(states) == 1 else None
-        lost = any(told[one] and told[two] is False for one, two in pairwise(told))
+        lost = any(reported[one] and reported[two] is False for one, two in pairwise(reported))
         return Presence(library, here, before or after, lost)
 
 

@@ -128,11 +128,11 @@ _C = frozenset(
 @cache
 def index_headers() -> dict[str, tuple[str, ...]]:
     """Names of the standard libraries to the headers that offer them, the one to include first."""
-    told = {
+    reported = {
         name: (header, f"{header[1:]}.h") if header in _C and not name.startswith("std::") else (header,)
         for name, header in load_names().names.items()
     }
-    return {**DEFINED_IN, **told}
+    return {**DEFINED_IN, **reported}
 
 
 @cache
@@ -166,5 +166,5 @@ def _select_names(gcc: int, standard: int) -> dict[str, int]:
     majors = {int(major): table for major, table in load_names().gcc.items()}
     standards = majors[max((major for major in majors if major <= gcc), default=min(majors))]
     years = {2000 + int(number): table for number, table in standards.items()}
-    told = years[max((year for year in years if year <= standard), default=min(years))]
-    return {header: int(bits, 16) for header, bits in told.items()}
+    reported = years[max((year for year in years if year <= standard), default=min(years))]
+    return {header: int(bits, 16) for header, bits in reported.items()}

@@ -96,7 +96,7 @@ class ChangeEvent(msgspec.Struct, frozen=True, array_like=True, gc=False):
     and since; None where it is not there, or where forms say nothing."""
 
     place: int
-    told: tuple[ComparedThing, ...]
+    reported: tuple[ComparedThing, ...]
     had: Form | None
     has: Form | None
 

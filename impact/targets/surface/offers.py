@@ -34,7 +34,7 @@ class Offered(NamedTuple):
     before the present state began with the version `first` (both empty where all stored versions up to the target's
     are alike); of what is absent, first is the first version that has it. after: its form from the version `coming`
     on (empty: nothing later is known); gone_in: the first later version without it.
-    told: what the comparison of `last` and `first` told; of what is there unchanged, that of the next change.
+    reported: what the comparison of `last` and `first` reported; of what is there unchanged, that of the next change.
     instead: what to use now, empty where that is not known. sure: nothing about it is guessed.
     """
 
@@ -51,7 +51,7 @@ class Offered(NamedTuple):
     after: Form | None
     coming: str
     gone_in: str
-    told: tuple[ComparedThing, ...]
+    reported: tuple[ComparedThing, ...]
     instead: str
     moved_to: str
     sure: bool
@@ -208,24 +208,24 @@ class PackageOffer:
         versions = self.line.versions
         standing = find_standing(side, events, self.place)
         past, future, there = standing.past, standing.future, standing.there
-        told = (past[-1] if past else future[0]).told
+        reported = (past[-1] if past else future[0]).reported
         deciding = past[-1:] if past else future[:1]
         state = "deprecated" if standing.deprecated else "changed" if there else "removed" if past else "absent"
-        sure = all(t.sure >= 1 for event in deciding for t in event.told)
+        sure = all(t.sure >= 1 for event in deciding for t in event.reported)
         if not self.exact and future and future[0].place == self.place + 1:
             # Which of the versions between the two stored ones made the next change is not known.
             sure = False
         first = versions[past[-1].place] if past else versions[future[0].place] if state == "absent" else ""
         coming = future[0] if future and there else None
-        instead = next((t.instead for t in told if t.instead), "")
+        instead = next((t.instead for t in reported if t.instead), "")
         moved_to = ""
         if state == "removed" and side not in _OF_EVERY_PACKAGE:
-            moved_to = next((t.moved_to for t in told if t.moved_to), "") or self._find_other_package(side, name)
+            moved_to = next((t.moved_to for t in reported if t.moved_to), "") or self._find_other_package(side, name)
         return Offered(
             self.package,
             side,
             name,
-            told[0].what,
+            reported[0].what,
             "moved" if moved_to else state,
             self.version,
             standing.here,
@@ -235,7 +235,7 @@ class PackageOffer:
             standing.after,
             versions[coming.place] if coming is not None else "",
             next((versions[e.place] for e in future if there and classify_event(side, e) == "gone"), ""),
-            told,
+            reported,
             instead,
             moved_to,
             sure,
@@ -273,9 +273,9 @@ def make_offered(offers: Offers, offered: Offered, event: ChangeEvent, earlier: 
     if not earlier:
         return offered._replace(after=event.has, coming=version)
     return offered._replace(
-        before=event.had, last=offer.line.versions[event.place - 1], first=version, told=event.told,
-        instead=next((one.instead for one in event.told if one.instead), ""),
-        sure=all(one.sure >= 1 for one in event.told),
+        before=event.had, last=offer.line.versions[event.place - 1], first=version, reported=event.reported,
+        instead=next((one.instead for one in event.reported if one.instead), ""),
+        sure=all(one.sure >= 1 for one in event.reported),
     )  # fmt: skip
 
 
@@ -331,16 +331,14 @@ def find_standing(side: str, events: Sequence[ChangeEvent], place: int) -> Stand
     if (classify_event(side, past[-1]) == "gone") if past else (classify_event(side, future[0]) == "come"):
         return Standing(False, False, None, before, None, past, future)
     here = past[-1].has if past else future[0].had
-    told = past[-1].told if past else ()
-    deprecated = here.deprecated is not None if here is not None else any(one.kind == "deprecated" for one in told)
+    reported = past[-1].reported if past else ()
+    deprecated = here.deprecated is not None if here is not None else any(one.kind == "deprecated" for one in reported)
     return Standing(True, deprecated, here, before, future[0].has if future else None, past, future)
 
 
 def classify_event(side: str, event: ChangeEvent) -> str:
     """What an event does to a name: it is `gone`, it has `come`, or it has another `form`."""
-    whole = [told for told in event.told if "overload" not in told.aspects]
-    come = any(told.kind == "added" for told in whole)
-    gone = any(
-        told.kind == "removed" or (told.kind == "moved" and (side != "c++" or bool(told.moved_to))) for told in whole
-    )
+    whole = [reported for reported in event.reported if "overload" not in reported.aspects]
+    come = any(reported.kind == "added" for reported in whole)
+    gone = any(one.kind == "removed" or (one.kind == "moved" and (side != "c++" or one.moved_to)) for one in whole)
     return "form" if come == gone else "come" if come else "gone"

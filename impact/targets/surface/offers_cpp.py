@@ -178,7 +178,7 @@ def _is_alias(offers: Offers, package: str, name: str) -> bool:
     if offer is None or not owner:
         return False
     events = offer.line.events.get("c++", {}).get(owner, ())
-    return any("kind" in told.aspects or told.what == "alias" for event in events for told in event.told)
+    return any("kind" in one.aspects or one.what == "alias" for event in events for one in event.reported)
 
 
 def _check_call(offers: Offers, offered: Offered, arguments: int, given: tuple[str, ...]) -> Availability | None:
@@ -196,7 +196,7 @@ def _check_call(offers: Offers, offered: Offered, arguments: int, given: tuple[s
                 return _answer("changed", make_offered(offers, offered, event, earlier), why, earlier)
         return None
     relying = all(one.most < 0 or arguments < one.most for one in fitting)
-    if relying and offered.first and all(told.kind == "default" for told in offered.told):
+    if relying and offered.first and all(reported.kind == "default" for reported in offered.reported):
         return _answer("changed", offered, "default")
     return None
 
@@ -287,11 +287,11 @@ def _check_template_arguments(offers: Offers, offered: Offered, arguments: int) 
         return None
     place = offer.line.find_place(offered.last)
     before = offer.line.versions[place] if place is not None else ""
-    untold = is_untold(offer.history, offered.name, offered.here, offered.before, offer.stored, before, arguments)
-    return _answer("changed", offered, "template") if untold else None
+    lost = is_not_deducible(offer.history, offered.name, offered.here, offered.before, offer.stored, before, arguments)
+    return _answer("changed", offered, "template") if lost else None
 
 
-def is_untold(
+def is_not_deducible(
     history: SurfaceHistory, name: str, here: Form | None, before: Form | None, version: str, last: str, arguments: int
 ) -> bool:
     """Whether every overload that takes so many arguments has a template parameter that none of them tells, where an
@@ -299,9 +299,9 @@ def is_untold(
     if here is None or not any(one.accepts(arguments) for one in find_lost_forms(before, here)):
         return False
     now = _list_accepting(history, name, version, arguments)
-    if not now or any(_is_told(one, arguments) for one in now):
+    if not now or any(_is_deducible(one, arguments) for one in now):
         return False
-    return any(_is_told(one, arguments) for one in _list_accepting(history, name, last, arguments))
+    return any(_is_deducible(one, arguments) for one in _list_accepting(history, name, last, arguments))
 
 
 def _list_accepting(history: SurfaceHistory, name: str, version: str, arguments: int) -> list[Entity]:
@@ -315,7 +315,7 @@ def _list_accepting(history: SurfaceHistory, name: str, version: str, arguments:
     return found
 
 
-def _is_told(one: Entity, arguments: int) -> bool:
+def _is_deducible(one: Entity, arguments: int) -> bool:
     """Whether the arguments of a call tell all parameters of a function's template."""
     given = " ".join(parameter.type for parameter in (one.parameters or ())[:arguments])
     return all(

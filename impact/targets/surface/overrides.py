@@ -178,7 +178,7 @@ class Override:
         """Whether the method gives back what another version's does, and the target's surely does not. now: what those
         of the target do that it may override."""
         offer = self.offers.find_package(offered.package)
-        if not self.result or offer is None or not any("result" in told.aspects for told in event.told):
+        if not self.result or offer is None or not any("result" in reported.aspects for reported in event.reported):
             return False
         version = offer.line.versions[event.place - 1 if earlier else event.place]
         before = sorted({one.type for one in self._list_virtual_methods(offered.package, offered.name, version)})

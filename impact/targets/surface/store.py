@@ -146,7 +146,7 @@ class SurfaceHistory:
 
         bound = group_pairs(self._iterate("bound", version, Bound))
         taken = group_pairs(self._iterate("taken", version, ImportedName))
-        told = group_pairs(self._iterate("python", version, str))
+        reported = group_pairs(self._iterate("python", version, str))
         modules = (
             InstalledModule(
                 name,
@@ -167,8 +167,8 @@ class SurfaceHistory:
         return PythonSurface(
             self.package,
             tuple(sorted(modules, key=lambda module: module.name)),
-            tuple(told.get("unknown", ())),
-            tuple(told.get("unresolved", ())),
+            tuple(reported.get("unknown", ())),
+            tuple(reported.get("unresolved", ())),
         )
 
     @cached_property

@@ -50,7 +50,7 @@ def test_no_code_of_a_package_is_left_out(tree, tmp_path):
             "dock/src/crane.cpp": "dock",
             "test/quay/src/quay.cpp": "quay",
         }
-        assert workspace.gathered.second.kinds.keys() >= list_code(workspace).keys()
+        assert workspace.extraction.second.kinds.keys() >= list_code(workspace).keys()
 
 
 def test_a_path_of_any_depth(tmp_path):
