@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..targets.resolve import Chosen
     from ..tree import Tree
     from .downstream import Impact
-    from .target_compare import UpgradeItem
+    from .findings import UpgradeItem
 
 CONTEXT = 1
 _KEPT_FILES = 32

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import escape, format_count
+from ..analysis.findings import UpgradeItem
 from ..analysis.report import count_by_severity, format_causes, format_coverage, format_gaps, format_severities
-from ..analysis.target_compare import UpgradeItem
 from ..analysis.upgrade import Upgrade
 from ..rules.rule import Finding
 from . import html, json
