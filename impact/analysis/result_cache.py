@@ -21,7 +21,7 @@ from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
 from ..source_keys import compute_code_stamp
 from ..targets.availability import list_horizons
-from ..targets.changes import index_uses
+from ..targets.changes import index_uses, list_changes
 from ..targets.distro.distro import DistroTarget
 from ..targets.snapshot import compute_data_stamp
 from ..targets.surface.fields import load_fields
@@ -128,7 +128,7 @@ def load_yielded(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tup
 def load_changes(store: Store, target: DistroTarget) -> None:
     """Gives a target, and what it is going to be, the changes an earlier run worked out."""
     for one in (target, *(ahead.target for ahead in list_horizons(target))):
-        if one.has_changes():
+        if one.known_changes is not None:
             continue
         name = hashlib.sha1(one.compute_identity().encode()).digest()
         data = store.find_memo("changes", name)
@@ -138,7 +138,7 @@ def load_changes(store: Store, target: DistroTarget) -> None:
                 continue
             except msgspec.MsgspecError:
                 pass
-        store.remember("changes", encode_rows([(name, [tuple(change) for change in one.changes()])]))
+        store.remember("changes", encode_rows([(name, [tuple(change) for change in list_changes(one)])]))
 
 
 def _make_place(at: object) -> At:

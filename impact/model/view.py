@@ -22,7 +22,7 @@ from ..config import Config
 from ..facts.condition import Condition
 from ..facts.manifest import Dependency
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, list_horizons
-from ..targets.changes import DISTROS
+from ..targets.changes import DISTROS, list_changes
 from ..targets.distro.distro import DistroTarget, ReleasedDependency
 from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
@@ -201,7 +201,7 @@ class TargetView:
         kinds = ("cmake-removed", "cmake-renamed") if kind == "command" else ("package-removed", "package-renamed")
         if kind == "package" and (self._has_package(name, target) or target.resolve(name) is not None):
             return False
-        by_name, name = target.changes().by_name, name.lower() if kind == "command" else name
+        by_name, name = list_changes(target).by_name, name.lower() if kind == "command" else name
         return any(change.state == "removed" for each in kinds for change in by_name.get((each, name), ()))
 
     def _has_header(self, path: str) -> bool | None:
