@@ -221,7 +221,8 @@ class Availabilities:
     def _rows(self) -> dict[tuple[str, str], list[tuple[ChangeInForce, Horizon | None]]]:
         """Reviewed rows by what they are about and its name, each with the horizon where it will be in force."""
         found: dict[tuple[str, str], list[tuple[ChangeInForce, Horizon | None]]] = {}
-        rows = ((change, None) for change in sorted(list_changes(self.target), key=lambda one: one.kind in _LESS_TELLING))
+        here = sorted(list_changes(self.target), key=lambda one: one.kind in _LESS_TELLING)
+        rows = ((change, None) for change in here)
         coming: dict[str, tuple[ChangeInForce, Horizon]] = {}
         for ahead, _ in self.ahead:
             for change in find_coming_changes(self.target, ahead):
