@@ -6,13 +6,11 @@ import fnmatch
 import posixpath
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ...facts.kinds import HEADER_ENDINGS
+from ..workspace import Package
 from .build import Install
-
-if TYPE_CHECKING:
-    from ..workspace import Package
 
 
 class InstalledHeaders(NamedTuple):
