@@ -34,7 +34,7 @@ def format_verdict(found: Upgrade) -> str:
         return "; ".join([f"{way}: no {'new' if old else 'known'} break in {total}", *rest, *([gaps] if gaps else [])])
     broken = _count_packages(found, (item for item in found.breaks if item.severity == "error"))
     touched = broken or _count_packages(found, found.breaks)
-    what = format_severities(found.breaks, " and ")
+    what = format_severities(found.breaks)
     places = format_count(sum(len(item.findings) for item in found.breaks), "place")
     return f"{way} {'breaks' if broken else 'may break'} {touched:,} of {total}: {what} to fix, in {places}"
 

@@ -243,10 +243,6 @@ class PackageOffer:
         others = self._offers.surfaces.list_other_packages(name)
         return next((p for p in others if p != self.package and self._offers.has_name(side, name, p)), "")
 
-    def list_declared(self, side: str, name: str, version: str) -> tuple[str, ...]:
-        """How a stored version declares a name of C++ or Python, a line for each overload."""
-        return list_declared(self.history, side, name, version)
-
 
 def iterate_other_forms(offers: Offers, offered: Offered) -> Iterator[tuple[ChangeEvent, Form, bool]]:
     """The other forms of a name, the nearest first: an event, the form on the other side of it, and whether that is of
