@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 import msgspec
 
 from ..impact.facts.surface import CLASSES, FUNCTIONS
-from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, VersionChange, make_overload
+from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, make_overload
 from ..impact.targets.surface.python import UNKNOWN
 from .surface.compare import RepositorySurfaces, compare
+from .surface.version_change import VersionChange
 from .surface_file import pack, shorten_message
 
 # What other tables tell (messages), and what a package has for itself.

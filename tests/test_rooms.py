@@ -17,8 +17,8 @@ def test_imports_point_one_way(capsys, monkeypatch):
 
 
 def test_no_imports_go_in_a_circle():
-    """Late imports inside functions count; those that only type checkers follow do not."""
-    graph = grimp.build_graph(*ROOMS, exclude_type_checking_imports=True, cache_dir=None)
+    """Late imports inside functions count, and so do those that only type checkers follow."""
+    graph = grimp.build_graph(*ROOMS, cache_dir=None)
     arrows = networkx.DiGraph(
         (module, other) for module in graph.modules for other in graph.find_modules_directly_imported_by(module)
     )

@@ -84,9 +84,9 @@ New: 1 (1 method)
 def test_a_line_fits_eighty_columns(repos, tmp_path):
     from rosimpact.databuild.surface.clones import Clone
     from rosimpact.databuild.surface.compare import RepositorySurfaces, compare_states
+    from rosimpact.databuild.surface.report import SurfaceDifference, VersionSource, render_diff_text, show_text
     from rosimpact.impact.facts.store import Store
     from rosimpact.impact.report.style import PLAIN
-    from rosimpact.impact.report.surface import SurfaceDifference, VersionSource, render_diff_text, show_text
 
     clone = Clone(repos / "ros2+rclcpp")
     with Store(tmp_path / "other") as store:
@@ -168,9 +168,10 @@ def test_errors_are_one_line(repos, arguments, said):
 
 
 def test_counts_of_kinds_are_plural():
+    from rosimpact.databuild.surface.report import SurfaceDifference, VersionSource, render_diff_text
+    from rosimpact.databuild.surface.version_change import VersionChange
     from rosimpact.impact.report.style import PLAIN
-    from rosimpact.impact.report.surface import SurfaceDifference, VersionSource, render_diff_text
-    from rosimpact.impact.targets.surface.changes import PARAMETER, VersionChange
+    from rosimpact.impact.targets.surface.changes import PARAMETER
 
     changes = tuple(VersionChange("arm", "build", "added", PARAMETER, name, breaks=False) for name in "ab")
     source = VersionSource("a", "1.0.0", "arm", "")

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import jsonschema
 import pytest
-from rosimpact.impact.analysis.target_compare import compare_findings, group_items
+from rosimpact.impact.analysis.findings import group_items
+from rosimpact.impact.analysis.target_compare import compare_findings
 from rosimpact.impact.rules.rule import Finding
 
 ROOT = Path(__file__).parents[1]

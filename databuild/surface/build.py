@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ...impact.facts.cmake import CMakeFile
+from ...impact.facts.kinds import HEADER_ENDINGS
 from ...impact.facts.kinds import find_kind as kind_by_name
 from ...impact.facts.launch.actions import Action, find_literal
 from ...impact.model.cmake.build import Install, is_for_tests
-from ...impact.model.cmake.installed import HEADER_NAME, list_copied_files
+from ...impact.model.cmake.installed import list_copied_files
 from ...impact.model.flow.started import classify_launch_file
 from ...impact.model.package import find_folder_role
 from ...impact.targets.surface.fields import make_snake_case
@@ -263,14 +264,14 @@ class _Surface:
         for install in self.installs:
             destination = posixpath.normpath(install.destination.replace("${CMAKE_INSTALL_INCLUDEDIR}", "include"))
             if "$" in destination and install.kind in ("files", "directory"):
-                if any(HEADER_NAME.search(item) or item.rstrip("/").endswith("include") for item in install.items):
+                if any(item.endswith(HEADER_ENDINGS) or item.rstrip("/").endswith("include") for item in install.items):
                     self.note("headers", f"`{install.destination}` is where they go")
                 continue
             if not f"{destination}/".startswith("include/") or install.kind not in ("files", "directory", "programs"):
                 continue
             sure = not install.conditions
             for source, installed in self.list_copied_files(install, destination):
-                if HEADER_NAME.search(installed):
+                if installed.endswith(HEADER_ENDINGS):
                     include, certain = _find_include_path(installed, roots)
                     yield Header(include, installed, source, sure and certain)
         yield from self.list_generated_headers(roots)

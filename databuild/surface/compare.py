@@ -12,12 +12,13 @@ from ...edges.memory import cache_method
 from ...edges.reach import walk
 from ...impact.facts.interface import PRIMITIVES, Field, Section, make_full_name
 from ...impact.facts.surface import CLASSES, FUNCTIONS, Entity, HeaderSurface, format_declaration, list_offered
-from ...impact.targets.surface.changes import OPEN, PARAMETER, VersionChange
+from ...impact.targets.surface.changes import PARAMETER
 from ...impact.targets.surface.fields import ROS1_SUFFIXES, make_snake_case
 from ...impact.targets.surface.python import UNKNOWN, SurfaceNames
 from ...impact.targets.surface.surface import BuildSurface, PythonSurface, Surface
 from ..extract.parameters import mentions
 from . import compare_build, compare_cpp, compare_python
+from .version_change import OPEN, VersionChange
 
 
 class EntityPlace(NamedTuple):

@@ -3,8 +3,8 @@
 import posixpath
 from collections.abc import Callable, Iterable, Iterator
 
-from ...impact.targets.surface.changes import OPEN, VersionChange
 from ...impact.targets.surface.surface import BuildSurface
+from .version_change import OPEN, VersionChange
 
 
 def compare(old: BuildSurface, new: BuildSurface) -> tuple[VersionChange, ...]:

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from functools import cached_property
 
 from ...impact.facts.python.surface import PythonParameter, is_private
-from ...impact.targets.surface.changes import OPEN, VersionChange
 from ...impact.targets.surface.python import UNKNOWN, PythonName, SurfaceNames, describe, is_callable, is_wrapped
 from ...impact.targets.surface.surface import PythonSurface
+from .version_change import OPEN, VersionChange
 
 
 def compare(old: PythonSurface, new: PythonSurface) -> tuple[VersionChange, ...]:

@@ -18,6 +18,7 @@ from ...edges.limits import get_limits
 from ...impact.facts import interface as interfaces
 from ...impact.facts import manifest as manifests
 from ...impact.facts.interface import Field, Interface, Section
+from ...impact.facts.kinds import HEADER_ENDINGS
 from ...impact.facts.launch import flow as flow_launch
 from ...impact.facts.surface import HeaderSurface
 from ...impact.targets.surface.fields import ROS1_SUFFIXES
@@ -40,7 +41,6 @@ from .unpacked_deb import DebError, DebFile, read_members
 
 _DPKG = Path("/var/lib/dpkg/info")
 _START = 4
-_HEADER = re.compile(r"\.(?:h|hpp|hh|hxx|h\+\+|ipp|tpp|tcc|txx|inl|impl|cuh)\Z")
 _PYTHON = re.compile(r"(?:local/)?lib/python3?[\d.]*/(?:dist|site)-packages/(.+)")
 _EXTENSION = re.compile(r"(?:\.cpython-[\w-]+|\.abi3)?\.so\Z")
 _CONFIGURATION = re.compile(r"(.+?)(?:-config|Config)\.cmake\Z")
@@ -239,7 +239,7 @@ def _read_or_note(read: Callable[[str], bytes], unread: dict[str, str], path: st
 
 def _list_unread(files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
     for path, reason in sorted(files.items()):
-        yield "headers" if _HEADER.search(path) else "files", f"{path} cannot be read: {reason}"
+        yield "headers" if path.endswith(HEADER_ENDINGS) else "files", f"{path} cannot be read: {reason}"
 
 
 def _touches(part: InstalledFiles, package: str) -> bool:
@@ -257,7 +257,7 @@ def _list_headers(package: str, parts: Sequence[InstalledFiles]) -> Iterator[tup
     for part in parts:
         alone = not part.convention and part.packages == {package}
         for path in sorted(part.paths):
-            if path.startswith("include/") and _HEADER.search(path):
+            if path.startswith("include/") and path.endswith(HEADER_ENDINGS):
                 folder = re.sub(r"\Ainclude/(?:[\w]+-linux-gnu\w*/)?", "", path).partition("/")[0]
                 if alone or folder == package:
                     yield part, path

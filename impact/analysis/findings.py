@@ -557,3 +557,30 @@ def has_failures(findings: Iterable[Finding], fail_on: str = "error") -> bool:
         return False
     least = _RANK[fail_on]
     return any(finding.new and rank(finding.severity) >= least for finding in findings)
+
+
+class UpgradeItem(NamedTuple):
+    """One thing to do: findings of one cause, which is the same rule and subject in one package. The gravest come
+    first; there is at least one."""
+
+    package: str
+    rule: str
+    subject: str
+    severity: str
+    findings: tuple[Finding, ...]
+
+
+def group_items(findings: Iterable[Finding], order: Sequence[str]) -> list[UpgradeItem]:
+    """Findings as things to do, package by package in an order; in a package the gravest first, then by place.
+
+    What belongs to no package comes first, and a package that the order does not name last.
+    """
+    causes: dict[tuple[str, str, str], list[Finding]] = defaultdict(list)
+    for finding in findings:
+        causes[finding.package, finding.rule, finding.subject].append(finding)
+    place = {"": -1} | {name: number for number, name in enumerate(order)}
+    made = []
+    for (package, rule, subject), group in causes.items():
+        group.sort(key=lambda finding: -rank(finding.severity))
+        made.append(UpgradeItem(package, rule, subject, group[0].severity, tuple(group)))
+    return sorted(made, key=lambda item: (place.get(item.package, len(place)), item.package, -rank(item.severity)))

@@ -10,10 +10,10 @@ from ..model.view import TargetView
 from ..model.workspace import Package
 from ..targets.capture import MachineDifference, find_differences
 from ..targets.resolve import parse_target
-from .findings import rank
+from .findings import UpgradeItem, group_items, rank
 from .report import Report, ReportedTarget
 from .session import Options
-from .target_compare import UpgradeItem, compare_findings, group_items, open_sides
+from .target_compare import compare_findings, open_sides
 
 _MACHINE = ("distro", "date", "platform")
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..targets.resolve import Chosen
     from ..tree import Tree
     from .downstream import Impact
-    from .target_compare import UpgradeItem
+    from .findings import UpgradeItem
 
 CONTEXT = 1
 _KEPT_FILES = 32
@@ -198,9 +198,9 @@ def count_by_severity(graded: Iterable[Finding | UpgradeItem]) -> dict[str, int]
     return counts
 
 
-def format_severities(graded: Iterable[Finding | UpgradeItem], between: str = ", ") -> str:
-    """`2 errors, 1 note`; empty without any."""
-    return between.join(format_count(number, name) for name, number in count_by_severity(graded).items() if number)
+def format_severities(graded: Iterable[Finding | UpgradeItem]) -> str:
+    """`2 errors and 1 note`; empty without any."""
+    return " and ".join(format_count(number, name) for name, number in count_by_severity(graded).items() if number)
 
 
 def group_alike(findings: Iterable[Finding]) -> list[list[Finding]]:
@@ -224,10 +224,10 @@ def put_different_first(findings: Iterable[Finding]) -> list[Finding]:
     return first + again
 
 
-def format_causes(findings: Iterable[Finding], between: str = ", ") -> str:
+def format_causes(findings: Iterable[Finding]) -> str:
     """`2 errors in 40 places, 1 note`: each cause once; empty without any."""
     groups = group_alike(findings)
-    return between.join(
+    return ", ".join(
         format_count(number, severity) + format_places(group for group in groups if group[0].severity == severity)
         for severity, number in count_by_severity(group[0] for group in groups).items()
         if number

@@ -6,12 +6,12 @@ A second run on unchanged files then judges nothing anew. Time plays no part: th
 import contextlib
 import hashlib
 from collections.abc import Iterable, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import msgspec
 from msgspec import structs
 
-from ..facts.store import Store, encode_rows
+from ..facts.store import Store, encode_rows, recall
 from ..model import tracked_names as watch
 from ..model.cmake.build import At
 from ..model.flow.file_selection import compute_stamp
@@ -21,7 +21,7 @@ from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
 from ..source_keys import compute_code_stamp
 from ..targets.availability import list_horizons
-from ..targets.changes import index_uses
+from ..targets.changes import changes_in_force, index_uses
 from ..targets.distro.distro import DistroTarget
 from ..targets.snapshot import compute_data_stamp
 from ..targets.surface.fields import load_fields
@@ -128,17 +128,10 @@ def load_yielded(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tup
 def load_changes(store: Store, target: DistroTarget) -> None:
     """Gives a target, and what it is going to be, the changes an earlier run worked out."""
     for one in (target, *(ahead.target for ahead in list_horizons(target))):
-        if one.has_changes():
-            continue
-        name = hashlib.sha1(one.compute_identity().encode()).digest()
-        data = store.find_memo("changes", name)
-        if data is not None:
-            try:
-                one.set_changes(msgspec.msgpack.decode(data, type=tuple[ChangeInForce, ...]))
-                continue
-            except msgspec.MsgspecError:
-                pass
-        store.remember("changes", encode_rows([(name, [tuple(change) for change in one.changes()])]))
+        if one.known_changes is None:
+            name = hashlib.sha1(one.compute_identity().encode()).digest()
+            find = partial(changes_in_force, one)
+            one.set_changes(recall(store, "changes", name, tuple[ChangeInForce, ...], find))
 
 
 def _make_place(at: object) -> At:

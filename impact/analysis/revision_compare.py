@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...edges import files
 from ...edges.documents import DocumentError, load_yaml
@@ -16,9 +16,7 @@ from ..model.view import TargetView
 from ..model.workspace import link
 from ..tree import GitTree, Tree, TreeError, normalize_path, open_merge_bases, shown
 from .result_cache import load_tracked_names
-
-if TYPE_CHECKING:
-    from .session import OpenedWorkspace
+from .session import OpenedWorkspace
 
 
 class BaseError(TreeError):

@@ -2,7 +2,7 @@
 
 import os
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -80,30 +80,3 @@ def _make_key(finding: Finding) -> tuple[str, str, str, int, str, bool]:
 def _make_nameless_key(finding: Finding) -> tuple[str, str, str, int, int, str, bool]:
     said = finding.message.replace(f"`{finding.subject}`", "``")
     return finding.rule, finding.package, finding.path, finding.line, finding.column, said, finding.ahead
-
-
-class UpgradeItem(NamedTuple):
-    """One thing to do: findings of one cause, which is the same rule and subject in one package. The gravest come
-    first; there is at least one."""
-
-    package: str
-    rule: str
-    subject: str
-    severity: str
-    findings: tuple[Finding, ...]
-
-
-def group_items(findings: Iterable[Finding], order: Sequence[str]) -> list[UpgradeItem]:
-    """Findings as things to do, package by package in an order; in a package the gravest first, then by place.
-
-    What belongs to no package comes first, and a package that the order does not name last.
-    """
-    causes: dict[tuple[str, str, str], list[Finding]] = defaultdict(list)
-    for finding in findings:
-        causes[finding.package, finding.rule, finding.subject].append(finding)
-    place = {"": -1} | {name: number for number, name in enumerate(order)}
-    made = []
-    for (package, rule, subject), group in causes.items():
-        group.sort(key=lambda finding: -rank(finding.severity))
-        made.append(UpgradeItem(package, rule, subject, group[0].severity, tuple(group)))
-    return sorted(made, key=lambda item: (place.get(item.package, len(place)), item.package, -rank(item.severity)))

@@ -10,10 +10,10 @@ from ..model.build_order import build_order
 from ..rules.rule import Finding
 from ..rules.severity import Doubt
 from . import fix
-from .findings import rank
+from .findings import UpgradeItem, group_items, rank
 from .report import Report, ReportedPackage, ReportedTarget
 from .session import CheckError, Options, make_reader
-from .target_compare import UpgradeItem, compare_findings, group_items, open_sides
+from .target_compare import compare_findings, open_sides
 
 
 class Upgrade(NamedTuple):

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from ...edges.console import escape, format_count
 from ..model.view import TargetView
 from ..rules.rule import Finding
+from ..targets.changes import list_changes
 from ..tree import JoinedTree
 from .check_opened import check_opened
 from .session import Options, open_workspace
@@ -111,7 +112,7 @@ def _find_answers(view: TargetView, name: str, findings: Sequence[Finding]) -> l
         f"{c.kind}: `{c.old}`"
         + (f" → `{c.new}`" if c.new else "")
         + f" ({c.state}{', since ' + c.since if c.since else ''})"
-        for c in view.target.changes()
+        for c in list_changes(view.target)
         if name in (c.old, c.new, c.package) or name == c.old.rsplit("::", 1)[-1]
     )
     lost = view.find_lost_header(name)

@@ -11,6 +11,7 @@ from typing import Any
 from ...edges.console import UserError, escape, rewrite, run_command, say, write, write_exactly, write_json
 from ...edges.files import check_writable_path, find_outermost, write_file
 from ..report.style import PLAIN, Style, choose_style
+from ..tree.ignore import find_enclosing_repository
 
 READ_SO_FAR = "interrupted; what was read is kept, and the next run continues from there"
 PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run continues from there"
@@ -98,19 +99,10 @@ def _place_of(file: Path, path: object) -> tuple[str, str | None]:
     if not os.path.isabs(name):
         name = os.path.join(os.getcwd(), name)
     folders = [os.fspath(path)] if isinstance(path, str | os.PathLike) and path != "" else []
-    folders += [found for folder in (*folders, ".") if (found := _find_repository(os.path.realpath(folder)))]
-    folders += [found] if (found := _find_repository(os.path.dirname(os.path.abspath(name)))) else []
+    folders += [found for folder in (*folders, ".") if (found := find_enclosing_repository(os.path.realpath(folder)))]
+    folders += [found] if (found := find_enclosing_repository(os.path.dirname(os.path.abspath(name)))) else []
     beneath = find_outermost(name, folders)
     return (name, None) if beneath is None else (os.path.abspath(name), beneath)
-
-
-def _find_repository(place: str) -> str:
-    """The nearest folder with a `.git` in it, from an absolute path upwards; empty when there is none."""
-    while not os.path.lexists(os.path.join(place, ".git")):
-        place, last = os.path.dirname(place), place
-        if place == last:
-            return ""
-    return place
 
 
 def _encode(text: str) -> bytes:

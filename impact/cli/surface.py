@@ -13,12 +13,13 @@ from .output import READ_SO_FAR, check_output, find_style, make_command, print_a
 @make_command("text", "json", "markdown")
 def surface_show(package: str, *, repos, all, format, output, jobs) -> str:
     """What a version of a package offers."""
-    from ..report import surface as report
+    from ...databuild.surface import report
+    from ...databuild.surface.lookup import find_surface, list_hashes
 
     with _open_store() as store:
         name, _, asked = package.partition("@")
-        source, state = _find_surface(name, asked, repos, store, jobs)
-        surface, hashes = state.surfaces[name], _list_hashes(name, source.asked, state)
+        source, state = find_surface(name, asked, repos, store, jobs)
+        surface, hashes = state.surfaces[name], list_hashes(name, source.asked, state)
         if format == "json":
             return report.show_json(surface, source, __version__, hashes)
         if format == "markdown":
@@ -29,9 +30,10 @@ def surface_show(package: str, *, repos, all, format, output, jobs) -> str:
 @make_command("text", "json", "markdown")
 def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format, output, jobs) -> str:
     """What changed between two versions of a package, or of all packages of a clone."""
+    from ...databuild.surface import report
     from ...databuild.surface.clones import Clone
     from ...databuild.surface.compare import RepositorySurfaces, compare, compare_states
-    from ..report import surface as report
+    from ...databuild.surface.lookup import find_surface, list_hashes
 
     with _open_store() as store:
         if os.path.isdir(what) and repos is None:
@@ -46,10 +48,10 @@ def surface_diff(what: str, old: str, new: str, *, repos, packages, all, format,
         elif os.sep in what and not os.path.isdir(what):
             raise UserError(f"{what}: no such folder; give a package, or the path of a clone")
         else:
-            (first, before), (second, after) = (_find_surface(what, asked, repos, store, jobs) for asked in (old, new))
+            (first, before), (second, after) = (find_surface(what, asked, repos, store, jobs) for asked in (old, new))
             changes = {what: compare(before.surfaces[what], after.surfaces[what], before, after)}
             sources = [first, second]
-            old_hashes, new_hashes = _list_hashes(what, first.asked, before), _list_hashes(what, second.asked, after)
+            old_hashes, new_hashes = list_hashes(what, first.asked, before), list_hashes(what, second.asked, after)
             changes[what] = tuple(
                 report.add_hashes(change, old_hashes, new_hashes) if change.kind == "wire" else change
                 for change in changes[what]
@@ -90,53 +92,6 @@ def surface_build(*, distro, repos, packages, all_versions, output, onto, jobs, 
         return 0
 
     return run_command(build_surfaces, READ_SO_FAR, output)
-
-
-def _find_surface(package: str, asked: str, repos: Path | None, store, jobs):
-    """Where a version of a package was found, and its state: in clones, else in what is shipped."""
-    from ...databuild.surface.clones import Clones
-    from ...databuild.surface.installed import is_installed, read_surface
-    from ...databuild.surface.stored_versions import StoredVersions
-    from ..report.surface import VersionSource
-    from ..targets.surface.store import load_shipped
-
-    if is_installed(asked):
-        surface, state = read_surface(package, asked)
-        return VersionSource(asked, surface.version, asked, "installed"), state
-    if repos is None:
-        versions = StoredVersions(load_shipped())
-        asked = asked or versions.find_newest(package)
-        stored, state = versions.find_surface(package, asked)
-        return VersionSource(asked, stored.version, "the shipped surfaces", stored.stored, stored.approximate), state
-    clones = Clones(repos)
-    asked = asked or clones.find_newest(package)
-    found, state = clones.find_surface(package, asked, store, jobs)
-    revision = found.revision.removeprefix("refs/").partition("/")[2] or found.revision
-    return VersionSource(asked, found.version, found.clone.name, revision, found.approximate), state
-
-
-def _list_hashes(package: str, asked: str, state) -> dict[str, str]:
-    """The hashes of a package's interfaces, by `msg/Name`, as far as all that is in them is known: in the state of its
-    repository, or of other packages of the distro that was asked for."""
-    from ...databuild.surface.hashes import compute_hash
-    from ...databuild.surface.installed import is_installed
-    from ...databuild.surface.stored_versions import StoredVersions
-    from ..targets.surface.store import load_shipped
-
-    others = None if asked[:1].isdigit() or is_installed(asked) else StoredVersions(load_shipped())
-
-    def find(name: str):
-        owner, _, short = name.partition("/")
-        if owner in state.surfaces:
-            return dict(state.surfaces[owner].interfaces).get(f"msg/{short}")
-        return others.find_message(asked, name) if others is not None else None
-
-    surface = state.surfaces[package]
-    ros = 2 if surface.build.build_type.startswith("ament") else 1
-    known = ((
-        name, compute_hash(f"{package}/{name}", ros, definition, find)
-    ) for name, definition in surface.interfaces)
-    return {name: reported for name, reported in known if reported is not None}
 
 
 @contextmanager

@@ -82,6 +82,7 @@ BY_NAME = {
     "requirements.txt": "requirements",
     ".gitignore": "gitignore",
 }
+HEADER_ENDINGS = (".h", ".hpp", ".hh", ".hxx", ".h++", ".ipp", ".tpp", ".tcc", ".txx", ".inl", ".impl", ".cuh")
 BY_ENDING = {
     **{name: name for name in ("msg", "srv", "action", "idl", "cmake")},
     "py": "python",
@@ -91,8 +92,8 @@ BY_ENDING = {
     "cfg": "script",
     "xml": "xml",
     **dict.fromkeys(("xacro", "urdf", "sdf", "srdf", "world", "gazebo"), "xacro"),
-    **dict.fromkeys(("h", "hpp", "hh", "hxx", "h++", "ipp", "tpp", "tcc", "txx", "inl", "impl", "cuh", "cu"), "cpp"),
-    **dict.fromkeys(("c", "cc", "cpp", "cxx", "c++"), "cpp"),
+    **dict.fromkeys((ending[1:] for ending in HEADER_ENDINGS), "cpp"),
+    **dict.fromkeys(("c", "cc", "cpp", "cxx", "c++", "cu"), "cpp"),
 }
 # Templates that configure_file() fills in; what they mention is mentioned all the same.
 TEMPLATES = {"cmake", "h", "hpp", "cpp", "cc", "launch", "urdf", "xacro", "world", "sdf", "sh", "bash"}

@@ -80,13 +80,13 @@ def explain_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> str
     return describe_ways(before, after, is_implied)
 
 
-def is_impossible(guards: Guards, language: Language | None = None, milliseconds: int = MILLISECONDS) -> bool:
+def is_impossible(guards: Guards, language: Language | None = None) -> bool:
     """Whether guards contradict each other. That tells that the statement never runs only where nothing they name is
     assigned between them."""
     language = language or detect_language((guards,))
     pieces = collect_pieces(guards, language, _NOTHING)
     try:
-        return not Solver(language, milliseconds).is_possible(_join_pieces(pieces))
+        return not Solver(language, MILLISECONDS).is_possible(_join_pieces(pieces))
     except Undecided:
         return False
 

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
 from ..facts.cpp.schema import CodeSpot
 from ..facts.cpp.syntax import ASSIGNING
+from ..facts.surface import Entity
+from ..targets.asked_versions import AskedVersions
+from ..targets.surface.changes import ChangeEvent, Form, Line
 from ..targets.surface.offers import Standing, find_standing
 from ..targets.surface.offers_cpp import (
     compare_defaults,
@@ -22,12 +25,7 @@ from ..targets.surface.offers_cpp import (
     list_refused_kinds,
 )
 from ..targets.surface.overrides import list_virtual_forms
-
-if TYPE_CHECKING:
-    from ..facts.surface import Entity
-    from ..targets.asked_versions import AskedVersions
-    from ..targets.surface.changes import ChangeEvent, Form, Line
-    from ..targets.surface.store import SurfaceHistory
+from ..targets.surface.store import SurfaceHistory
 
 T = TypeVar("T")
 CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))

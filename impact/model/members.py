@@ -6,13 +6,11 @@ What the files themselves say is read in cpp/uses.py and members_python.py.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ..facts.cpp.schema import CodeSpot
+from ..targets.asked_versions import AskedVersions
 from ..targets.surface.fields import ROS1_SUFFIXES, Definition, FieldMember, Fields
-
-if TYPE_CHECKING:
-    from ..targets.asked_versions import AskedVersions
 
 
 class NamedInterface(NamedTuple):

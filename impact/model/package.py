@@ -24,7 +24,7 @@ from ..facts.cpp.lexical import CppFile, Include
 from ..facts.cpp.schema import CodeSpot
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
-from ..facts.kinds import make_empty
+from ..facts.kinds import HEADER_ENDINGS, make_empty
 from ..facts.launch.actions import LaunchFile
 from ..facts.launch.references import PluginClass
 from ..facts.manifest import Manifest
@@ -40,7 +40,6 @@ from ..facts.words import mentions
 from ..targets.providers.message_headers import parse_type
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
-from .cmake.installed import HEADER_ENDINGS
 from .cpp.offered_headers import OfferedHeaders, collect_words
 from .macros import Macros
 from .python.undefined import (

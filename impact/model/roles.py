@@ -9,14 +9,11 @@ that happens to need it drops it.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from ...edges.memory import cache_method
 from ...edges.reach import walk
-
-if TYPE_CHECKING:
-    from .view import TargetView
-    from .workspace import Package
+from .on_target import WorkspaceOnTarget
+from .workspace import Package
 
 KINDS = {
     "build": frozenset({"build", "buildtool", "build_export", "buildtool_export"}),
@@ -38,7 +35,7 @@ _HANDED_ON = ("ament_export_dependencies", "catkin_depends", "system_depends")
 class Roles:
     """The closures of the packages of one view."""
 
-    def __init__(self, view: TargetView):
+    def __init__(self, view: WorkspaceOnTarget):
         self._view = view
 
     @cache_method

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from ..targets.providers.library import find_default_standard, get_year
 from ..targets.version import is_at_least
 from .cmake.links import list_reached_targets, resolve_package
-
-if TYPE_CHECKING:
-    from .package import NameUse
-    from .view import TargetView
-    from .workspace import Package
-
+from .package import NameUse
+from .view import TargetView
+from .workspace import Package
 
 _PASSING_ON = ("link", "ament", "interfaces")
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ...edges.memory import cache_in_derived
 from ..targets.availability import decides
 from ..targets.parameters import find_last_part, find_renamed_parameters
 from ..targets.surface.changes import PARAMETER
 from ..targets.surface.offers import Offered, PackageOffer
-
-if TYPE_CHECKING:
-    from .package import SettingUse
-    from .view import TargetView
-    from .workspace import Package
+from .package import SettingUse
+from .view import TargetView
+from .workspace import Package
 
 
 class UndeclaredParameter(NamedTuple):

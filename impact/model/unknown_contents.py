@@ -10,17 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 from ...edges.memory import cache_method
+from ..targets.target import Provider
+from .on_target import INTERFACES, WorkspaceOnTarget
 from .workspace import Package
 
-if TYPE_CHECKING:
-    from ..targets.target import Provider
-    from .view import TargetView
-
-# How packages of interfaces are called, and what makes interfaces and runs with them.
-INTERFACES = re.compile(r"_(?:msgs?|messages|srvs|actions|interfaces)\Z")
+# What makes interfaces and runs with them.
 _WITH_INTERFACES = (
     "rosidl_default_generators", "rosidl_default_runtime", "message_generation", "message_runtime",
 )  # fmt: skip
@@ -51,7 +47,7 @@ def is_called_after(name: str, folder: str) -> bool:
 class UnknownContents:
     """What may be there for the packages of a workspace on one target although nobody is known to have it."""
 
-    def __init__(self, view: TargetView):
+    def __init__(self, view: WorkspaceOnTarget):
         self._view = view
 
     def may_hold(self, package: Package, wanted: str, providers: tuple[Provider, ...] = ()) -> bool:

@@ -26,7 +26,7 @@ from ...edges.memory import cache_method
 from ..facts.condition import Condition
 from ..facts.distros import ContainerFile, DistroFile
 from ..facts.extract import ExtractedFacts
-from ..facts.kinds import make_overall_version
+from ..facts.kinds import HEADER_ENDINGS, make_overall_version
 from ..facts.manifest import Manifest
 from ..facts.requirements import RequirementsFile
 from ..facts.setup import SetupFile
@@ -35,7 +35,6 @@ from ..source_keys import compute_source_key
 from ..targets.surface.fields import ROS1_SUFFIXES, make_snake_case
 from ..tree.paths import Tree, is_vendored
 from .cmake.build import At, Build
-from .cmake.installed import HEADER_NAME
 from .cmake.interpret import interpret, list_extras
 from .cmake.interpreter import calls_unmodelled
 from .cpp.offered_headers import OfferedHeaders
@@ -256,7 +255,7 @@ class Workspace:
         the packages, the last first."""
         found: dict[str, list[str]] = {}
         for package in reversed(list(self)):
-            made = {posixpath.basename(path) for path in package.build.made if HEADER_NAME.search(path)}
+            made = {posixpath.basename(path) for path in package.build.made if path.endswith(HEADER_ENDINGS)}
             for item in package.build.generated:
                 if item.how == "parameters":
                     made.add(f"{item.target}.hpp")

@@ -128,12 +128,12 @@ def _render_tree(effect: Effect, names: dict[str, str], everything: bool, style:
         yield f"      and {format_count(len(hops) - len(kept), 'node')} further downstream"
 
 
-def render_short(impact: Impact, style: Style, base: str = "", most: int = _MOST_EFFECTS) -> list[str]:
-    """Lines for the end of another report: each change with the nearest nodes that it reaches. most: as many changes;
-    base: what it is compared with."""
+def render_short(impact: Impact, style: Style, base: str) -> list[str]:
+    """Lines for the end of another report: each change with the nearest nodes that it reaches. base: what it is
+    compared with."""
     names = name_nodes(impact.nodes)
     lines: list[str] = []
-    for group in group_effects(impact.effects)[:most]:
+    for group in group_effects(impact.effects)[:_MOST_EFFECTS]:
         for effect in group[:_MOST_NODES]:
             reported = effect if len(group) == 1 else msgspec.structs.replace(effect, why="")
             lines += _render_head(reported, names, style)
@@ -141,7 +141,7 @@ def render_short(impact: Impact, style: Style, base: str = "", most: int = _MOST
             lines.append(f"  and {len(group) - _MOST_NODES} more")
         near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in group[0].reaches))
         lines += _render([LinePart(f"reaches {_format_names(near)}" if near else _explain_none(group[0]))], style, 6, 8)
-    left = sum(map(len, group_effects(impact.effects)[most:]))
+    left = sum(map(len, group_effects(impact.effects)[_MOST_EFFECTS:]))
     if left:
         said = f"and {format_count(left, 'further change')}; `rosimpact impact --base {base}` shows all"
         lines += _render([LinePart(said)], style, 2, 4)

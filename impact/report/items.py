@@ -4,8 +4,8 @@ from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
 from ...edges.console import escape, format_count
+from ..analysis.findings import UpgradeItem
 from ..analysis.report import Report, group_alike
-from ..analysis.target_compare import UpgradeItem
 from ..rules.rule import Finding
 from . import json
 from .style import Style, paint

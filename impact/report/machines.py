@@ -89,7 +89,7 @@ def _format_summary(found: Machines, style: Style) -> str:
     parts = [
         f"{alone} only on {escape(target.name)}"
         for target in _get_targets(found)
-        if (alone := format_severities((h for h in found.harms if target.name in h.findings[0].targets), " and "))
+        if (alone := format_severities(h for h in found.harms if target.name in h.findings[0].targets))
     ]
     reported = ", ".join(parts) or "nothing breaks on only one of them"
     both = f"{format_count(found.both, 'finding')} on both" if found.both else ""

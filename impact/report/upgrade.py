@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import escape, format_count
+from ..analysis.findings import UpgradeItem
 from ..analysis.report import count_by_severity, format_causes, format_coverage, format_gaps, format_severities
-from ..analysis.target_compare import UpgradeItem
 from ..analysis.upgrade import Upgrade
 from ..rules.rule import Finding
 from . import html, json
@@ -34,7 +34,7 @@ def format_verdict(found: Upgrade) -> str:
         return "; ".join([f"{way}: no {'new' if old else 'known'} break in {total}", *rest, *([gaps] if gaps else [])])
     broken = _count_packages(found, (item for item in found.breaks if item.severity == "error"))
     touched = broken or _count_packages(found, found.breaks)
-    what = format_severities(found.breaks, " and ")
+    what = format_severities(found.breaks)
     places = format_count(sum(len(item.findings) for item in found.breaks), "place")
     return f"{way} {'breaks' if broken else 'may break'} {touched:,} of {total}: {what} to fix, in {places}"
 

@@ -4,10 +4,9 @@ from ..model.cmake.build import At
 from ..model.view import Need, TargetView, make_sort_key
 from ..model.workspace import Package, Workspace
 from .fix_actions import Declare, FixAction, Insert, Remove, Replace, translate_tag
-from .rule import Diagnostic, Finding, rule
+from .rule import Diagnostic, Finding, Upcoming, rate_upcoming, rule
 from .severity import SEVERITIES, Doubt, Together, limit_severity, list_place_doubts
 from .text import Text, Value
-from .upcoming import Upcoming, rate_upcoming
 
 __all__ = [
     "SEVERITIES", "At", "Declare", "Diagnostic", "Doubt", "Finding", "FixAction", "Insert", "Need", "Package", "Remove",

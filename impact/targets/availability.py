@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
-from .changes import DISTROS, ChangeRow, find_removal_version, find_version, has_reached, load_rows
+from .changes import DISTROS, ChangeRow, find_removal_version, find_version, has_reached, list_changes, load_rows
 from .distro.known import list_known_distros, release_day
 from .evidence import make_evidence, make_offer_evidence
 from .evidence_record import Evidence
@@ -94,7 +94,7 @@ def find_coming_changes(target: DistroTarget, ahead: Horizon) -> tuple[ChangeInF
     """Reviewed changes that remove something on a horizon which a target has: of packages and libraries that are
     there in another version, and packages themselves."""
 
-    here, there = target.changes().removed, ahead.target.changes().removed
+    here, there = list_changes(target).removed, list_changes(ahead.target).removed
     new = there.keys() - here.keys()
 
     @cache
@@ -221,7 +221,8 @@ class Availabilities:
     def _rows(self) -> dict[tuple[str, str], list[tuple[ChangeInForce, Horizon | None]]]:
         """Reviewed rows by what they are about and its name, each with the horizon where it will be in force."""
         found: dict[tuple[str, str], list[tuple[ChangeInForce, Horizon | None]]] = {}
-        rows = ((change, None) for change in sorted(self.target.changes(), key=lambda one: one.kind in _LESS_TELLING))
+        here = sorted(list_changes(self.target), key=lambda one: one.kind in _LESS_TELLING)
+        rows = ((change, None) for change in here)
         coming: dict[str, tuple[ChangeInForce, Horizon]] = {}
         for ahead, _ in self.ahead:
             for change in find_coming_changes(self.target, ahead):
@@ -236,7 +237,7 @@ class Availabilities:
     @cached_property
     def replacing_headers(self) -> dict[str, bool]:
         """Headers that reviewed rows name for others that are not as they were, and whether they are there."""
-        rows = (change for change in self.target.changes() if change.kind.startswith("header") and change.new)
+        rows = (change for change in list_changes(self.target) if change.kind.startswith("header") and change.new)
         return {change.new: change.state != "absent" for change in rows}
 
     def _is_deprecated(self, here: Availability) -> bool:

@@ -21,7 +21,7 @@ from .distro.known import release_day
 from .providers.libraries import load_libraries
 from .providers.providers import Providers, load_providers
 from .snapshot import DATA, SnapshotError, read_table
-from .target import ChangeInForce
+from .target import ChangeInForce, ChangeTable
 from .version import is_at_least
 
 if TYPE_CHECKING:
@@ -264,6 +264,12 @@ def changes_in_force(target: DistroTarget, providers: Providers | None = None) -
         if state:
             found.append(_make_change(row, state, version))
     return tuple(found)
+
+
+def list_changes(target: DistroTarget) -> ChangeTable:
+    """Known upstream changes that are in force on a target, deprecations included, worked out once."""
+    known = target.known_changes
+    return target.set_changes(changes_in_force(target)) if known is None else known
 
 
 def _make_change(row: ChangeRow, state: str, version: str) -> ChangeInForce:

@@ -8,21 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import cache, cmp_to_key
-from typing import TYPE_CHECKING
 
 from .changes import DISTROS, ChangeRow, find_version, has_reached, load_rows, load_uses
+from .distro.distro import DistroTarget
 from .distro.known import list_releases, release_day
 from .evidence_record import Evidence, OnTarget
 from .providers.providers import Providers
-from .surface.offers import classify_event, is_there_at, list_declared
+from .surface.changes import ChangeEvent, Line
+from .surface.offers import Offered, classify_event, is_there_at, list_declared
 from .surface.store import load_shipped
 from .target import ChangeInForce
 from .version import compare, is_at_least, parse
-
-if TYPE_CHECKING:
-    from .distro.distro import DistroTarget
-    from .surface.changes import ChangeEvent, Line
-    from .surface.offers import Offered
 
 
 def make_evidence(change: ChangeInForce) -> Evidence:

@@ -9,12 +9,13 @@ import re
 from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ...edges import files
 from ...edges.console import escape
 from ...edges.limits import get_limits
-from ..config import check_inside, lies_in
+from ..config import Config, check_inside, lies_in
+from ..tree import Tree
 from ..tree.ignore import find_git_dir
 from ..tree.paths import is_vendored
 from . import snapshot as snapshots
@@ -22,10 +23,6 @@ from .distro.distro import DistroTarget, TargetError
 from .distro.known import KnownDistro, list_known_distros, list_rosdep_systems, suggest_name
 from .platform import CODENAMES, OTHER_RELEASES, OTHER_SYSTEMS, normalize_library_name, normalize_platform
 from .snapshot import Snapshot
-
-if TYPE_CHECKING:
-    from ..config import Config
-    from ..tree import Tree
 
 __all__ = ["Chosen", "TargetError", "choose_default_distros", "choose_targets", "find_named_distros", "parse_target"]
 

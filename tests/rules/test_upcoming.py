@@ -2,9 +2,8 @@
 
 from rosimpact.impact.analysis.findings import lower_repeats
 from rosimpact.impact.model.cmake.build import At
-from rosimpact.impact.rules.rule import Diagnostic, Rule
+from rosimpact.impact.rules.rule import Diagnostic, Rule, Upcoming, rate_upcoming
 from rosimpact.impact.rules.severity import Doubt
-from rosimpact.impact.rules.upcoming import Upcoming, rate_upcoming
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.symbol import Horizon
 

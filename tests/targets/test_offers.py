@@ -8,7 +8,7 @@ from rosimpact.databuild.extract.python import extract as module
 from rosimpact.databuild.jobs import Packing
 from rosimpact.databuild.surface.compare import RepositorySurfaces
 from rosimpact.databuild.surface_file import write
-from rosimpact.impact.targets.surface.offers import Offers
+from rosimpact.impact.targets.surface.offers import Offers, list_declared
 from rosimpact.impact.targets.surface.offers_cpp import check_use
 from rosimpact.impact.targets.surface.store import Surfaces
 from rosimpact.impact.targets.surface.surface import (
@@ -92,7 +92,7 @@ def test_forms_say_how_a_function_is_called(store):
     assert [(o.fewest, o.most) for o in new.before.overloads] == [(1, 2)]
     assert old.here == new.before and old.after == new.here and (old.coming, new.last) == ("2.0.0", "1.0.0")
     package = Offers(target(arm="2.0.0"), surfaces).find_package("arm")
-    assert package.list_declared("c++", "A::f", "1.0.0") == ("void A::f(int, double = 0)",)
+    assert list_declared(package.history, "c++", "A::f", "1.0.0") == ("void A::f(int, double = 0)",)
 
 
 def test_an_overload_that_goes_leaves_the_name(store):
@@ -129,7 +129,7 @@ def test_python_and_programs(store):
     moved = package.get("python", "arm.move")
     assert (moved.state, moved.last, moved.first) == ("changed", "1.0.0", "2.0.0")
     assert package.get("executable", "drive").state == "removed"
-    assert package.list_declared("python", "arm.move", "2.0.0") == ("arm.move(x, *, speed)",)
+    assert list_declared(package.history, "python", "arm.move", "2.0.0") == ("arm.move(x, *, speed)",)
 
 
 def test_what_another_package_has_now_is_moved(store):
@@ -154,8 +154,8 @@ def test_a_launch_file_of_another_package_is_not_the_one_that_is_gone(store):
 def test_declarations_of_python_modules_and_values(store):
     surfaces = store(surface("arm", "1.0.0", python="SPEED = 2\n"))
     package = Offers(target(arm="1.0.0"), surfaces).find_package("arm")
-    assert package.list_declared("python", "arm", "1.0.0") == ()
-    assert package.list_declared("python", "arm.SPEED", "1.0.0") == ("arm.SPEED = 2",)
+    assert list_declared(package.history, "python", "arm", "1.0.0") == ()
+    assert list_declared(package.history, "python", "arm.SPEED", "1.0.0") == ("arm.SPEED = 2",)
 
 
 def test_what_another_repository_has_is_moved_where_the_target_has_that(store):

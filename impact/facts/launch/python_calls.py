@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 import json
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from .actions import (
     Action,
@@ -42,11 +42,8 @@ from .python_values import (
     join_conditions,
     make_parent_path,
 )
+from .python_walk import MOST_TURNS, Walker
 
-if TYPE_CHECKING:
-    from .python import Walker
-
-MOST_TURNS = 200
 _TYPES = {"bool": "bool", "int": "int", "float": "double", "str": "str"}
 _UNSCOPED = (("scoped", make_literal("false")),)
 
@@ -684,3 +681,10 @@ MAKERS: dict[str, Maker] = {
     "len": _measure_length,
     **dict.fromkeys(("copy", "deepcopy"), _copy_value),
 }  # fmt: skip
+
+
+def make(walker: Walker, node: ast.Call, path: str, arguments: list[Any], keywords: dict[str, Any]) -> Any:
+    """What a call of an imported name makes, Unknown where that is not known. path: as imported."""
+    call = LaunchCall(walker, node, path, arguments, keywords)
+    maker = MAKERS.get(path.rpartition(".")[2])
+    return call.unknown if maker is None else maker(call)

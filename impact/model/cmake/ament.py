@@ -380,7 +380,7 @@ def run_auto_package(run: Interpreter, call: CommandCall, args: list[Word]) -> N
 @stands_in_for("autoware_package")
 def run_autoware_package(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """run_autoware_package() of autoware_cmake: C++17, ament_cmake_auto, all declared dependencies, Eigen."""
-    _set_wrapper_standard(run, call, 17)
+    _set_wrapper_standard(run, call)
     for name in ("ament_cmake_auto", "eigen3_cmake_module", "Eigen3"):
         run.add_found(FoundPackage(name, "find_package", run.locate(call.at), conditions=run.conditions, via=call.name))
     find_build_dependencies(run, call, [])
@@ -389,19 +389,20 @@ def run_autoware_package(run: Interpreter, call: CommandCall, args: list[Word]) 
 @stands_in_for("nav2_package", "moveit_package")
 def set_compile_defaults(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """nav2_package() of nav2_common and moveit_package() of moveit_common: C++17 unless another is set."""
-    _set_wrapper_standard(run, call, 17)
+    _set_wrapper_standard(run, call)
 
 
 @stands_in_for("set_compiler_options", "export_windows_symbols")
 def set_ros2_control_defaults(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """set_compiler_options() and export_windows_symbols() of ros2_control_cmake: warnings, and C++17 unless set."""
     if call.name == "set_compiler_options":
-        _set_wrapper_standard(run, call, 17)
+        _set_wrapper_standard(run, call)
 
 
-def _set_wrapper_standard(run: Interpreter, call: CommandCall, number: int) -> None:
+def _set_wrapper_standard(run: Interpreter, call: CommandCall) -> None:
+    """C++17, where nothing else is set."""
     if run.get("CMAKE_CXX_STANDARD") is None and not run.silent:
-        run.standards.append((number, run.locate(call.at), True, False, run.conditions))
+        run.standards.append((17, run.locate(call.at), True, False, run.conditions))
 
 
 @handles("ament_lint_auto_find_test_dependencies")

@@ -4,20 +4,29 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from ...conditions.cmake import COMPARISONS, NUMBER, CMakeTest, Token, parse_constant
 from .names import SINCE
 from .regex import match
-from .values import split_list
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
+from .values import CMakeValue, split_list
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*\Z")
 
 
-def evaluate(tokens: Sequence[Token], world: Interpreter) -> bool | None:
+class CMakeWorld(Protocol):
+    """What tests ask of the interpreter, which describes it. None is what is not known."""
+
+    def get(self, name: str) -> CMakeValue | None: ...
+    def is_target(self, name: str) -> bool | None: ...
+    def is_command(self, name: str) -> bool | None: ...
+    def has_path(self, path: str) -> bool | None: ...
+    def protects_quoted(self) -> bool: ...
+    def set_match_groups(self, groups: tuple[str, ...]) -> None: ...
+    def spend(self, steps: int) -> None: ...
+
+
+def evaluate(tokens: Sequence[Token], world: CMakeWorld) -> bool | None:
     """The value of a condition, None when it depends on what is not known or is malformed."""
     return _InWorld(tokens, world).evaluate_tokens() if tokens else False
 
@@ -45,7 +54,7 @@ def make_version_key(text: str) -> tuple[int, ...]:
 class _InWorld(CMakeTest):
     """A test with the variables, targets and files that the interpreter knows."""
 
-    def __init__(self, tokens: Sequence[Token], world: Interpreter) -> None:
+    def __init__(self, tokens: Sequence[Token], world: CMakeWorld) -> None:
         super().__init__(tokens)
         self.world = world
 

@@ -6,16 +6,11 @@ import fnmatch
 import posixpath
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from ...facts.kinds import HEADER_ENDINGS
+from ..workspace import Package
 from .build import Install
-
-if TYPE_CHECKING:
-    from ..workspace import Package
-
-# Names of headers, by their last part.
-HEADER_ENDINGS = (".h", ".hpp", ".hh", ".hxx", ".h++", ".ipp", ".tpp", ".tcc", ".txx", ".inl", ".impl", ".cuh")
-HEADER_NAME = re.compile(f"(?:{'|'.join(map(re.escape, HEADER_ENDINGS))})\\Z")
 
 
 class InstalledHeaders(NamedTuple):
@@ -35,13 +30,13 @@ def collect_installed_headers(package: Package) -> InstalledHeaders:
         if install.kind not in ("files", "directory", "programs"):
             continue
         if "$" in destination:
-            known = known and not any(HEADER_NAME.search(item) or "include" in item for item in install.items)
+            known = known and not any(item.endswith(HEADER_ENDINGS) or "include" in item for item in install.items)
             continue
         if not f"{destination}/".startswith("include/"):
             continue
         known = known and not any("$" in item for item in install.items)
         for path, place in list_copied_files(install, destination, package.linked.files):
-            if HEADER_NAME.search(place):
+            if place.endswith(HEADER_ENDINGS):
                 found[path] = place
     if package.build.finds_declared:
         known = known and (package.build.ament_package or package.build.catkin_package) is not None

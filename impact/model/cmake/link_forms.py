@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ...targets.providers.libraries import load_libraries
 from ...targets.providers.library import list_variables
+from ...targets.surface.surface import BuildSurface
+from ..view import TargetView
+from ..workspace import Package
 from .links import list_exported_targets
-
-if TYPE_CHECKING:
-    from ...targets.surface.surface import BuildSurface
-    from ..view import TargetView
-    from ..workspace import Package
 
 # What has no more than that on a target was not read, or is not linked.
 _LINKED = ("library", "interface", "generated")

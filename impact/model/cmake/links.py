@@ -5,15 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Container, Iterable, Iterator, Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from ....edges.reach import walk
 from ...targets.version import is_at_least
+from ..view import TargetView
+from ..workspace import Package
 from .build import At, BuildTarget, Link, is_for_tests
-
-if TYPE_CHECKING:
-    from ..view import TargetView
-    from ..workspace import Package
 
 _OF_PACKAGE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|INCLUDE_DIRS|INCLUDE_DIR|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
 

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
 
 from .build import DefinedMacro
+from .interpreter import Interpreter
 from .values import Word
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
 
 _MACRO = re.compile(r"(?:-D)?\s*([A-Za-z_]\w*)(?:=(.*))?\Z", re.DOTALL)
 _FLAGS = re.compile(r"(?:^|[\s;\"])-D\s*([A-Za-z_]\w*)(?:=([^\s;\"]*))?")

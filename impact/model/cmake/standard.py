@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
+from .interpreter import Interpreter
 from .macros import note_flag_macros
 from .values import Word
-
-if TYPE_CHECKING:
-    from .interpreter import Interpreter
 
 _FLAG = re.compile(r"(?:^|[\s;:,\"])--?std=(?:c|gnu)\+\+([0-9][0-9a-z])\b")
 _FEATURE = re.compile(r"cxx_std_(\d\d)\b")

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import msgspec
 
 from ....edges.groups import group_pairs
+from .code import Fn
 from .graph import Trigger
-
-if TYPE_CHECKING:
-    from .code import Fn
-    from .join import Join
+from .join import Join
 
 _DEEPEST = 8
 

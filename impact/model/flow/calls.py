@@ -12,9 +12,9 @@ from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import Assignment, FlowCall, FlowExpr
-from .code import Cls, FlowCode, Fn, Variable, get_outer, get_tail, split_name
+from .code import FlowCode, Fn, Variable, get_outer, get_tail
 from .frameworks import FrameworkRow, Frameworks, Spot
-from .types import FlowType, parse_flow_type
+from .types import Cls, FlowType, parse_flow_type, split_name
 
 # Names that mean something else in most code: their receiver has to be known to be of the framework.
 _COMMON = frozenset(

@@ -15,13 +15,12 @@ from ...facts.flow import (
     Assignment,
     DataMember,
     FlowCall,
-    FlowClass,
     FlowExpr,
     FlowFunction,
     FlowParameter,
 )
 from .modules import CodeFile, PythonModules
-from .types import UNKNOWN, FlowType, parse_flow_type
+from .types import UNKNOWN, Cls, FlowType, parse_flow_type, split_name
 
 _Row = TypeVar("_Row", bound=tuple)
 
@@ -74,18 +73,6 @@ class Fn:
         return f"Fn({self.source.path}:{self.facts.line} {self.facts.name})"
 
 
-class Cls:
-    """A class with the file it stands in. name: as its facts have it; parts: of the name. is_local: no other file can
-    name it by its name alone. key: tells it from all others; bodies of one class share it."""
-
-    __slots__ = ("facts", "is_local", "key", "name", "parts", "source")
-
-    def __init__(self, source: CodeFile, facts: FlowClass, is_local: bool):
-        self.source, self.facts, self.name, self.is_local = source, facts, facts.name, is_local
-        self.parts = split_name(facts.name)
-        self.key = f"{source.path if is_local else source.package}::{facts.name}"
-
-
 class Variable(NamedTuple):
     """Which variable a name means. kind: `member` (owner: the class's key), `local` (owner: the function's place) or
     `global` (owner: path of the file)."""
@@ -133,12 +120,6 @@ class _About(Generic[_Row]):
         """The rows whose path ends in a name, in order, with their path."""
         found = ((place, path) for path in self._paths.get(name, ()) for place in self._places[path])
         yield from ((path, self._rows[place]) for place, path in sorted(found))
-
-
-@lru_cache(maxsize=100_000)
-def split_name(name: str) -> tuple[str, ...]:
-    """The parts of a path or qualified name of either language."""
-    return tuple(part for part in name.replace("::", ".").split(".") if part)
 
 
 @lru_cache(maxsize=100_000)

@@ -14,8 +14,9 @@ from typing import NamedTuple
 
 from ...facts.flow import FlowExpr
 from ..workspace import Workspace
-from .code import Fn, get_tail, list_made, split_name
+from .code import Fn, get_tail, list_made
 from .join import Join, Running
+from .types import split_name
 
 _LOADERS = frozenset(
     ("createInstance", "createSharedInstance", "createUniqueInstance", "createUnmanagedInstance", "loadLibraryForClass",

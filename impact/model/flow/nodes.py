@@ -9,9 +9,10 @@ from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowExpr
-from .code import Cls, CodeFile, FlowCode, Fn, get_tail, list_made
+from .code import FlowCode, Fn, get_tail, list_made
 from .endpoints import Sites
-from .types import parse_flow_type
+from .modules import CodeFile
+from .types import Cls, parse_flow_type
 
 _Thing = TypeVar("_Thing")
 

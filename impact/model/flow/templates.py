@@ -11,8 +11,9 @@ from functools import cached_property
 from typing import NamedTuple
 
 from ...facts.cpp.names import split_at_commas
-from .code import Cls, CodeFile, FlowCode, Fn, get_tail, list_made
-from .types import parse_flow_type
+from .code import FlowCode, Fn, get_tail, list_made
+from .modules import CodeFile
+from .types import Cls, parse_flow_type
 
 _DEEPEST = 4
 

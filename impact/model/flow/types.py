@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ...facts.cpp.names import find_closing_angle, split_at_commas
-
-if TYPE_CHECKING:
-    from .code import Cls
+from ...facts.flow import FlowClass
+from .modules import CodeFile
 
 _QUALIFIERS = re.compile(
     r"\b(?:const|constexpr|static|mutable|volatile|inline|extern|typename|struct|class|explicit|virtual|thread_local)\b"
@@ -27,6 +26,24 @@ _INNER = frozenset(
 )  # fmt: skip
 _MESSAGE_ENDINGS = ("ConstSharedPtr", "ConstPtr", "SharedPtr", "Ptr")
 _SPACE = re.compile(r"\s+")
+
+
+@lru_cache(maxsize=100_000)
+def split_name(name: str) -> tuple[str, ...]:
+    """The parts of a path or qualified name of either language."""
+    return tuple(part for part in name.replace("::", ".").split(".") if part)
+
+
+class Cls:
+    """A class with the file it stands in. name: as its facts have it; parts: of the name. is_local: no other file can
+    name it by its name alone. key: tells it from all others; bodies of one class share it."""
+
+    __slots__ = ("facts", "is_local", "key", "name", "parts", "source")
+
+    def __init__(self, source: CodeFile, facts: FlowClass, is_local: bool):
+        self.source, self.facts, self.name, self.is_local = source, facts, facts.name, is_local
+        self.parts = split_name(facts.name)
+        self.key = f"{source.path if is_local else source.package}::{facts.name}"
 
 
 class FlowType(NamedTuple):

@@ -10,9 +10,10 @@ from typing import NamedTuple
 from ...facts.flow import FlowCall, FlowExpr, FlowParameter
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
-from .code import Fn, Variable, find_parameter, get_tail, split_name
+from .code import Fn, Variable, find_parameter, get_tail
 from .graph import How
 from .origins import ObjectOrigins, Origins
+from .types import split_name
 
 NODE, NAMESPACE = "{node}", "{ns}"
 """Stand in a value for the name and the namespace of the node that evaluates it (ROS 2 writes them so in names)."""

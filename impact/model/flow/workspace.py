@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -22,11 +21,10 @@ from .defined import DefinedInterfaces
 from .file_selection import compute_stamp, make_code_selector
 from .graph import Graph
 
-if TYPE_CHECKING:
-    # What is remembered is read without them.
-    from .join import Join
-    from .launches import Launch
-    from .nodes import BuiltPackage
+# What is remembered is read without them.
+from .join import Join
+from .launches import Launch
+from .nodes import BuiltPackage
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
 _BUILD = frozenset(

@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ....edges.console import UserError
 from ....edges.groups import group_pairs
@@ -37,9 +37,6 @@ from .known import (
     suggest_name,
 )
 from .rosdep import decode_rule, iterate_texts, resolve_rule, split_platform
-
-if TYPE_CHECKING:
-    from ..availability import Availabilities, Availability, Symbol
 
 
 class TargetError(UserError):
@@ -83,7 +80,7 @@ _COMES_ALONG = frozenset("eox")
 
 _MOST_TABLES = 32
 _tables: dict[str, ChangeTable] = {}
-"""What DistroTarget.changes() worked out last in this process, by the identity of the target."""
+"""The changes in force on targets of this process, by the identity of the target."""
 
 
 @functools.lru_cache(maxsize=16)
@@ -647,37 +644,20 @@ class DistroTarget:
         own = {name for name, value in self._own_libraries.items() if value} & self._data.list_values("library")
         return frozenset(self._load_libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
 
-    def has_changes(self) -> bool:
-        """True when changes() answers without working them out."""
+    @property
+    def known_changes(self) -> ChangeTable | None:
+        """The upstream changes in force here, once they are worked out; see changes.list_changes()."""
         if self._changes is None and self._data is snapshots.load_snapshot():
             self._changes = _tables.get(self.compute_identity())
-        return self._changes is not None
+        return self._changes
 
-    def set_changes(self, changes: tuple[ChangeInForce, ...]) -> None:
-        """What changes() is to answer, worked out by an earlier run on the same data."""
+    def set_changes(self, changes: tuple[ChangeInForce, ...]) -> ChangeTable:
+        """Notes the upstream changes in force here, worked out now or by an earlier run on the same data."""
         self._changes = ChangeTable(changes)
         if self._data is snapshots.load_snapshot():
             _tables[self.compute_identity()] = self._changes
             if len(_tables) > _MOST_TABLES:
                 del _tables[next(iter(_tables))]
-
-    def find_availability(self, symbol: Symbol) -> Availability:
-        """How the target stands to a package, header, name, CMake name, program, plugin, field or parameter."""
-        return self._availabilities.find_on_horizon(symbol)
-
-    @cached_property
-    def _availabilities(self) -> Availabilities:
-        from ..availability import Availabilities
-
-        return Availabilities(self)
-
-    def changes(self) -> ChangeTable:
-        """Known upstream changes that are in force here, deprecations included."""
-        if not self.has_changes():
-            from ..changes import changes_in_force
-
-            self.set_changes(changes_in_force(self))
-        assert self._changes is not None
         return self._changes
 
 

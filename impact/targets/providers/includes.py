@@ -10,24 +10,22 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from functools import cache, cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import msgspec
 
 from ....edges.memory import cache_method
 from ....edges.reach import Reach
+from ...conditions import Environment
+from ...facts.condition import Condition
+from ..distro.distro import DistroTarget
 from ..snapshot import DATA, read_table
+from ..surface.includes import Include, Included
+from ..surface.store import Surfaces
 from ..version import is_at_least, parse
 from . import message_headers
 from .libraries import load_libraries
 from .standard import DEFINED_IN, find_named, find_oldest_gcc, get_bit, list_brought, list_naming_headers
-
-if TYPE_CHECKING:
-    from ...conditions import Environment
-    from ...facts.condition import Condition
-    from ..distro.distro import DistroTarget
-    from ..surface.includes import Include, Included
-    from ..surface.store import Surfaces
 
 
 class IncludesTable(msgspec.Struct, frozen=True):

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from functools import cache, cached_property, lru_cache, partial
 from itertools import chain, islice, pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import msgspec
 
@@ -22,12 +22,10 @@ from ..platform import find_neighbours
 from ..snapshot import DATA, SnapshotError
 from ..surface.includes import choose_path, covers
 from ..surface.store import StoredRows, StoredSurfacesError, SurfaceHistory
+from ..surface.surface import BuildSurface
 from ..unpacked import read_packed
 from ..version import parse
 from .providers import load_providers
-
-if TYPE_CHECKING:
-    from ..surface.surface import BuildSurface
 
 NEAREST = 4
 """How many of those that bring a header, the nearest first, are asked whether it is theirs."""

@@ -45,41 +45,9 @@ class Form(msgspec.Struct, frozen=True, array_like=True, gc=False):
     deprecated: str | None = None
 
 
-class VersionChange(msgspec.Struct, frozen=True, gc=False):
-    """One difference between two versions of a package.
-
-    side: `c++`, `python`, `message` or `build` (CMake, headers, programs, plugins, launch files).
-    kind: `removed`, `added`, `moved`, `deprecated`, `signature`, `default`, `value`, `type`, `base`, `access`,
-    `deleted`, `pure`, `final`, `kind`, `wire` (both versions of a message do not talk to each other).
-    what: of which sort the thing is (`class`, `method`, `header`, `field`, `target`, `executable` ...).
-    name: as users write it. old, now: declarations. aspects: in what signatures differ.
-    instead: what to use now, where that is known or can be guessed. moved_to: the package that has it now.
-    where: the header or module that has or had it.
-    breaks: code that used the old one may no longer build or run. sure: from 0 to 1.
-    """
-
-    package: str
-    side: str
-    kind: str
-    what: str
-    name: str
-    old: str = ""
-    now: str = ""
-    aspects: tuple[str, ...] = ()
-    instead: str = ""
-    moved_to: str = ""
-    where: str = ""
-    breaks: bool = True
-    sure: float = 1.0
-
-
-OPEN = 0.5
-"""How sure a change is that hangs on something outside of the repository, or that is not understood."""
-
-
 class ComparedThing(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """What the comparison told of a thing, as in VersionChange, without what the line of versions tells as well. now:
-    the message of a deprecation, a value or a default; declarations are in the surfaces."""
+    """What the comparison told of a thing, as in VersionChange of databuild, without what the line of versions tells as
+    well. now: the message of a deprecation, a value or a default; declarations are in the surfaces."""
 
     kind: str
     what: str

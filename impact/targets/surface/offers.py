@@ -6,18 +6,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ....edges.memory import cache_method
 from ...facts.surface import format_declaration
+from ..distro.distro import DistroTarget
 from .changes import ChangeEvent, ComparedThing, Form, Line
-
-if TYPE_CHECKING:
-    from ..distro.distro import DistroTarget
-    from .python import SurfaceNames
-    from .store import SurfaceHistory, Surfaces
-    from .surface import BuildSurface
-
+from .python import SurfaceNames
+from .store import SurfaceHistory, Surfaces
+from .surface import BuildSurface
 
 # Sides whose names many packages have alike (`launch/demo.launch`), so that another package's is no successor.
 _OF_EVERY_PACKAGE = frozenset(("launch file", "launch argument"))
@@ -245,10 +242,6 @@ class PackageOffer:
         """Another package of the target that has the name."""
         others = self._offers.surfaces.list_other_packages(name)
         return next((p for p in others if p != self.package and self._offers.has_name(side, name, p)), "")
-
-    def list_declared(self, side: str, name: str, version: str) -> tuple[str, ...]:
-        """How a stored version declares a name of C++ or Python, a line for each overload."""
-        return list_declared(self.history, side, name, version)
 
 
 def iterate_other_forms(offers: Offers, offered: Offered) -> Iterator[tuple[ChangeEvent, Form, bool]]:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from ...facts.surface import Entity, format_declaration
 from ...facts.usage import split_arguments
@@ -16,9 +15,7 @@ from ..version import is_at_least
 from .changes import Form, Overload
 from .offers import Offered, Offers, PackageOffer, iterate_other_forms, list_declared, make_offered
 from .overrides import Override
-
-if TYPE_CHECKING:
-    from .store import SurfaceHistory
+from .store import SurfaceHistory
 
 
 def _answer(state: State, offered: Offered, form: str = "", earlier: bool = True, sure: bool = True) -> Availability:

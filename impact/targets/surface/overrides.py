@@ -6,15 +6,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from ...facts.surface import CLASSES, Entity
-from .changes import Form, Overload, make_overload
-from .offers import Offered, iterate_other_forms, make_offered
-
-if TYPE_CHECKING:
-    from .changes import ChangeEvent
-    from .offers import Offers
+from .changes import ChangeEvent, Form, Overload, make_overload
+from .offers import Offered, Offers, iterate_other_forms, make_offered
 
 _RESULT = "-> "
 _BASES = ": "

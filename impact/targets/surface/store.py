@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cache, cached_property, lru_cache
 from operator import itemgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -28,9 +28,7 @@ from ..snapshot import DATA, SnapshotError
 from ..unpacked import make_decoder, read_packed
 from .changes import Line
 from .includes import Included, covers
-
-if TYPE_CHECKING:
-    from .surface import BuildSurface, PythonSurface, Surface
+from .surface import BuildSurface, InstalledModule, PythonSurface, Surface
 
 _TYPES = CLASSES | {"enum", "alias"}
 
@@ -56,8 +54,6 @@ _OWN = frozenset({"targets", "libraries", "commands", "programs", "plugins", "la
 @cache
 def _list_build_fields() -> dict[str, Any]:
     """The types of those fields of a BuildSurface that hold several values."""
-    from .surface import BuildSurface
-
     empty = BuildSurface("")
     fields = msgspec.structs.fields(BuildSurface)
     return {field.name: field.type for field in fields if isinstance(getattr(empty, field.name), tuple)}
@@ -80,9 +76,6 @@ class SurfaceHistory:
         build, python = self.build(version), self.load_python(version)
         if build is None or python is None:
             return None
-        # What only changed is asked far more often than a whole version is.
-        from .surface import Surface
-
         guessed, runs_with = next((value for _, value in self._iterate("surface", version)), (False, ()))
         return Surface(
             self.package,
@@ -104,8 +97,6 @@ class SurfaceHistory:
         """What a version gives to CMake and at run time; None for one that is not stored. of: these fields alone."""
         if version not in self.versions:
             return None
-        from .surface import BuildSurface
-
         build = group_pairs(self._iterate("build", version, of=of))
         known = _list_build_fields()
         given = {
@@ -142,8 +133,6 @@ class SurfaceHistory:
         """The Python of a version; None for one that is not stored."""
         if version not in self.versions:
             return None
-        from .surface import InstalledModule, PythonSurface
-
         bound = group_pairs(self._iterate("bound", version, Bound))
         taken = group_pairs(self._iterate("taken", version, ImportedName))
         reported = group_pairs(self._iterate("python", version, str))

@@ -5,7 +5,7 @@ import textwrap
 import pytest
 from rosimpact.impact.facts.launch.actions import LaunchFile, find_literal
 from rosimpact.impact.facts.launch.flow import extract
-from rosimpact.impact.facts.launch.python import MOST_STEPS
+from rosimpact.impact.facts.launch.python_walk import MOST_STEPS
 
 
 def said(value):

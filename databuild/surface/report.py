@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 import msgspec
 
 from ...edges.console import escape, format_json
-from ..facts.surface import FUNCTIONS, format_declaration
-from ..targets.surface.changes import VersionChange
-from ..targets.surface.python import SurfaceNames, write_signature
-from ..targets.surface.surface import Surface
-from .columns import LinePart, lay_out
-from .markdown_text import escape_markdown, format_cell, quote
-from .style import Style, paint
+from ...impact.facts.surface import FUNCTIONS, format_declaration
+from ...impact.report.columns import LinePart, lay_out
+from ...impact.report.markdown_text import escape_markdown, format_cell, quote
+from ...impact.report.style import Style, paint
+from ...impact.targets.surface.python import SurfaceNames, write_signature
+from ...impact.targets.surface.surface import Surface
+from .version_change import VersionChange
 
 
 class VersionSource(NamedTuple):
