@@ -348,24 +348,25 @@ class CppCode:
         type_ = self._read_type(node)
         if how == "each":
             value = self._parse_value(node.child_by_field_name("right"), path, depth)
-            declarator = node.child_by_field_name("declarator")
-            name_node, marks, *_ = self._split_declarator(declarator)
+            value = Expr("each", "", offset, (value,)) if value is not None else None
+            name_node, marks, *_ = self._split_declarator(node.child_by_field_name("declarator"))
             if name_node is not None and name_node.kind_id == KIND.structured_binding_declarator:
-                return Local("binding", "auto", value, offset)
-            return Local("each", type_ + marks, value, offset)
+                return self._make_binding(name_node, value, offset)
+            return Local("variable", type_ + marks, value, offset)
         for declarator in node.children_by_field_name("declarator"):
             name_node, marks, parameters, array = self._split_declarator(declarator)
             if name_node is None:
                 continue
             if name_node.kind_id == KIND.structured_binding_declarator:
-                return Local("binding", "auto", None, offset)
+                given = declarator.child_by_field_name("value") or node.child_by_field_name("value")
+                return self._make_binding(name_node, self._parse_value(given, path, depth), offset)
             if name_node.start_byte != offset:
                 continue
             value = None
-            if declarator.kind_id == KIND.init_declarator:
-                given = declarator.child_by_field_name("value")
-                if given is not None and "auto" in type_:
-                    value = self._parse_value(given, path, depth)
+            # In the head of `if` or `while`, the value is the declaration's.
+            given = declarator.child_by_field_name("value") or node.child_by_field_name("value")
+            if given is not None:
+                value = self._parse_value(given, path, depth) if "auto" in type_ else None
             elif parameters is not None and "auto" not in type_:
                 # `A a(b);` looks like a function, and is one only with parameters that have names or kinds.
                 if how == "variable" and self._may_be_arguments(declarator):
@@ -373,6 +374,11 @@ class CppCode:
                 return Local("function", type_ + marks, None, offset)
             return Local(how, type_ + marks + ("[]" if array else ""), value, offset)
         return Local("variable", "", None, offset)
+
+    def _make_binding(self, names: Node, value: Expr | None, offset: int) -> Local:
+        """The name at an offset among those of a structured binding."""
+        at = next(n for n, each in enumerate(names.named_children) if each.start_byte == offset)
+        return Local("binding", "auto", Expr("part", str(at), offset, (value,)) if value is not None else None, offset)
 
     def _may_be_arguments(self, declarator: Node) -> bool:
         listed = declarator.child_by_field_name("parameters")

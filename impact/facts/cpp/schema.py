@@ -72,9 +72,9 @@ class FileDeclarations(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Local(NamedTuple):
-    """What a name means inside a function: a variable or parameter. how: `variable`, `parameter`, `each` (of a loop
-    over value), `binding`, `function`, `alias` or `template`. value: what it begins with, where that is written.
-    apart: a directive stands between its declaration and its use, which may leave one of them out."""
+    """What a name means inside a function: a variable or parameter. how: `variable`, `parameter`, `binding`,
+    `function`, `alias` or `template`. value: what it begins with, where that is written. apart: a directive stands
+    between its declaration and its use, which may leave one of them out."""
 
     how: str
     type: str
@@ -96,6 +96,8 @@ class Expr(NamedTuple):
     | index | | the object, then the indices |
     | unary, binary | the operator | the operands |
     | conditional | | both values |
+    | each | | the container that a loop runs through |
+    | part | its place | the value that a structured binding takes apart |
     | literal | `text`, `float`, `integer`, `bool` or `null` | |
     | this, lambda, pack, other | | |
 

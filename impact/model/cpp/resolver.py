@@ -25,42 +25,93 @@ T = TypeVar("T")
 
 _POINTERS = frozenset(("shared_ptr", "unique_ptr", "weak_ptr", "intrusive_ptr", "optional", "unique_lock"))
 _MAKERS = frozenset(("make_shared", "make_unique", "allocate_shared"))
-_SEQUENCES = frozenset(("vector", "array", "deque", "list", "set", "initializer_list", "BoundedVector", "span"))
+_SEQUENCES = frozenset((
+    "vector", "array", "deque", "list", "set", "unordered_set", "multiset", "queue", "stack", "initializer_list",
+    "BoundedVector", "span",
+))  # fmt: skip
+_TUPLES = frozenset(("pair", "tuple"))
 _MAPS = frozenset(("map", "unordered_map", "multimap", "unordered_multimap"))
 _CASTS = frozenset(("static_cast", "dynamic_cast", "const_cast", "reinterpret_cast"))
 _POINTER_CASTS = frozenset(("static_pointer_cast", "dynamic_pointer_cast", "const_pointer_cast"))
 _THROUGH = frozenset(("move", "forward", "as_const", "ref", "cref"))
 _POINTED = re.compile(r"(?:Const|Shared|Unique|Weak)*(?:Ptr|_ptr)")
 _SUFFIX = re.compile(r"(?:Const|Shared|Unique|Weak)*Ptr\Z")
-_SAME = frozenset(("get", "lock", "value"))
-_ELEMENT = frozenset(("front", "back", "at"))
+_SAME = frozenset(("get", "lock"))
+_ELEMENT = frozenset(("front", "back", "top"))
+_ITERATOR = re.compile(r"(?:const_)?(?:reverse_)?iterator")
+# Members of containers that give an iterator, and functions of std that give back one like their first argument.
+_ITERATING = frozenset((
+    "begin", "end", "cbegin", "cend", "rbegin", "rend", "crbegin", "crend", "find", "lower_bound", "upper_bound",
+    "erase",
+))  # fmt: skip
+_SEARCHING = frozenset((
+    "find", "find_if", "find_if_not", "lower_bound", "upper_bound", "min_element", "max_element", "next", "prev",
+))  # fmt: skip
 _QUALIFIERS = re.compile(r"\b(?:const|volatile|typename|class|struct|mutable|static|constexpr|inline)\b")
 _DEEPEST = 8
 
 
 class CppType(NamedTuple):
     """What an expression is. name: the full name of a class, of the package itself (own) or another; empty for an
-    interface, which is then given with its section, or for a map (values). pointer: members are reached by `->`.
-    several: a sequence of them. arguments: template arguments as written."""
+    interface, which is then given with its section. arguments: template arguments as written. kind: empty for one
+    object, else `pointer` (an iterator, too: members are reached by `->`), `sequence`, `map` or `tuple`; parts: the
+    types of what it points to or holds, of a map those of key and value, None for what is not known."""
 
-    name: str
+    name: str = ""
     own: bool = False
-    pointer: bool = False
-    several: bool = False
     interface: NamedInterface | None = None
     section: str = ""
     arguments: tuple[str, ...] = ()
-    values: CppType | None = None
+    kind: str = ""
+    parts: tuple[CppType | None, ...] = ()
 
     @property
     def plain(self) -> bool:
         """Whether it is one object, neither pointer nor several."""
-        return not self.pointer and not self.several and self.values is None
+        return not self.kind
+
+    def point(self) -> CppType:
+        """A pointer to it."""
+        return _wrap("pointer", self)
+
+    def dereference(self) -> CppType | None:
+        """What a pointer points to; None for what is none."""
+        return self.parts[0] if self.kind == "pointer" else None
+
+    def reach(self, arrow: bool) -> CppType | None:
+        """The object whose members are reached by `.`, or by `->`."""
+        return self.dereference() if arrow else self
+
+    def find_element(self) -> CppType | None:
+        """What a loop over it runs through; None for what is no container."""
+        return self.parts[0] if self.kind == "sequence" else _wrap("tuple", *self.parts) if self.kind == "map" else None
+
+    def find_indexed(self) -> CppType | None:
+        """What `[]` gives of a container or pointer."""
+        return self.parts[-1] if self.kind in ("sequence", "map", "pointer") else None
+
+    def find_part(self, at: int) -> CppType | None:
+        """A part of a pair or tuple."""
+        return self.parts[at] if self.kind == "tuple" and at < len(self.parts) else None
+
+    def find_result(self, member: str) -> CppType | None:
+        """What a method of a pointer or container of the standard library gives back."""
+        if self.kind == "pointer":
+            return self if member in _SAME else self.parts[0] if member == "value" else None
+        if member in _ITERATING and (element := self.find_element()) is not None:
+            return element.point()
+        if self.kind == "sequence" and member in _ELEMENT:
+            return self.parts[0]
+        return self.find_indexed() if member == "at" else None
 
     def make_interface_type(self) -> InterfaceType:
         """The same as a scope of interfaces takes it."""
         assert self.interface is not None
         return InterfaceType(self.interface, self.section)
+
+
+def _wrap(kind: str, *parts: CppType | None) -> CppType:
+    return CppType(kind=kind, parts=parts)
 
 
 class Written(NamedTuple):
@@ -283,23 +334,21 @@ class Resolver:
             return None
         last = parts.outer.rpartition("::")[2]
         found = None
-        if parts.arguments is not None and not parts.tail and (last in _POINTERS or last in _SEQUENCES):
-            inner = self.find_type(parts.arguments[0], place, depth + 1) if parts.arguments else None
-            if inner is not None and not inner.several:
-                found = inner._replace(pointer=True) if last in _POINTERS else inner._replace(several=True)
-        elif parts.arguments is not None and not parts.tail and last in _MAPS and len(parts.arguments) > 1:
-            inner = self.find_type(parts.arguments[1], place, depth + 1)
-            found = CppType("", values=inner) if inner is not None else None
+        kind, most = _find_kind(last)
+        if parts.arguments and kind and (not parts.tail or _ITERATOR.fullmatch(parts.tail)):
+            inner = [self.find_type(one, place, depth + 1) for one in parts.arguments[:most]]
+            if any(inner) and (most is None or len(inner) == most):
+                found = self._find_nested(_wrap(kind, *inner), parts.tail, depth)
         else:
             name = f"{parts.outer}::{parts.tail}" if parts.tail else parts.outer
             found = self.resolve_name(name, place, depth)
-            if found is not None and parts.arguments:
+            if found is not None and parts.arguments and found.plain:
                 found = found._replace(arguments=parts.arguments)
         if found is None:
             return None
         if parts.array:
-            found = found._replace(several=True)
-        return found._replace(pointer=True) if parts.pointer else found
+            found = _wrap("sequence", found)
+        return found.point() if parts.pointer else found
 
     def resolve_name(self, name: str, place: CodePlace, depth: int = 0) -> CppType | None:
         """The class that a name without template arguments is."""
@@ -358,7 +407,7 @@ class Resolver:
         outer, _, last = name.rpartition("::")
         if outer and _POINTED.fullmatch(last):
             inner = self.resolve_name(outer, place, depth + 1)
-            return inner._replace(pointer=True) if inner is not None else None
+            return inner.point() if inner is not None else None
         if outer and self.vocabulary is not None:
             around = next((full for full in self.list_meanings(outer, place) if full in self.vocabulary.classes), None)
             inner = self._find_released(around, last, "alias") if around is not None else None
@@ -367,7 +416,7 @@ class Resolver:
         shorter = _SUFFIX.sub("", name)
         if shorter and shorter != name and not shorter.endswith("::"):
             inner = self.resolve_name(shorter, place, depth + 1)
-            return inner._replace(pointer=True) if inner is not None and not inner.own else None
+            return inner.point() if inner is not None and not inner.own else None
         # An alias of some class, where nothing else is so called.
         found = {
             self._find_nested(self.find_type(member.type, _make_class_place(one), depth + 1), rest, depth)
@@ -383,6 +432,9 @@ class Resolver:
         """What `alias::rest` is."""
         if type_ is None or not rest:
             return type_
+        if _ITERATOR.fullmatch(rest):
+            element = type_.find_element()
+            return element.point() if element is not None else None
         if type_.interface is not None:
             return self._select_section(type_, rest.split("::"))
         return self.resolve_name(f"{type_.name}::{rest}", _NOWHERE, depth + 1) if type_.name else None
@@ -414,7 +466,8 @@ class Resolver:
             pointer = any(_POINTED.fullmatch(part) for part in parts[at + 1 :]) or member[2]
             section = find_section(member[:2], [part for part in parts[at + 1 :] if not _POINTED.fullmatch(part)])
             if section is not None:
-                return CppType("", pointer=pointer, interface=member[0], section=section)
+                found = CppType(interface=member[0], section=section)
+                return found.point() if pointer else found
         return None
 
     def _find_plain_interface(self, parts: list[str]) -> tuple[NamedInterface, str, bool] | None:
@@ -435,10 +488,13 @@ class Resolver:
 
     def _select_section(self, type_: CppType, words: list[str]) -> CppType | None:
         assert type_.interface is not None
-        pointer = type_.pointer or any(_POINTED.fullmatch(word) for word in words)
+        pointer = any(_POINTED.fullmatch(word) for word in words)
         member = type_.interface, type_.section
         section = find_section(member, [word for word in words if not _POINTED.fullmatch(word)])
-        return type_._replace(section=section, pointer=pointer) if section is not None else None
+        if section is None:
+            return None
+        found = type_._replace(section=section)
+        return found.point() if pointer else found
 
     def list_own_lineage(self, class_: str) -> tuple[CppClass, ...]:
         """A class of the package and those of the package that it is derived from, with the arguments of templates
@@ -509,22 +565,20 @@ class Resolver:
             return self._resolve_member_value(expr, place, depth)
         if kind == "call":
             return self._resolve_call_value(expr, place, depth)
-        if kind == "index":
+        if kind in ("index", "each", "part") or (kind == "unary" and expr.text in "*&"):
             type_ = self.resolve_value(expr.parts[0], place, depth + 1)
-            if type_ is not None and type_.values is not None:
-                return type_.values
-            return type_._replace(several=False) if type_ is not None and type_.several else None
-        if kind == "unary" and expr.text == "*":
-            type_ = self.resolve_value(expr.parts[0], place, depth + 1)
-            return type_._replace(pointer=False) if type_ is not None and type_.pointer and not type_.several else None
-        if kind == "unary" and expr.text == "&":
-            type_ = self.resolve_value(expr.parts[0], place, depth + 1)
-            return type_._replace(pointer=True) if type_ is not None and type_.plain else None
+            if type_ is None:
+                return None
+            if kind == "part":
+                return type_.find_part(int(expr.text))
+            if kind == "unary":
+                return type_.dereference() if expr.text == "*" else type_.point()
+            return type_.find_indexed() if kind == "index" else type_.find_element()
         if kind == "this":
-            return CppType(place.owner, own=True, pointer=True) if place.owner else None
+            return CppType(place.owner, own=True).point() if place.owner else None
         if kind in ("new", "cast", "braces") and expr.text:
             type_ = self.find_type(expr.text, place)
-            return type_._replace(pointer=True) if type_ is not None and kind == "new" else type_
+            return type_.point() if type_ is not None and kind == "new" else type_
         if kind == "conditional" and len(expr.parts) == 2:
             one, other = (self.resolve_value(part, place, depth + 1) for part in expr.parts)
             return one if one == other else None
@@ -534,19 +588,11 @@ class Resolver:
         local = expr.local
         if local is None:
             return None if "::" in expr.text else self.resolve_variable(expr.text, place)
-        if local.how in ("variable", "parameter"):
-            if "auto" not in local.type:
-                return self.find_type(local.type, place) if local.type else None
-            if local.value is None:
-                return None
-            type_ = self.resolve_value(local.value, place, depth + 1)
-            return type_._replace(pointer=True) if type_ is not None and "*" in local.type else type_
-        if local.how == "each":
-            if "auto" not in local.type:
-                return self.find_type(local.type, place)
-            type_ = self.resolve_value(local.value, place, depth + 1) if local.value is not None else None
-            return type_._replace(several=False) if type_ is not None and type_.several else None
-        return None
+        if local.how not in ("variable", "parameter", "binding"):
+            return None
+        if "auto" not in local.type:
+            return self.find_type(local.type, place) if local.type else None
+        return self.resolve_value(local.value, place, depth + 1) if local.value is not None else None
 
     def resolve_variable(self, name: str, place: CodePlace) -> CppType | None:
         """What a name is that no function declares: a member of the class around, or a variable outside of all."""
@@ -584,18 +630,15 @@ class Resolver:
         return _select_only(found)
 
     def _resolve_member_value(self, expr: Expr, place: CodePlace, depth: int, called: bool = False) -> CppType | None:
-        type_ = self.resolve_value(expr.parts[0], place, depth + 1)
+        value = self.resolve_value(expr.parts[0], place, depth + 1)
+        type_ = value.reach(expr.arrow) if value is not None else None
         if type_ is None:
             return None
-        if type_.values is not None:
-            return type_.values if called and expr.text == "at" else None
-        if called and type_.several:
-            return type_._replace(several=False) if expr.text in _ELEMENT and not expr.arrow else None
-        if called and expr.text in _SAME and type_.pointer and not expr.arrow:
-            return type_
-        if type_.several or type_.pointer != expr.arrow:
-            return None
-        return self.resolve_member(type_, expr.text, place, called)
+        if type_.plain:
+            return self.resolve_member(type_, expr.text, place, called)
+        if called:
+            return type_.find_result(expr.text)
+        return type_.find_part(_PAIR.index(expr.text)) if expr.text in _PAIR else None
 
     def resolve_member(self, type_: CppType, name: str, place: CodePlace, called: bool) -> CppType | None:
         """What a member of an object is."""
@@ -603,8 +646,10 @@ class Resolver:
             if called or self.scope is None:
                 return None
             found = self.scope.resolve_field(type_.make_interface_type(), name)
-            return None if found is None else CppType("", several=found.several, interface=found.interface,
-                                                   section=found.section)  # fmt: skip
+            if found is None:
+                return None
+            inner = CppType(interface=found.interface, section=found.section)
+            return _wrap("sequence", inner) if found.several else inner
         kind = "function" if called else "variable"
         if not type_.own:
             return self._find_released(type_.name, name, kind)
@@ -648,17 +693,21 @@ class Resolver:
                 return self.find_type(callee.template[0], place)
             if last in _MAKERS or last in _POINTER_CASTS:
                 type_ = self.find_type(callee.template[0], place)
-                return type_._replace(pointer=True) if type_ is not None else None
-        if last in _THROUGH and outer in ("std", "boost") and len(expr.parts) == 2:
-            return self.resolve_value(expr.parts[1], place, depth + 1)
+                return type_.point() if type_ is not None else None
+            if name == "std::get" and len(expr.parts) == 2:
+                value = self.resolve_value(expr.parts[1], place, depth + 1)
+                given = callee.template[0]
+                return value.find_part(int(given)) if value is not None and given.isdecimal() else None
+        if (last in _SEARCHING and outer == "std") or (last in _THROUGH and outer in ("std", "boost")):
+            return self.resolve_value(expr.parts[1], place, depth + 1) if len(expr.parts) > 1 else None
         if outer and last in _MAKERS and outer not in ("std", "boost"):
             type_ = self.resolve_name(outer, place)
-            return type_._replace(pointer=True) if type_ is not None else None
+            return type_.point() if type_ is not None else None
         if last in ("shared_from_this", "weak_from_this") and not outer:
-            return CppType(place.owner, own=True, pointer=True) if place.owner else None
+            return CppType(place.owner, own=True).point() if place.owner else None
         written = f"{name}<{', '.join(callee.template)}>" if callee.template else name
         type_ = self.find_type(written, place)
-        if type_ is not None and not type_.pointer:
+        if type_ is not None and type_.kind != "pointer":
             return type_
         return self._resolve_result(name, place)
 
@@ -675,7 +724,7 @@ class Resolver:
         if outer:
             class_ = self.resolve_name(outer, place)
             if class_ is not None and class_.name:
-                return self.resolve_member(class_._replace(pointer=False), last, place, True)
+                return self.resolve_member(class_, last, place, True)
         found = {
             self.find_type(one.type, CodePlace(one.scope, "", False)) if "auto" not in one.type else None
             for file in self.files
@@ -687,6 +736,17 @@ class Resolver:
 
 
 _NOWHERE = CodePlace("", "", False)
+_PAIR = ("first", "second")
+
+
+def _find_kind(last: str) -> tuple[str, int | None]:
+    """What a template of the standard library makes, by its name without scopes, and of how many of its arguments (None
+    for all); empty for none that is known."""
+    if last in _POINTERS:
+        return "pointer", 1
+    if last in _SEQUENCES:
+        return "sequence", 1
+    return ("map", 2) if last in _MAPS else ("tuple", None) if last in _TUPLES else ("", 0)
 
 
 def _ends_in(written: str, class_: str) -> bool:

@@ -117,7 +117,8 @@ class ApiUses:
             if any(self.resolver.known.mentions(one) for one in self.vocabulary.list_member_speakers(use.word)):
                 self.unresolved.add(use.at)
             return None
-        return self._find_member(type_, use) if not type_.several and type_.pointer == use.arrow else None
+        reached = type_.reach(use.arrow)
+        return self._find_member(reached, use) if reached is not None else None
 
     def _find_member(self, type_: CppType, use: Written) -> FoundName | None:
         if not type_.name:
@@ -439,10 +440,11 @@ class MemberUses:
             known = self.scope.definitions.items()
             meant = [(i, s) for i, d in known for s in d.sections if "." not in s and use.word in d.sections[s]]
             return FoundMember(*meant[0], use.word, use.at, False) if len(meant) == 1 else None
-        if type_.interface is None or type_.several:
+        reached = type_.reach(use.arrow)
+        if reached is None or reached.interface is None:
             return None
-        section = self.scope.find_changed_section(type_.make_interface_type(), use.word)
-        return FoundMember(type_.interface, section, use.word, use.at, True) if section is not None else None
+        section = self.scope.find_changed_section(reached.make_interface_type(), use.word)
+        return FoundMember(reached.interface, section, use.word, use.at, True) if section is not None else None
 
     def _shows(self, object_: Expr) -> bool:
         """Whether an object has a declared type of its own that is no interface's."""
