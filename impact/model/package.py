@@ -882,6 +882,7 @@ class PackageJoin:
         if table is None:
             return
         paths = {include.path for resolved in self.resolved.values() for to, include in resolved if to is None}
+        paths.update(*map(self.list_offered_includes, self.cpp))
         # Interfaces that come along with other headers are told by their names.
         kinds = {name.text: None for facts in self.cpp.values() for name in facts.qualified}
         meant = {text: interface for text in kinds if (interface := find_interface(text, table)) is not None}
@@ -898,7 +899,9 @@ class PackageJoin:
             spoken = self.list_words(path)
             if not changing & spoken:
                 continue
-            included, unknown = find_included_interfaces(sorted(self.list_reaching_paths(path)), table)
+            included, unknown = find_included_interfaces(
+                sorted(self.list_reaching_paths(path) | self.list_offered_includes(path)), table
+            )
             named = [meant[name.text] for name in facts.qualified if name.text in meant]
             key = frozenset((*included, *named))
             scope = scopes.get(key)
@@ -907,7 +910,8 @@ class PackageJoin:
             if not scope.changing & spoken:
                 continue
             words = sorted(scope.changing & spoken)
-            headers = [self.load(to) for to in sorted(self.list_reached(path)) if to != path]
+            reached = sorted(to for to in self.list_reached(path) if to != path)
+            headers = map(self.load, (*reached, *self.list_offered(path)))
             seen = set()
             for found in MemberUses(Resolver((self.load(path), *headers), None, scope)).find_uses(words, not unknown):
                 assert found.at is not None
@@ -1115,10 +1119,14 @@ class PackageJoin:
         self.offered_read |= found
         return sorted(found - self.cpp.keys())
 
+    @cache_method
+    def list_offered_includes(self, path: str) -> frozenset[str]:
+        """What those headers include."""
+        return frozenset(i.path for header in self.list_offered(path) for i in self.facts(header).facts.includes)
+
     def list_packages_of_offered(self, paths: Iterable[str]) -> set[str]:
         """First parts of what those of them include that these files reach."""
-        headers = {header for path in paths for header in self.list_offered(path)}
-        return {include.path.partition("/")[0] for header in headers for include in self.facts(header).facts.includes}
+        return {include.partition("/")[0] for path in paths for include in self.list_offered_includes(path)}
 
     def declares(self, path: str, name: str) -> bool:
         """True when the file, or one of the package that it includes, announces or defines a type or function of this

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.cpp.lexical import CppFile
-from ...facts.cpp.names import find_closing_angle, split_at_commas, strip_templates
+from ...facts.cpp.names import find_closing_angle, join_scope, split_at_commas, strip_templates
 from ...facts.cpp.schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations
 from ...facts.cpp.syntax import AskedWords, Mention, select_places
 from ..api import Vocabulary
@@ -386,10 +386,15 @@ class Resolver:
         if rest:
             for full in meanings:
                 scope, _, last = full.rpartition("::")
-                for alias in (one for file in self.files for one in file.list_aliases(last) if one.scope == scope):
-                    inner = self.find_type(alias.type, CodePlace(scope, "", False), depth + 1)
-                    if inner is not None:
-                        return inner
+                tail = ""
+                while scope:
+                    for alias in (one for file in self.files for one in file.list_aliases(last) if one.scope == scope):
+                        inner = self.find_type(alias.type, CodePlace(scope, "", False), depth + 1)
+                        inner = self._find_nested(inner, tail, depth)
+                        if inner is not None:
+                            return inner
+                    tail = join_scope(last, tail)
+                    scope, _, last = scope.rpartition("::")
         for file in self.files:
             for alias in file.list_aliases(head):
                 inner = self.find_type(alias.type, CodePlace(alias.scope, "", False), depth + 1)
