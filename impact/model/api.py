@@ -5,6 +5,7 @@ What the files themselves say is read in cpp/uses.py.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from typing import Generic, NamedTuple, TypeVar
@@ -28,6 +29,7 @@ from ..targets.surface.overrides import list_virtual_forms
 from ..targets.surface.store import SurfaceHistory
 
 T = TypeVar("T")
+_COPIED = re.compile(r"(?:const )?(?:\w*::)*(?:<.*>)?(?: const)?&{1,2}")
 CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))
 """Kinds of names that are called."""
 CLASSES = frozenset(("class", "struct", "union"))
@@ -94,6 +96,17 @@ class ChangingName:
             self.there
             or any(_list_other_forms(one.standing) or _has_other_default(one.standing) for one in self.forms)
             or self.virtual
+        )
+
+    @cached_property
+    def takes_braces(self) -> bool:
+        """Whether braces behind the name of the class call one of these constructors with what they hold: each of the
+        versions declares some that make it no aggregate, and none takes all of it as one list."""
+        class_ = self.name.rpartition("::")[2]
+        return all(
+            any(type_ and not _COPIED.fullmatch(type_.replace(class_, "")) for one in forms for type_ in one.types)
+            and not any("initializer_list" in type_ for one in forms for type_ in one.types)
+            for forms in (list_callable_forms(form.standing.here) for form in self.forms)
         )
 
     @cached_property

@@ -161,6 +161,10 @@ def uses(text: str, changes: Changes, *headers: str) -> list[str]:
         ("void g() { auto b = arm::Base().reach(); b += 1; b.went(1); }", []),
         ("void g() { auto b = arm::Base{} - arm::Base{}; b.went(1); }", []),
         ("class M : public arm::Arm { M() : Arm(1) {} };", ["arm::Arm::Arm/1"]),
+        ("class M : public arm::Arm { M() : Arm{1} {} };", ["arm::Arm::Arm/1"]),
+        ("void g() { arm::Arm a{1, 2}; arm::Arm b = {1}; auto c = arm::Arm{1}; new arm::Arm{1}; }",
+         ["arm::Arm::Arm/2", *["arm::Arm::Arm/1"] * 3]),
+        ("class C { arm::Arm a_{1, 2}; arm::Arm b_[2]{1, 2}; };", ["arm::Arm::Arm/2"]),
         # members of the class around
         ("class M : public arm::Arm { void g() { went(1); this->went(2); } };", ["arm::Base::went/1"] * 2),
         ("class M : public arm::Arm { void went(int a); void g() { went(1); } };", []),
@@ -334,6 +338,43 @@ def test_enumerators_stand_beside_an_enum_or_in_it(text, names, members):
     file = CppCode(text.encode()).declarations
     inside = [one for cls in file.classes for those in cls.members.values() for one in those]
     assert [[(one.kind, one.scope, one.name) for one in those] for those in (file.names, inside)] == [names, members]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "found"),
+    [
+        ("Can(int a, int b);", "Can(int a, int b, int c);", ["can::Can::Can/2"]),
+        # an aggregate, now or before; a list of any length; what the compiler could write itself
+        ("", "Can(int a, int b);", []),
+        ("Can(int a, int b);", "", []),
+        ("Can(int a);", "Can(std::initializer_list<int> all);", []),
+        ("Can(int a, int b);", "Can() = default; Can(const Can & other) = default;", []),
+    ],
+)
+def test_braces_may_be_those_of_an_aggregate(before, after, found):
+    header = "namespace can {{ struct Can {{ int a; int b; {0} }}; }}"
+    changes = changes_of({"can": (header.format(before), header.format(after))}, Versions("1.0.0", "2.0.0"))
+    vocabulary = Vocabulary(["can"], "mine", changes)
+    uses = ApiUses(resolver("void g() { can::Can c{1, 2}; }", vocabulary), {"can"}).find_uses(["Can"])
+    assert [f"{use.name}/{use.arguments}" for use in uses if use.how == "call"] == found
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("class C { arm::Arm a_; C() : a_(1), b_(2) {} };", ["arm::Arm::Arm/1"]),
+        ("class C { arm::Arm a_; C() : a_{1, 2} {} };", ["arm::Arm::Arm/2"]),
+        ("void g() { std::vector<arm::Arm> v; v.emplace_back(1, 2); v.push_back(1); }", ["arm::Arm::Arm/2"]),
+        ("void g(std::optional<arm::Arm> & o) { o.emplace(1); }", ["arm::Arm::Arm/1"]),
+        ("void g(std::vector<arm::Arm *> v, Other w) { v.emplace_back(1, 2); w.emplace_back(1); }", []),
+        ("void g(std::vector<arm::Arm> v) { v.emplace(v.begin(), 1); }", []),
+    ],
+)
+def test_constructors_that_are_called_without_their_name(text, found, changes):
+    vocabulary = Vocabulary(["arm"], "mine", changes)
+    known = resolver(text, vocabulary)
+    uses = ApiUses(known).find_initialized(vocabulary.constructed, known.files)
+    assert [f"{use.name}/{use.arguments}" for use in uses] == found
 
 
 DRILL = "class Drill {{ public: void spin(int a{0}); }};"

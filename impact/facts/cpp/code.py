@@ -191,15 +191,18 @@ class CppCode:
             return CppUse(word, spot, "member", written, self._find_place(path), self._make_expr(object_, outer), arrow,
                        call, template=template)  # fmt: skip
         if number == KIND.field_initializer:
-            call = self._list_arguments(parent.named_children[-1], outer)
-            return CppUse(word, spot, "initializer", written, self._find_place(path), call=call, template=template)
+            listed = parent.named_children[-1]
+            braced = listed.kind_id == KIND.initializer_list
+            return CppUse(word, spot, "initializer", written, self._find_place(path), template=template,
+                       call=self._list_arguments(listed, outer), braced=braced)  # fmt: skip
         if number == KIND.call_expression:
             call = self._find_args(path, level)
             return self._make_use(word, at, spot, form, written, template, call, False, path, outer)
         if self._is_declared(node, parent):
             return None
-        made, call = self._find_construction(node, parent, path, level)
-        return self._make_use(word, at, spot, form, written, template, call, made, path, outer)
+        made, call, braced = self._find_construction(node, parent, path, level)
+        use = self._make_use(word, at, spot, form, written, template, call, made, path, outer)
+        return use._replace(braced=braced)
 
     def _make_use(self, word, at, spot, form, written, template, call, made, path, outer) -> CppUse:
         local = self._find_local(word, at, outer) if form == "bare" else None
@@ -237,13 +240,15 @@ class CppCode:
         )  # fmt: skip
 
     def _find_construction(self, node: Node, parent: Node, path: Sequence[Node], level: int):
-        """Whether a name is the type of what is made, and with which arguments."""
+        """Whether a name is the type of what is made, with which arguments, and whether braces are around them."""
         number = parent.kind_id
-        if number == KIND.new_expression and parent.child_by_field_name("type") == node:
-            arguments = parent.child_by_field_name("arguments")
-            return True, self._list_arguments(arguments, path[:level]) if arguments is not None else ()
-        if number == KIND.compound_literal_expression and parent.child_by_field_name("type") == node:
-            return True, None  # braces may be an aggregate's
+        if number in (KIND.new_expression, KIND.compound_literal_expression) and (
+            parent.child_by_field_name("type") == node
+        ):
+            given = parent.child_by_field_name("arguments") or parent.child_by_field_name("value")
+            if given is None:
+                return True, (), False
+            return True, self._list_arguments(given, path[:level]), given.kind_id == KIND.initializer_list
         if number == KIND.type_descriptor and level > 3 and path[level - 2].kind_id == KIND.template_argument_list:
             function = path[level - 3]
             name = function.child_by_field_name("name")
@@ -252,19 +257,18 @@ class CppCode:
                 while up and path[up - 1].kind_id == KIND.qualified_identifier:
                     up -= 1
                 if up and path[up - 1].kind_id == KIND.call_expression:
-                    return True, self._find_args(path, up)
+                    return True, self._find_args(path, up), False
         if number in (KIND.declaration, KIND.field_declaration) and parent.child_by_field_name("type") == node:
             for declarator in parent.children_by_field_name("declarator"):
-                if declarator.kind_id == KIND.init_declarator:
-                    value = declarator.child_by_field_name("value")
-                    inner = declarator.child_by_field_name("declarator")
-                    if value is None or inner is None:
-                        continue
-                    if value.kind_id == KIND.argument_list and inner.kind_id == KIND.identifier:
-                        return True, self._list_arguments(value, path[:level])
+                value = declarator.child_by_field_name("value") or parent.child_by_field_name("default_value")
+                if value is not None:
+                    inner = declarator.child_by_field_name("declarator") or declarator
+                    if value.kind_id in LISTS and inner.kind_id in _LEAVES:
+                        braced = value.kind_id == KIND.initializer_list
+                        return True, self._list_arguments(value, path[:level]), braced
                 elif declarator.kind_id == KIND.function_declarator and any(node.kind_id in _BODIES for node in path):
-                    return True, self._read_as_arguments(declarator, path[:level])
-        return False, None
+                    return True, self._read_as_arguments(declarator, path[:level]), False
+        return False, None, False
 
     def _read_as_arguments(self, declarator: Node, path: Sequence[Node]) -> tuple[Expr, ...] | None:
         """The arguments of `A a(b, c)`, which look like the parameters of a function."""

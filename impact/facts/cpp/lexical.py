@@ -54,8 +54,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     announced: of those that it only declares.
     variables: qualified types of which some line declares a variable or member itself, not a pointer or reference.
     made: classes of which it makes objects by `new`, make_shared() or make_unique(). derives: something like
-    `class A : public B` stands in it. initializes: a constructor may initialize members. code: a digest of all but
-    comments, literals, includes and blanks.
+    `class A : public B` stands in it. initializes: a constructor may initialize members, or a container makes elements (`emplace_back`). code:
+    a digest of all but comments, literals, includes and blanks.
     """
 
     includes: tuple[Include, ...]
@@ -635,7 +635,7 @@ _DERIVED = [
 _ANNOUNCED = [
     re.compile(rf"{word}(?<!\w{word})\s+([A-Za-z_]\w*)(?:\s*:\s*\w+)?\s*;") for word in ("class", "struct", "enum")
 ]
-_INITIALIZES = re.compile(r"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]")
+_INITIALIZES = re.compile(r"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]|\bemplace(?:_back)?\s*\(")
 _MADE = [
     re.compile(rf"{word}(?<!\w{word}){between}(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{{,)]")
     for word, between in (("new", r"\s+"), ("make_shared", r"\s*<\s*"), ("make_unique", r"\s*<\s*"))

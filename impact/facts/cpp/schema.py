@@ -131,8 +131,8 @@ class CppUse(NamedTuple):
     form: `member` (object.word), `scoped` (a::word), `bare`, `initializer` (of a base class or member), or `assigned`
     (object += ...). name: qualified, as written, without template arguments. object: of a member. call: the arguments
     of the call or construction it begins, None where there is none. made: it is the type of what is constructed.
-    template: template arguments behind it. local: what a bare word means inside the function. last: it is not followed
-    by `::`."""
+    braced: by `{}`, which may be an aggregate's. template: template arguments behind it. local: what a bare word means
+    inside the function. last: it is not followed by `::`."""
 
     word: str
     at: CodeSpot
@@ -146,3 +146,4 @@ class CppUse(NamedTuple):
     template: tuple[str, ...] | None = None
     local: Local | None = None
     last: bool = True
+    braced: bool = False

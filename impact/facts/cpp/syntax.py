@@ -40,8 +40,8 @@ class Mention(NamedTuple):
     operator) or `bare`. ahead: the scopes as written, without blanks and the colons at their end, empty where others
     than names stand there; of an operator the word, or the sign, before it. of_std: the scopes are a template of std.
     call: what is given behind it; construction: the same where it may be a class. templated: template arguments stand
-    behind it. typed: a type may stand before it. listed: a colon or comma stands before it and a parenthesis behind it,
-    as in the initializer list of a constructor."""
+    behind it. typed: a type may stand before it. listed: a colon or comma stands before it and a bracket behind it, as in
+    the initializer list of a constructor."""
 
     word: str
     offset: int
@@ -132,7 +132,7 @@ _SHOWN = {
 _SPACE = re.compile(r"\s*")
 _MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
 _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
-_CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*\()")
+_CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*(?:\(|=?\s*\{))")
 _FARTHEST, _FAR = 4000, 160
 
 
@@ -160,7 +160,7 @@ def _list_mentions(text: str, word: str) -> Iterator[Mention]:
             form = "declared"
         opened = _SPACE.match(text, end).end()  # type: ignore[union-attr]
         last = text[before - 1 : before]
-        listed = text.startswith("(", opened) and last in (":", ",")
+        listed = text.startswith(("(", "{"), opened) and last in (":", ",")
         typed = last in ("*", "&") or (before < at and (last in (">", "]") or last.isalnum() or last == "_"))
         templated = text.startswith("<", opened)
         types = find_template_arguments(text, opened + 1) if templated else None

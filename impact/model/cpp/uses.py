@@ -19,6 +19,7 @@ _QOS_TYPES = {
 }
 _DEEPEST = 8
 _INTERFACES = ("::msg", "::srv", "::action")
+_EMPLACING = {"emplace_back": "sequence", "emplace": "pointer"}
 _TYPES = CLASSES | {"alias", "enum"}
 
 
@@ -218,18 +219,26 @@ class ApiUses:
             return None
         if not use.made and use.form != "initializer" and not use.place.function:
             return None
-        type_ = self.resolver.resolve_name(use.name, use.place)
-        if type_ is None or type_.own or not type_.plain or f"{type_.name}::{use.word}" not in owners:
+        found = self._find_constructor(self.resolver.resolve_name(use.name, use.place), use)
+        return found if found is not None and found.name in owners else None
+
+    def _find_constructor(self, type_: CppType | None, use: Written) -> FoundName | None:
+        """The constructor of a class that a use calls, if it is one that changed."""
+        if type_ is None or type_.own or not type_.plain or use.call is None:
             return None
-        name = f"{type_.name}::{use.word}"
+        name = f"{type_.name}::{type_.name.rpartition('::')[2]}"
+        known = self.vocabulary.names.get(name)
+        if known is None or (use.braced and not known.takes_braces):
+            return None
+        templated = use.template is not None and use.form not in ("member", "initializer")
         count, given = self._describe_arguments(use)
-        return FoundName(self.vocabulary.names[name].package, name, use.at, "call", count, given,
-                     use.template is not None, True, ())  # fmt: skip
+        return FoundName(known.package, name, use.at, "call", count, given, templated, True, ())
 
     def find_initialized(self, classes: frozenset[str], files: Iterable[KnownFile]) -> Iterator[FoundName]:
-        """Constructors of other packages' classes that initializer lists of the file call by the name of a member.
-        classes: last parts of the classes that may be meant. files: where members may be declared."""
-        known, home = self.resolver.known, self.vocabulary.home
+        """Constructors of other packages' classes that initializer lists of the file call by the name of a member, and
+        those that it calls by a container's emplace_back(). classes: last parts of the classes that may be meant.
+        files: where members may be declared."""
+        resolver, known = self.resolver, self.resolver.known
         # Those that a constructor initializes are declared where its class is.
         parts = (name.text.split("::")[-2:] for name in known.facts.qualified)
         owners = {one[0] for one in parts if one[0] == one[-1]} | known.type_names
@@ -237,16 +246,20 @@ class ApiUses:
         declared = (name for file in homes for class_ in classes for name in file.list_members_of_type(class_))
         members = sorted({name for name in declared if known.mentions(name)})
         for use in known.list_uses(one for one in known.list_mentions(members) if one.listed) if members else ():
-            type_ = self.resolver.resolve_variable(use.word, use.place) if use.form == "initializer" else None
-            if type_ is None or type_.own or not type_.plain or use.call is None:
-                continue
-            name = f"{type_.name}::{type_.name.rpartition('::')[2]}"
-            if name in self.vocabulary.names and self.vocabulary.names[name].package not in home:
-                count, given = self._describe_arguments(use)
-                found = FoundName(self.vocabulary.names[name].package, name, use.at, "call", count, given, False,
-                                  True, ())  # fmt: skip
-                if self._differs(found):
-                    yield found
+            if use.form == "initializer":
+                yield from self._list_differing(resolver.resolve_variable(use.word, use.place), use)
+        emplacing = list(filter(known.mentions, _EMPLACING))
+        for use in known.list_uses(known.list_mentions(emplacing)) if emplacing else ():
+            value = resolver.resolve_value(use.object, use.place) if use.object is not None else None
+            holder = value.reach(use.arrow) if value is not None else None
+            if holder is not None and holder.kind == _EMPLACING[use.word]:
+                yield from self._list_differing(holder.parts[0], use)
+
+    def _list_differing(self, type_: CppType | None, use: Written) -> Iterator[FoundName]:
+        """The constructor of a class that a use calls, where that may be wrong."""
+        found = self._find_constructor(type_, use)
+        if found is not None and found.package not in self.vocabulary.home and self._differs(found):
+            yield found
 
     def _make_use(self, name: str, use: Written, sure: bool, through: tuple[str, ...]) -> FoundName:
         """The use that a name at a place is."""
