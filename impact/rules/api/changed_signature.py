@@ -51,6 +51,7 @@ _LOST = {
     "types": f"`{{subject}}` does not accept arguments of these types in {_HERE}; an earlier version does",
     "template": f"the template argument of `{{subject}}` cannot be deduced from this call in {_HERE}",
     "override": f"this method does not override `{{subject}}` in {_HERE}: its signature changed",
+    "gone": f"this method does not override `{{subject}}` in {_HERE}: it was removed",
     "pure": f"this class does not implement `{{subject}}`, which is pure virtual in {_HERE}",
     "unmatched": f"this method does not override `{{subject}}` in {_HERE}",
 }

@@ -58,8 +58,7 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
     for use, found in unserved:
         if found.form == "unmatched" and not view.workspace.may_have.isdisjoint(found.symbol.packages):
             continue  # a base class may be another there
-        beside = found.form == "override" and not says_override(use.given, use.arguments)
-        if beside and (extract_class(use.given, use.arguments), use.name) in overridden:
+        if _is_silent(use, found) and (extract_class(use.given, use.arguments), use.name) in overridden:
             continue  # another of that name overrides, or is to
         yield UnservedUse(use.at, use.name, found, _collect_cpp_doubts(view, use, found), use.arguments, sure=use.sure)
 
@@ -73,11 +72,16 @@ def _is_of_another(space: str, package: str, near: Collection[str]) -> bool:
     return not package.startswith(space) and any(name.startswith(starts) for name in near)
 
 
+def _is_silent(use: CppApiUse, found: Availability) -> bool:
+    """Whether a method that overrides nothing does not say that it does, so that it compiles."""
+    return found.form in ("override", "gone") and not says_override(use.given, use.arguments)
+
+
 def _collect_cpp_doubts(view: TargetView, use: CppApiUse, found: Availability) -> tuple[Doubt, ...]:
     doubts = list_place_doubts(view, use.role, use.conditions)
     if not use.sure or any(package in view.workspace.packages for package in use.through):
         doubts = (*doubts, Doubt.INCOMPLETE)
-    if found.form == "override" and not says_override(use.given, use.arguments):
+    if _is_silent(use, found):
         doubts = (*doubts, Doubt.DISTURBS)  # it compiles, and nobody calls it
     return doubts
 

@@ -104,7 +104,7 @@ def _check_override(offers: Offers, offered: Offered, arguments: int, given: tup
     override = Override(offers, given, arguments)
     lost = override.find_lost_change(line)
     if lost is not None:
-        return _answer("changed", lost[0], "override", lost[1])
+        return _answer("changed", *lost)
     unmatched = override.find_unmatched(offered.name.rpartition("::")[2])
     if unmatched is None:
         return None

@@ -53,9 +53,10 @@ class Override:
         self.bases = [(base.partition(" ")[0], base.partition(" ")[2]) for base in bases.split(", ") if base]
         self.result = next((one[len(_RESULT) :] for one in marks if one.startswith(_RESULT)), "")
 
-    def find_lost_change(self, line: Sequence[tuple[str, str]]) -> tuple[Offered, bool] | None:
-        """The change that the method does not fit to, and whether it was before the target's version; None where it
-        overrides what the target has, or where that cannot be told. line: packages and names of the method in the base
+    def find_lost_change(self, line: Sequence[tuple[str, str]]) -> tuple[Offered, str, bool] | None:
+        """The change that the method does not fit to, whether the target has no method of that name (`gone`) or another
+        (`override`), and whether it was before the target's version; None where it overrides what the target has, or
+        where that cannot be told. line: packages and names of the method in the base
         class and in the bases of that."""
         self.parameters = tuple(
             parameter.name
@@ -75,9 +76,11 @@ class Override:
                     continue
                 if fitting:
                     if self._gives_other(offered, event, earlier, fitting):
-                        return make_offered(self.offers, offered, event, earlier), earlier
+                        return make_offered(self.offers, offered, event, earlier), "override", earlier
                 elif all(self._differs_surely(make_overload(one), mine, form, offered) for one in here):
-                    return make_offered(self.offers, offered, event, earlier), earlier
+                    lost = make_offered(self.offers, offered, event, earlier)
+                    left = not earlier or any(self._list_entities(*one) for one in line)
+                    return lost, "override" if left else "gone", earlier
         return None
 
     def find_unmatched(self, member: str) -> tuple[Entity, tuple[str, ...]] | None:
