@@ -202,7 +202,7 @@ def test_what_is_found(text, found, changes):
         ("void g(arm::Arm & a) { a.f(1); }", [], ["arm::Arm::f/1"], ["arm::Arm::f/1"]),
         ("void g(arm::Arm & a) { a.f(1, 2); }", ["arm::Arm::f/2"], [], []),
         ("void g(arm::Arm & a) { a.f(1, 2, 3); }", [], [], []),
-        ("void g(arm::Arm & a) { a.f(h(1, 2) /* , */, \"a,b\"); }", ["arm::Arm::f/2"], [], []),
+        ("void g(arm::Arm & a) { a.f(h(1, 2) /* , */, h(\"a,b\")); }", ["arm::Arm::f/2"], [], []),
         ("void g() { auto a = std::make_shared<arm::Arm>(1); }", [], ["arm::Arm::Arm/1"], ["arm::Arm::Arm/1"]),
         ("void g() { auto a = std::make_shared<arm::Arm>(1, 2); }", ["arm::Arm::Arm/2"], [], []),
         ("void g() { arm::Base b; b += 1; }", ["arm::Base::operator+="], [], []),
@@ -290,7 +290,7 @@ def test_names_of_the_workspace_are_known_but_not_looked_for(changes):
     [('"a"', "text"), ("1.5f", "float"), ("-3", "integer"), ("[this](int a) { return a; }", "lambda"), ("true", "bool"),
      ("std::bind(&A::b, this)", "bind"), ("nullptr", "null"), ("rmw_qos_profile_default", "profile"),
      ("rclcpp::SensorDataQoS()", "qos"), ("qos.get_rmw_qos_profile()", "profile"), ("this", "this"),
-     ("*this", "*this"), ("*other", ""), ("!true", ""), ("x + 1", "")],
+     ("*this", "*this"), ("*other", ""), ("!true", ""), ("x + 1", ""), ("100ms", ""), ('"a"s', "")],
 )  # fmt: skip
 def test_what_an_argument_shows_itself_to_be(argument, shown, changes):
     vocabulary = Vocabulary(["arm"], "mine", changes)

@@ -124,7 +124,8 @@ _NO_TYPES = KEYWORDS | {"emit", "not", "and", "or", "xor", "compl", "bitand", "b
 _SHOWN = {
     shown: re.compile(pattern)
     for shown, pattern in (
-        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"),
+        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"), ("float", r"\d"), ("integer", r"\d"),
+        ("bool", r"\b(?:true|false)\b"), ("null", r"\b(?:nullptr|NULL)\b"), ("lambda", r"\["),
         ("qos", r"rclcpp\s*::\s*\w*QoS|(?i:qos)\w*\s*(?![\w\s:({])"),
         ("profile", r"rmw_qos_profile|(?i:qos|profile)\w*\s*(?![\w\s:({])"),
     )

@@ -47,6 +47,7 @@ _ITERATING = frozenset((
 _SEARCHING = frozenset((
     "find", "find_if", "find_if_not", "lower_bound", "upper_bound", "min_element", "max_element", "next", "prev",
 ))  # fmt: skip
+_NAME = re.compile(r"[A-Za-z_]\w*(?:::\w+)*")
 _QUALIFIERS = re.compile(r"\b(?:const|volatile|typename|class|struct|mutable|static|constexpr|inline)\b")
 _DEEPEST = 8
 
@@ -521,6 +522,29 @@ class Resolver:
             own = self._find_own_class(parts.outer, locate_class(one))
             if own is not None and own.name != one.name:
                 yield from self._find_line(own.name, parts.arguments or (), depth + 1)
+
+    def spell_out(self, type_: str, class_: CppClass) -> str:
+        """A type as written in a class of the package, with what aliases of the package in it stand for."""
+        for _ in range(_DEEPEST):
+            meant = _NAME.sub(lambda found: self._find_alias(found.group(), class_), type_)
+            if meant == type_:
+                break
+            type_ = meant
+        return type_
+
+    def _find_alias(self, name: str, class_: CppClass) -> str:
+        """What a name stands for in a class, its own alias or one of a namespace around it; else the name."""
+        inside = (one for each in self.list_own_lineage(class_.name) for one in each.members.get(name, ()))
+        for one in inside:
+            return one.type if one.kind == "alias" and not one.template else name
+        around, last = set(self.list_meanings(name, locate_class(class_))), name.rpartition("::")[2]
+        found = {
+            one.type
+            for file in self.files
+            for one in file.list_aliases(last)
+            if not one.template and join_scope(one.scope, last) in around
+        }
+        return _select_only(found) or name
 
     def list_bases(self, class_: CppClass) -> list[tuple[str, CppType | None]]:
         """The bases of a class of the package, with what they are."""

@@ -7,7 +7,7 @@ from ....edges.memory import cache_method
 from ...facts.cpp.schema import CodePlace, CodeSpot, CppClass, Expr, WrittenParameter
 from ...facts.cpp.schema import CppUse as Written
 from ...facts.cpp.syntax import UNREAD, Mention
-from ...targets.surface.overrides import describe_bases, describe_override
+from ...targets.surface.overrides import describe_bases, describe_override, spell_type
 from ..api import CALLED, CLASSES, ChangingName, FoundName
 from ..members import FoundField as FoundMember
 from .resolver import CppType, KnownFile, Resolver, locate_class
@@ -340,7 +340,7 @@ class ApiUses:
                         member = self._find_first(line, word)
                         if member is None:
                             continue
-                        types = tuple(normalise_parameter(one) for one in method.parameters)
+                        types = tuple(self._spell_parameter(one, class_) for one in method.parameters)
                         marks = tuple(mark for mark in ("const", "override") if mark in method.traits)
                         if "final" in method.traits and "override" not in marks:
                             marks = (*marks, "override")
@@ -349,6 +349,11 @@ class ApiUses:
                         given = describe_override(types, marks, normalise_parameter(method.type), class_.name)
                         yield FoundName(names[member[0]].package, member[0], spot, "override", len(types),
                                     given, False, True, member[1])  # fmt: skip
+
+    def _spell_parameter(self, parameter: WrittenParameter, class_: CppClass) -> str:
+        """The type of a parameter of a class's method, with what aliases of the package in it stand for."""
+        meant = normalise_parameter(self.resolver.spell_out(parameter.type, class_))
+        return spell_type(normalise_parameter(parameter), meant)
 
     def _list_all_bases(self, class_: CppClass, word: str, depth: int = 0) -> list[tuple[str, str]] | None:
         """The packages and names of the classes of other packages that a class is derived from; None where one of its

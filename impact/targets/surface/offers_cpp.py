@@ -205,35 +205,33 @@ def list_callable_forms(form: Form | None) -> list[Overload]:
 
 def _takes(overload: Overload, given: Iterable[str]) -> bool:
     """False when an argument shows itself to be what its parameter does not take."""
-    return not any(_clashes(shown, type_) for shown, type_ in zip(given, overload.types, strict=False))
+    return not any(shown in list_refused_kinds(type_) for shown, type_ in zip(given, overload.types, strict=False))
 
 
-# What takes a raw pointer only where it is asked to.
-_OWNING = re.compile(r"(?:const )?(?:(?:std|boost)::(?:shared|unique)_ptr<|[\w:]+::(?:Const)?(?:Shared|Unique)Ptr\b)")
-
-
-REFUSED = frozenset(("profile", "qos", "this", "new", "text"))
-"""What an argument may show itself to be that some parameters do not take."""
+_ANYTHING = frozenset(("text", "float", "integer", "bool", "null", "lambda", "this", "new"))
+# Types of parameters, to what an argument may show itself to be that is not converted to them. `0` is a null pointer,
+# and a pointer is a bool; of other classes, constructors may take anything.
+_REFUSING = [
+    (re.compile(pattern), frozenset(kinds))
+    for pattern, kinds in (
+        (r".*\brclcpp::\w*QoS\b.*", ("profile",)),
+        (r".*rmw_qos_profile_t.*", ("qos",)),
+        (r"rmw_qos_profile_t|const rmw_qos_profile_t&", ("text",)),
+        (r".*NodeInterfaces<.*|.*RequiredInterfaces&*", ("this",)),
+        (r"(?:const )?(?:(?:std|boost)::(?:shared|unique)_ptr<|[\w:]+::(?:Const)?(?:Shared|Unique)Ptr\b).*", ("new",)),
+        (r"(?:const )?(?:unsigned int|int|(?:std::)?(?:u?int\d+_t|size_t)|long|float|double)&?",
+         ("text", "lambda", "this", "new")),
+        (r"(?:const )?std::string&?", ("float", "bool", "lambda", "this")),
+        (r"(?:const )?\w+::(?:msg|srv|action)::\w+&?", _ANYTHING),
+        (r"(?:const )?std::chrono::(?:(?:nano|micro|milli|)seconds|minutes|hours)&?", _ANYTHING),
+    )
+]  # fmt: skip
 
 
 @lru_cache(maxsize=4096)
 def list_refused_kinds(type_: str) -> frozenset[str]:
     """What an argument must not show itself to be for a parameter of a type."""
-    return frozenset(shown for shown in REFUSED if _clashes(shown, type_))
-
-
-def _clashes(shown: str, type_: str) -> bool:
-    if shown == "profile":
-        return bool(re.search(r"\brclcpp::(?:\w*QoS)\b", type_))
-    if shown == "qos":
-        return "rmw_qos_profile_t" in type_
-    if shown == "this":
-        return "NodeInterfaces<" in type_ or type_.removesuffix("&").endswith("RequiredInterfaces")
-    if shown == "new":
-        return bool(_OWNING.match(type_))
-    if shown == "text":
-        return type_ in ("rmw_qos_profile_t", "const rmw_qos_profile_t&")
-    return False
+    return frozenset().union(*(kinds for pattern, kinds in _REFUSING if pattern.fullmatch(type_)))
 
 
 def find_changed_default(offers: Offers, found: Availability, arguments: int) -> tuple[str, str] | None:

@@ -4,7 +4,7 @@ declares it, where another version did or does."""
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 from ...facts.surface import CLASSES, Entity
@@ -13,6 +13,7 @@ from .offers import Offered, Offers, iterate_other_forms, make_offered
 
 _RESULT = "-> "
 _BASES = ": "
+_MEANT = " = "
 
 
 def describe_bases(bases: Sequence[tuple[str, str]]) -> str:
@@ -21,9 +22,14 @@ def describe_bases(bases: Sequence[tuple[str, str]]) -> str:
 
 
 def describe_override(types: tuple[str, ...], marks: tuple[str, ...], result: str, class_: str) -> tuple[str, ...]:
-    """What an override is described with: the types of its parameters, `const` and `override` where they stand, what it
-    gives back, and the class that declares it."""
+    """What an override is described with: the types of its parameters as spell_type() writes them, `const` and
+    `override` where they stand, what it gives back, and the class that declares it."""
     return (*types, *marks, f"{_RESULT}{result}", class_)
+
+
+def spell_type(written: str, meant: str) -> str:
+    """The type of a parameter as written, with what it is where aliases of the package are in it."""
+    return written if written == meant else f"{written}{_MEANT}{meant}"
 
 
 def says_override(given: tuple[str, ...], arguments: int) -> bool:
@@ -46,7 +52,9 @@ class Override:
 
     def __init__(self, offers: Offers, given: tuple[str, ...], arguments: int):
         marks = given[arguments:]
-        self.offers, self.types = offers, given[:arguments]
+        self.offers = offers
+        self.spelt = [tuple(dict.fromkeys(one.split(_MEANT))) for one in given[:arguments]]
+        self.types = tuple(spellings[0] for spellings in self.spelt)
         self.const, self.says_so = "const" in marks, "override" in marks
         self.parameters: tuple[str, ...] = ()
         bases = next((one[len(_BASES) :] for one in marks if one.startswith(_BASES)), "")
@@ -64,15 +72,16 @@ class Override:
             for one in self._list_entities(package, name.rpartition("::")[0])
             for parameter in one.template or ()
         )
-        here = [one for package, name in line for one in self._list_virtual_methods(package, name)]
-        fitting = {one.type for one in here if self._fits(make_overload(one))}
+        methods = [(at, one) for at in line for one in self._list_virtual_methods(*at)]
+        fitting = {one.type for at, one in methods if self._fits(make_overload(one), *at)}
+        here = [one for _, one in methods]
         for package, name in line:
             offer = self.offers.find_package(package)
             offered = offer.get("c++", name) if offer is not None else None
             for event, form, earlier in iterate_other_forms(self.offers, offered) if offered is not None else ():
                 # A method that is not to override anything need not do so yet.
-                mine = [one for one in list_virtual_forms(form) if self._fits(one)] if earlier or self.says_so else []
-                if offered is None or not mine:
+                mine = [one for one in list_virtual_forms(form) if self._fits(one, package, name)]
+                if offered is None or not mine or not (earlier or self.says_so):
                     continue
                 if fitting:
                     if self._gives_other(offered, event, earlier, fitting):
@@ -146,12 +155,30 @@ class Override:
         """The methods of a name that may be overridden."""
         return [one for one in self._list_entities(package, name, version) if "virtual" in one.traits]
 
-    def _fits(self, overload: Overload) -> bool:
-        """Whether the method can be the same as another, as their types are written."""
+    def _fits(self, overload: Overload, package: str, name: str) -> bool:
+        """Whether the method can be the same as another, as their types are written. package, name: of the other."""
         if len(overload.types) != len(self.types) or ("const" in overload.traits) != self.const:
             return False
-        pairs = zip(self.types, overload.types, strict=True)
-        return all(_agree(one, other, self.parameters) for one, other in pairs)
+        return all(
+            any(_agree(one, other, self.parameters) for one in spellings for other in self._spell(type_, package, name))
+            for spellings, type_ in zip(self.spelt, overload.types, strict=True)
+        )
+
+    def _spell(self, type_: str, package: str, name: str) -> Iterator[str]:
+        """A type as a method of a package has it, then with what aliases in it stand for."""
+        yield type_
+        scope = name.rpartition("::")[0]
+        for _ in range(_DEEPEST):
+            meant = _NAME.sub(lambda found: self._find_alias(found.group(), scope, package), type_)
+            if meant == type_:
+                return
+            yield (type_ := meant)
+
+    def _find_alias(self, name: str, scope: str, package: str) -> str:
+        """What a name that is an alias stands for; else the name."""
+        found = self._find_named(name, scope, package)[1]
+        types = {entity.type if entity.kind == "alias" and entity.template is None else "" for entity in found}
+        return (types.pop() or name) if len(types) == 1 else name
 
     def _differs_surely(self, overload: Overload, mine: list[Overload], form: Form, owner: Offered) -> bool:
         """Whether the method does not override another, however the types are spelt. mine: those that it overrides in
@@ -159,7 +186,11 @@ class Override:
         if len(overload.types) != len(self.types) or ("const" in overload.traits) != self.const:
             return True
         pairs = list(zip(self.types, overload.types, strict=True))
-        if not any(_strip_scopes(one) == _strip_scopes(other) for one, other in pairs):
+        if not any(
+            _strip_scopes(one) == _strip_scopes(other)
+            for spellings, type_ in zip(self.spelt, overload.types, strict=True)
+            for one in spellings for other in self._spell(type_, owner.package, owner.name)
+        ):  # fmt: skip
             return True
         if any(_differs(one, other) for one, other in pairs) or any(
             overload.types == one.types and "virtual" in one.traits for one in form.overloads
@@ -203,16 +234,22 @@ class Override:
         if pointer in _POINTERS:
             kind = self._resolve_type(class_, scope, package)
             return f"{kind}::{pointer}" if kind else ""
+        full, found = self._find_named(bare, scope, package)
+        return full if found and all(entity.kind in _TYPES for entity in found) else ""
+
+    def _find_named(self, name: str, scope: str, package: str) -> tuple[str, list[Entity]]:
+        """The full name of what a name stands for in a class of a package, and how it is declared; none where it is
+        not."""
         while True:
-            full = f"{scope}::{bare}" if scope else bare
+            full = f"{scope}::{name}" if scope else name
             # What a header of the package names is declared by itself or by what it hands on.
-            owners = [full.partition("::")[0], package] if scope else self._list_given(package, bare.partition("::")[0])
+            owners = [full.partition("::")[0], package] if scope else self._list_given(package, name.partition("::")[0])
             for owner in owners:
                 found = self._list_entities(owner, full)
                 if found:
-                    return full if all(entity.kind in _TYPES for entity in found) else ""
+                    return full, found
             if not scope:
-                return ""
+                return "", []
             scope = scope.rpartition("::")[0]
 
     def _list_given(self, package: str, first: str) -> list[str]:
@@ -223,6 +260,8 @@ class Override:
         return found
 
 
+_NAME = re.compile(r"[A-Za-z_]\w*(?:::\w+)*")
+_DEEPEST = 4
 _FUNDAMENTAL = frozenset(("void", "bool", "char", "int", "unsigned int", "float", "double"))
 _POINTERS = frozenset(("SharedPtr", "ConstSharedPtr", "WeakPtr", "ConstWeakPtr", "UniquePtr"))
 _TYPES = frozenset(("class", "struct", "enum"))
@@ -240,12 +279,27 @@ def _agree(one: str, other: str, parameters: tuple[str, ...]) -> bool:
 
 
 def _split_type(type_: str) -> list[str]:
-    """The names and signs of a type, without what callers do not see."""
-    bare = re.sub(r"\btypename\b", " ", type_)
-    bare = re.sub(r"\bconst\b", " ", bare) if not bare.endswith(("&", "*")) else bare
-    return re.findall(r"(?:::)?\w+(?:::\w+)*|[^\w\s]", bare)
+    """The names and signs of a type, without what callers do not see: `const` stands before what it is of, and smart
+    pointers are written as what their aliases stand for."""
+    bare = _ALIASED.sub(lambda found: f"{found[3].lower()}_ptr<{found[2].lower()} {found[1]}>", type_)
+    parts: list[str] = []
+    starts, start = [], 0
+    for part in re.findall(r"(?:::)?\w+(?:::\w+)*|[^\w\s]", re.sub(r"\btypename\b", " ", bare)):
+        before = parts[-1] if parts else ""
+        if part == "const" and (before == ">" or before[-1:].isalnum()) and before != "const":
+            parts.insert(start, part)
+            continue
+        if part == "<":
+            starts.append(start)
+        elif part == ">" and starts:
+            start = starts.pop()
+        elif part[-1].isalnum() and not (before[-1:].isalnum() and before != "const"):
+            start = len(parts)
+        parts.append(part)
+    return parts[1:] if parts[:1] == ["const"] and parts[-1] not in "&*" else parts
 
 
+_ALIASED = re.compile(r"((?:::)?\w+(?:::\w+)*)::(Const|)(Shared|Weak|Unique)Ptr\b")
 _SHAPE = re.compile(r"(?:\b|::)(Const)?(Shared|Weak|Unique)Ptr\b|\b(shared|weak|unique)_ptr<")
 
 
@@ -278,4 +332,4 @@ def _differs_plainly(one: str, other: str) -> bool:
 
 def _strip_scopes(type_: str) -> str:
     """A type without its scopes."""
-    return "".join(re.sub(r"(?:\w+::)+(?=\w)", "", "".join(_split_type(type_))))
+    return re.sub(r"(?:\w+::)+(?=\w)", "", " ".join(_split_type(type_)))
