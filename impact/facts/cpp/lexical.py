@@ -50,12 +50,12 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     `using a::b`; opened: namespaces of lines `using namespace`; spaces: (name, namespace) of other names of namespaces.
     exports: classes given to macros of pluginlib, rclcpp_components and Gazebo, as written without spaces; references:
     packages and files named by literals (`package://`, getPath, get_package_share_directory).
-    namespaces: those that it adds to. type_names: last parts of the types that it seems to define, aliases among them;
-    announced: of those that it only declares.
-    variables: qualified types of which some line declares a variable or member itself, not a pointer or reference.
-    made: classes of which it makes objects by `new`, make_shared() or make_unique(). derives: something like
-    `class A : public B` stands in it. initializes: a constructor may initialize members, or a container makes elements (`emplace_back`). code:
-    a digest of all but comments, literals, includes and blanks.
+    namespaces: those that it adds to. type_names: last parts of the types that it seems to define, aliases among
+    them; announced: of those that it only declares. variables: qualified types of which some line declares a
+    variable or member itself, not a pointer or reference. made: classes of which it makes objects by `new`,
+    make_shared() or make_unique(). derives: something like `class A : public B` stands in it. initializes: a
+    constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
+    comments, literals, includes and blanks.
     """
 
     includes: tuple[Include, ...]

@@ -40,8 +40,8 @@ class Mention(NamedTuple):
     operator) or `bare`. ahead: the scopes as written, without blanks and the colons at their end, empty where others
     than names stand there; of an operator the word, or the sign, before it. of_std: the scopes are a template of std.
     call: what is given behind it; construction: the same where it may be a class. templated: template arguments stand
-    behind it. typed: a type may stand before it. listed: a colon or comma stands before it and a bracket behind it, as in
-    the initializer list of a constructor."""
+    behind it. typed: a type may stand before it. listed: a colon or comma stands before it and a bracket behind it, as
+    in the initializer list of a constructor."""
 
     word: str
     offset: int
