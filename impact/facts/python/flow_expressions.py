@@ -8,7 +8,6 @@ Assignment tells what goes on from there; what is kept elsewhere, returned or li
 """
 
 import ast
-from itertools import pairwise
 
 from ....edges.dispatch import collect_node_methods
 from ..flow import Access, Assignment, DataMember, FlowCall, FlowExpr, FlowParameter, Guard
@@ -161,23 +160,10 @@ class Expressions(SourceText):
 
     visit_Subscript = visit_Attribute
 
-    def visit_BoolOp(self, node: ast.BoolOp) -> None:
-        saved, count = self.guard, len(self.guards)
-        kind = "if" if node.op.__class__ is ast.And else "unless"
-        values = node.values
-        self.visit(values[0])
-        facts = self.count_notes()
-        for before, value in pairwise(values):
-            self.push(kind, self.format_source(before), before.lineno)
-            self.visit(value)
-        self.guard = saved
-        if facts == self.count_notes():
-            del self.guards[count:]
-
     def visit_IfExp(self, node) -> None:
         self.follow(node, "read")
 
-    visit_Lambda = visit_NamedExpr = visit_JoinedStr = visit_IfExp
+    visit_BoolOp = visit_Lambda = visit_NamedExpr = visit_JoinedStr = visit_IfExp
     visit_ListComp = visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_IfExp
 
     def visit_Call(self, node: ast.Call) -> None:
@@ -303,7 +289,7 @@ class Expressions(SourceText):
         facts = 0
         for operand in node.values:
             if texts:
-                self.push("if" if both else "unless", texts[-1], operand.lineno)
+                self.push("if" if both else "unless", texts[-1], node.values[len(texts) - 1].lineno)
             values.append(self.follow(operand, use, target))
             if not texts:
                 facts = self.count_notes()
