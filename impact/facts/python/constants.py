@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, ClassVar, NamedTuple
 
 from ....edges.dispatch import collect_node_methods
-from .text import format_dotted
+from .text import format_dotted, get_source
 
 
 class TextConstant(str):
@@ -36,7 +36,10 @@ class UnknownValue:
     @property
     def what(self) -> str:
         """Its source in a clause."""
-        return self._source if isinstance(self._source, str) else get_source(self._source)
+        if isinstance(self._source, str):
+            return self._source
+        text = get_source(self._source)
+        return f"`{text if len(text) <= 60 else text[:57] + '...'}`"
 
 
 class PackagePath(NamedTuple):
@@ -200,8 +203,3 @@ def _fill_pattern(pieces: list[str], values: list[str], node: ast.expr) -> TextC
 
 
 Constants.evaluators = collect_node_methods(Constants, "evaluate_")
-
-
-def get_source(node: ast.expr) -> str:
-    text = " ".join(ast.unparse(node).split())
-    return f"`{text if len(text) <= 60 else text[:57] + '...'}`"

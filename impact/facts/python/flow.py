@@ -21,6 +21,7 @@ from .flow_conditions import (
 from .flow_expressions import ANY, Expressions
 from .source import PythonSource, read
 from .text import SIGNS
+from .uses import join_dotted
 
 # Calls that never return.
 EXITS = frozenset(("sys.exit", "exit", "quit", "os._exit", "os.abort"))
@@ -425,22 +426,16 @@ class PythonStatements(Expressions):
     def read_Import(self, node: ast.Import) -> Leaving:
         scope = self.body.name
         for alias in node.names:
-            if alias.asname:
-                self.aliases.append(Alias(alias.asname, alias.name, scope))
-            else:
-                head = alias.name.partition(".")[0]
-                self.aliases.append(Alias(head, head, scope))
+            head = alias.name.partition(".")[0]
+            self.aliases.append(Alias(alias.asname or head, alias.name if alias.asname else head, scope))
         return STAYS
 
     def read_ImportFrom(self, node: ast.ImportFrom) -> Leaving:
         scope = self.body.name
         module = "." * node.level + (node.module or "")
         for alias in node.names:
-            if alias.name == "*":
-                self.aliases.append(Alias("*", module, scope))
-            else:
-                dot = "" if module.endswith(".") or not module else "."
-                self.aliases.append(Alias(alias.asname or alias.name, f"{module}{dot}{alias.name}", scope))
+            meant = module if alias.name == "*" else join_dotted(module, alias.name)
+            self.aliases.append(Alias(alias.asname or alias.name, meant, scope))
         return STAYS
 
     def list_decorators(self, node) -> tuple[str, ...]:

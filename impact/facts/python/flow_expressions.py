@@ -12,7 +12,7 @@ import ast
 from ....edges.dispatch import collect_node_methods
 from ..flow import Access, Assignment, DataMember, FlowCall, FlowExpr, FlowParameter, Guard
 from .flow_body import Body, ClassBody
-from .text import SourceText, drop_surrogates, find_child_fields, format_pieces, list_parameters, split_percent_format
+from .text import CHILD_FIELDS, SourceText, drop_surrogates, format_pieces, list_parameters, split_percent_format
 
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500
@@ -27,7 +27,6 @@ _READING = frozenset(
 )
 # Methods whose argument becomes an element of what they are called on.
 _KEEPING = {"append": 0, "add": 0, "appendleft": 0, "insert": 1, "setdefault": 1, "put": 0}
-_CHILDREN = find_child_fields("ctx", "id", "attr", "op", "ops", "kind", "conversion", "n", "s", "value_kind")
 _PATHS = (ast.Name, ast.Attribute, ast.Subscript)
 LONGEST_OTHER = 120
 ANY = FlowExpr("other")
@@ -146,7 +145,7 @@ class Expressions(SourceText):
         if visitor is not None:
             visitor(self, node)
             return
-        for field in _CHILDREN[node.__class__]:
+        for field in CHILD_FIELDS[node.__class__]:
             child = getattr(node, field)
             for one in child if child.__class__ is list else (child,):
                 if one is not None:

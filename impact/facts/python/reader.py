@@ -3,7 +3,6 @@
 import ast
 import re
 import sys
-from collections.abc import Iterator
 
 import msgspec
 
@@ -11,7 +10,7 @@ from ....edges.dispatch import collect_node_methods
 from ..condition import UNDECIDED, Condition
 from ..place import Problem, Reference
 from .bound import PYTHON2_BUILTINS, PYTHON2_METHODS
-from .text import SourceText, find_child_fields, list_caught_exceptions
+from .text import CHILD_FIELDS, SourceText, list_caught_exceptions, list_parameters
 from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, join_dotted, make_field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
 
@@ -75,10 +74,6 @@ _GENERIC = frozenset(("dict", "frozenset", "list", "set", "tuple", "type"))
 _TYPES = _GENERIC | {"bool", "bytes", "complex", "float", "int", "object", "str"}
 _QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
 _TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
-_CHILDREN = find_child_fields(
-    *("arg", "attr", "asname", "conversion", "ctx", "id", "kind", "level", "lineno", "module", "name", "op", "ops"),
-    *("rest", "simple", "str", "tag", "type_comment", "type_ignores", "is_async", "kwd_attrs"),
-)
 
 
 class PythonReader(ObjectUses, SourceText):
@@ -126,7 +121,7 @@ class PythonReader(ObjectUses, SourceText):
 
     def walk_children(self, node) -> None:
         """Visits the children of a node."""
-        for field in _CHILDREN.get(node.__class__, ()):
+        for field in CHILD_FIELDS.get(node.__class__, ()):
             child = getattr(node, field)
             for one in child if child.__class__ is list else (child,):
                 if one is not None:
@@ -199,14 +194,10 @@ class PythonReader(ObjectUses, SourceText):
             self.assigned.add((self.scope, f"{head}.{'.'.join(parts)}"))
         self.note_use(f"{head}.{'.'.join(parts)}", value.lineno, value.col_offset)
 
-    def resolve_dotted(self, scope: PythonScope, text: str) -> Iterator[str]:
-        """What a name with parts stands for, import aliases resolved."""
-        head, _, rest = text.partition(".")
-        return (f"{dotted}.{rest}" for dotted, _ in self.find_imported(head, scope))
-
     def list_attributes(self) -> tuple[AttributeUse, ...]:
         """Names of other modules that the file uses. What it assigns itself (`sys.maxint = sys.maxsize`) is there."""
-        own = {dotted for scope, text in self.assigned for dotted in self.resolve_dotted(scope, text)}
+        assigned = ((scope, *text.partition(".")) for scope, text in self.assigned)
+        own = {f"{dotted}.{rest}" for scope, head, _, rest in assigned for dotted, _ in self.find_imported(head, scope)}
         found: dict[tuple[str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
         for attribute in self.imported_names:
             found.setdefault((attribute.text, attribute.conditions), (attribute.line, attribute.column, attribute.lazy))
@@ -507,7 +498,7 @@ class PythonReader(ObjectUses, SourceText):
 
     def walk_defaults(self, arguments: ast.arguments) -> None:
         self.walk_all(filter(None, (*arguments.defaults, *arguments.kw_defaults)))
-        for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
+        for _, argument, _ in list_parameters(arguments):
             if argument.annotation is not None:
                 self.need(0, "annotations", argument)
                 self.walk_annotation(argument.annotation)
@@ -534,9 +525,8 @@ class PythonReader(ObjectUses, SourceText):
         return not any(node.id in scope.bound or node.id in scope.imports for scope in self.scope.chain)
 
     def bind_parameters(self, arguments: ast.arguments) -> None:
-        self.scope.parameters = names = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
-        others = filter(None, (*arguments.kwonlyargs, arguments.vararg, arguments.kwarg))
-        self.scope.bound.update(names, (argument.arg for argument in others))
+        self.scope.parameters = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
+        self.scope.bound.update(argument.arg for _, argument, _ in list_parameters(arguments))
 
     def visit_Lambda(self, node: ast.Lambda) -> None:
         self.walk_defaults(node.args)

@@ -11,7 +11,7 @@ import msgspec
 
 from ..condition import Condition
 from ..place import Problem
-from .text import list_parameters
+from .text import get_source, list_parameters
 
 
 class PythonParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -113,4 +113,4 @@ def unparse_even(node: ast.AST) -> str:
         return "..." if node.value is ... else repr(node.value).encode("utf-8", "replace").decode()
     if isinstance(node, ast.Attribute):
         return f"{unparse_even(node.value)}.{node.attr}"
-    return " ".join(ast.unparse(node).encode("utf-8", "replace").decode().split())
+    return get_source(node)

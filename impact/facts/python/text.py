@@ -44,15 +44,16 @@ COMPARISONS: dict[type, Callable[[Any, Any], Any]] = {
 }
 
 
-def find_child_fields(*left_out: str) -> dict[type, tuple[str, ...]]:
-    """For every node class the fields that can hold nodes, all but those left out."""
-    fields = {
-        cls: tuple(field for field in cls._fields if field not in left_out)
-        for cls in vars(ast).values()
-        if isinstance(cls, type) and issubclass(cls, ast.AST)
-    }
-    # Their fields hold strings and constants, not nodes.
-    return {**fields, **dict.fromkeys((ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton), ())}
+_NO_NODES = frozenset((
+    "arg", "attr", "asname", "conversion", "ctx", "id", "kind", "level", "lineno", "module", "name", "op", "ops", "rest",
+    "simple", "str", "tag", "type_comment", "type_ignores", "is_async", "kwd_attrs",
+))  # fmt: skip
+CHILD_FIELDS: dict[type, tuple[str, ...]] = {
+    cls: tuple(field for field in cls._fields if field not in _NO_NODES)
+    for cls in vars(ast).values()
+    if isinstance(cls, type) and issubclass(cls, ast.AST)
+} | dict.fromkeys((ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton), ())
+"""For every node class the fields that can hold nodes; those of the last ones hold strings and constants."""
 
 
 def list_parameters(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, ast.expr | None]]:
@@ -79,6 +80,11 @@ def format_dotted(node: ast.expr) -> str:
     return ".".join(reversed(parts))
 
 
+def get_source(node: ast.AST) -> str:
+    """The source of a node, written evenly in one line, without what no fact can hold."""
+    return " ".join(drop_surrogates(ast.unparse(node)).split())
+
+
 def list_caught_exceptions(handlers: Iterable[ast.ExceptHandler]) -> set[str]:
     """The last parts of the names of exceptions that are caught; `Exception` for all of them."""
     caught: set[str] = set()
@@ -99,7 +105,7 @@ class SourceText:
     def format_source(self, node) -> str:
         """The source of an expression or pattern, white space as single blanks, comments left out."""
         if self.unplaced:
-            return " ".join(drop_surrogates(ast.unparse(node)).split())
+            return get_source(node)
         first, last = node.lineno - 1, node.end_lineno - 1
         lines = self.lines
         if first == last:
