@@ -142,23 +142,27 @@ class LaunchCall(NamedTuple):
         source = given.source if isinstance(given, Unknown) else self.find_source("condition")
         return (ActionCondition("if", (make_other(source),), self.line),)
 
-    def list_remaps(self, value: Any, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:
+    def list_pairs(
+        self, argument: str, kind: str, keys: tuple[str, str], value: Any, extra: tuple[ActionCondition, ...] = ()
+    ) -> Iterator[Action]:
+        """Actions with two attributes of what an argument gives as pairs: a dict, a pair, or a list of any of these."""
         for held, conditions in self.list_branches(value, extra):
-            if isinstance(held, Items):
-                items = held.items
-                first = items[0] if len(items) == 2 else None
-                of_tuples = isinstance(first, Items) and first.kind == "tuple"
-                if isinstance(first, TextValue) or (held.kind == "tuple" and first is not None and not of_tuples):
-                    old, new = map(self.make_text, items)
-                    yield Action("remap", self.line, (("from", old), ("to", new)), conditions)
-                    continue
-                for item in items:
-                    yield from self.list_remaps(item, conditions)
-            elif isinstance(held, Pairs):
-                for pair in held.items:
-                    yield from self.list_remaps(Items(list(pair), 0, "tuple"), conditions)
-            else:
-                yield self.skip_argument("remappings", held, conditions)
+            if not isinstance(held, (Items, Pairs)):
+                yield self.skip_argument(argument, held, conditions)
+                continue
+            items = held.items if isinstance(held, Items) else [Items(list(pair), 0, "tuple") for pair in held.items]
+            first = items[0] if len(items) == 2 else None
+            of_tuples = isinstance(first, Items) and first.kind == "tuple"
+            of_pair = isinstance(held, Items) and held.kind == "tuple" and first is not None and not of_tuples
+            if isinstance(first, TextValue) or of_pair:
+                second = items[1]
+                if isinstance(second, ConditionalValue):
+                    conditions, second = (*conditions, *second.conditions), second.value
+                texts = (self.make_text(first), self.make_text(second))
+                yield Action(kind, self.line, tuple(zip(keys, texts, strict=True)), conditions)
+                continue
+            for item in items:
+                yield from self.list_pairs(argument, kind, keys, item, conditions)
 
     def list_parameters(self, value: Any, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:
         for held, conditions in self.list_branches(value, extra):
@@ -239,7 +243,8 @@ def _define_node(kind: str) -> Maker:
                 if key == "ros_arguments":
                     attributes.append(("arguments", make_literal("--ros-args")))
                 attributes += [("arguments", text) for text in call.list_texts(given)]
-        children = [*call.list_remaps(call.get(-1, "remappings")), *call.list_parameters(call.get(-1, "parameters"))]
+        remaps = call.list_pairs("remappings", "remap", ("from", "to"), call.get(-1, "remappings"))
+        children = [*remaps, *call.list_parameters(call.get(-1, "parameters"))]
         inner = call.get(-1, "composable_node_descriptions")
         if kind == "container" and inner is not None:
             children += call.list_actions(inner)
@@ -293,29 +298,8 @@ def _include(call: LaunchCall) -> Any:
     source = call.get(0, "launch_description_source")
     if isinstance(source, Items) and source.kind == "launch":
         return call.group(call.list_actions(source))
-    return call.make_action(
-        "include", call.list_attributes(("file", source)), _list_passed_arguments(call, call.get(1, "launch_arguments"))
-    )
-
-
-def _list_passed_arguments(call: LaunchCall, value: Any, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:
-    """Arguments given to an include: pairs, or a dict."""
-    for held, conditions in call.list_branches(value, extra):
-        if isinstance(held, Pairs):
-            for pair in held.items:
-                yield from _list_passed_arguments(call, Items(list(pair), 0), conditions)
-        elif not isinstance(held, Items):
-            yield call.skip_argument("launch_arguments", held, conditions)
-        elif len(held.items) == 2 and isinstance(held.items[0], TextValue):
-            name, given = held.items
-            if isinstance(given, ConditionalValue):
-                conditions, given = (*conditions, *given.conditions), given.value
-            yield Action(
-                "pass", call.line, (("name", call.make_text(name)), ("value", call.make_text(given))), conditions
-            )
-        else:
-            for item in held.items:
-                yield from _list_passed_arguments(call, item, conditions)
+    passed = call.list_pairs("launch_arguments", "pass", ("name", "value"), call.get(1, "launch_arguments"))
+    return call.make_action("include", call.list_attributes(("file", source)), passed)
 
 
 def _run_opaque_function(call: LaunchCall) -> Any:
@@ -391,22 +375,16 @@ def _define_configuration_test(kind: str) -> Maker:
     return make
 
 
-def _define_substitution(kind: str, *names: tuple[int, str]) -> Maker:
-    """A substitution with a name, the first of its arguments, and what else it is given."""
+def _define_substitution(kind: str, *names: tuple[str, ...], is_str: bool = False) -> Maker:
+    """A substitution with a name, the first of its arguments, and what else it is given. names: of each argument."""
 
     def make(call: LaunchCall) -> Any:
-        given = [call.get(place, keyword) for place, keyword in names]
+        given = [call.get(place, *keywords) for place, keywords in enumerate(names)]
         if given[0] is None:
             return call.unknown
-        return TextValue((make_named(kind, *(call.make_text(value) for value in given if is_given(value))),), False)
+        return TextValue((make_named(kind, *(call.make_text(value) for value in given if is_given(value))),), is_str)
 
     return make
-
-
-def _share(call: LaunchCall) -> Any:
-    given = call.get(0, "package_name", "package")
-    kind = "prefix" if call.path.endswith("prefix") else "find"
-    return call.unknown if given is None else TextValue((make_named(kind, call.make_text(given)),))
 
 
 def _define_parts(kind: str, is_str: bool = False) -> Maker:
@@ -433,11 +411,11 @@ def _join_path(call: LaunchCall) -> Any:
     return _define_parts("join", True)(call) if call.path.endswith("path.join") else call.unknown
 
 
-def _define_wrapper(is_str: bool) -> Maker:
-    """A wrapper through which its first argument passes."""
+def _define_wrapper(is_str: bool, place: int = 0) -> Maker:
+    """A wrapper through which an argument passes."""
 
     def make(call: LaunchCall) -> Any:
-        given = call.get(0, "text", "launch_file_path", "variable")
+        given = call.get(place, "text", "launch_file_path", "variable", "subs")
         if given is None:
             return call.unknown
         return TextValue(given.value if isinstance(given, TextValue) else call.make_text(given), is_str)
@@ -448,11 +426,6 @@ def _define_wrapper(is_str: bool) -> Maker:
 def _convert_to_str(call: LaunchCall) -> Any:
     given = call.get(0, "object")
     return given if isinstance(given, TextValue) and given.is_str else TextValue(call.make_text(given))
-
-
-def _perform_substitutions(call: LaunchCall) -> Any:
-    given = call.get(1, "subs")
-    return call.unknown if given is None else TextValue(call.make_text(given))
 
 
 def _find_dirname(call: LaunchCall) -> Any:
@@ -621,15 +594,20 @@ MAKERS: dict[str, Maker] = {
     "UnlessCondition": _define_condition("unless"),
     "LaunchConfigurationEquals": _define_configuration_test("if"),
     "LaunchConfigurationNotEquals": _define_configuration_test("unless"),
-    "LaunchConfiguration": _define_substitution("arg", (0, "variable_name"), (1, "default")),
-    "LaunchConfigAsBool": _define_substitution("arg", (0, "name")),
-    "EnvironmentVariable": _define_substitution("env", (0, "name"), (1, "default_value")),
-    "OptEnvironmentVariable": _define_substitution("env", (0, "name"), (1, "default_value")),
-    "AnonName": _define_substitution("anon", (0, "name")),
-    "FindPackageShare": _define_substitution("find", (0, "package")),
-    **dict.fromkeys(("FindPackagePrefix", "FindPackage"), _define_substitution("prefix", (0, "package"))),
-    "FindExecutable": _define_substitution("program", (0, "name")),
-    **dict.fromkeys(("get_package_share_directory", "get_package_share_path", "get_package_prefix"), _share),
+    "LaunchConfiguration": _define_substitution("arg", ("variable_name",), ("default",)),
+    "LaunchConfigAsBool": _define_substitution("arg", ("name",)),
+    **dict.fromkeys(
+        ("EnvironmentVariable", "OptEnvironmentVariable"), _define_substitution("env", ("name",), ("default_value",))
+    ),
+    "AnonName": _define_substitution("anon", ("name",)),
+    "FindPackageShare": _define_substitution("find", ("package",)),
+    **dict.fromkeys(("FindPackagePrefix", "FindPackage"), _define_substitution("prefix", ("package",))),
+    "FindExecutable": _define_substitution("program", ("name",)),
+    **dict.fromkeys(
+        ("get_package_share_directory", "get_package_share_path"),
+        _define_substitution("find", ("package_name", "package"), is_str=True),
+    ),
+    "get_package_prefix": _define_substitution("prefix", ("package_name", "package"), is_str=True),
     "ExecutableInPackage": _define_piece("executable", "executable", "package"),
     "PathJoinSubstitution": _define_parts("join"),
     "ThisLaunchFileDir": lambda call: TextValue((ValuePart("dirname"),), False),
@@ -663,7 +641,7 @@ MAKERS: dict[str, Maker] = {
     "HasNodeParams": _define_piece("has-node", "source_file", "node_name"),  # of nav2_common
     "RewrittenYaml": _rewrite_yaml,
     "ReplaceString": _replace_strings,
-    "perform_substitutions": _perform_substitutions,
+    "perform_substitutions": _define_wrapper(True, 1),
     "normalize_to_list_of_substitutions": _define_wrapper(False),
     "join": _join_path,
     "dirname": _find_dirname,
