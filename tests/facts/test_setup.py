@@ -78,6 +78,8 @@ GIVEN = [
     ("setup(packages=find_packages(exclude=['test']))", "packages", ("*",)),
     ("setup(packages=setuptools.find_packages())", "packages", ("*",)),
     ("setup(packages=['a'] + ['b'])", "packages", ("a", "b")),
+    ("setup(scripts=['{0}/{tool}'.format('bin', tool='run')])", "scripts", ("bin/run",)),
+    ("setup(scripts=['{:>9}'.format('run')])", "unresolved", ("scripts: `'{:>9}'.format('run')`",)),
     ("p = ('a', 'b')\nsetup(packages=list(p))", "packages", ("a", "b")),
     ("setup(packages=['a'], py_modules=['m'])", "packages", ("a", "m")),
     ("d = dict(packages=['a'])\nd['scripts'] = ['s']\nsetup(**d)", "scripts", ("s",)),

@@ -7,13 +7,12 @@ what is only known at launch are walked both, and what they add stands under the
 from __future__ import annotations
 
 import ast
-import string
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from ....edges.dispatch import collect_node_methods
 from ..place import Problem
-from ..python.text import list_parameters
+from ..python.text import fill_format, fill_percent, list_parameters
 from .actions import (
     Action,
     ActionCondition,
@@ -435,12 +434,9 @@ class Walker:
         if isinstance(node.op, ast.Mod) and isinstance(left, TextValue):
             pattern = find_literal(left.value)
             given = right.items if isinstance(right, Items) else [right]
-            if pattern is not None and pattern.count("%s") == len(given) == pattern.count("%"):
-                first, *others = map(make_literal, pattern.split("%s"))
-                filled = (
-                    (self.make_text(value, node.right), piece) for value, piece in zip(given, others, strict=True)
-                )
-                return TextValue(join_all((first, *(part for pair in filled for part in pair))))
+            if pattern is not None:
+                texts = [self.make_text(value, node.right) for value in given]
+                return _join_filled(fill_percent(pattern, texts), node)
         if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
             return calculate_result(node, left.value, right.value)
         if isinstance(left, Pairs) and isinstance(right, Pairs) and isinstance(node.op, ast.BitOr):
@@ -709,35 +705,13 @@ class Walker:
             for item in arguments[0].items:
                 parts += (*([value] if parts else ()), self.make_text(item, node))
             return TextValue(join_all(parts))
-        if name == "format":
-            return self.format(value, arguments, keywords, node)
+        if name == "format" and (pattern := find_literal(value)) is not None:
+            given = {**dict(enumerate(arguments)), **keywords}
+            filled = fill_format(pattern, {key: self.make_text(each, node) for key, each in given.items()})
+            return _join_filled(filled, node)
         if name in STRING_METHODS:
             return TextValue((ValuePart("method", name, (value, *(self.make_text(a, node) for a in arguments))),))
         return Unknown(get_source(node))
-
-    def format(self, value: Value, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        pattern = find_literal(value)
-        if pattern is None:
-            return Unknown(get_source(node))
-        values: list[Value] = []
-        place = 0
-        try:
-            for text, field, spec, _ in string.Formatter().parse(pattern):
-                values.append(make_literal(text))
-                if field is None:
-                    continue
-                if spec:
-                    return Unknown(get_source(node))
-                if field == "":
-                    field, place = str(place), place + 1
-                is_place = field.isdigit() and int(field) < len(arguments)
-                given = arguments[int(field)] if is_place else keywords.get(field)
-                if given is None:
-                    return Unknown(get_source(node))
-                values.append(self.make_text(given, node))
-        except ValueError:
-            return Unknown(get_source(node))
-        return TextValue(join_all(values))
 
     def count_steps(self, steps: int) -> None:
         """Counts steps; raises TooMuch when there have been too many."""
@@ -796,6 +770,13 @@ STRING_METHODS = frozenset(
     ("lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "replace", "capitalize", "title",
      "removeprefix", "removesuffix"),
 )  # fmt: skip
+
+
+def _join_filled(pieces: Sequence[Any], node: ast.AST) -> TextValue | Unknown:
+    """Literal text and values one after the other, where all are there."""
+    if None in pieces:
+        return Unknown(get_source(node))
+    return TextValue(join_all([make_literal(piece) if isinstance(piece, str) else piece for piece in pieces]))
 
 
 def _jumps_to_next_turn(body: Sequence[ast.stmt]) -> bool:

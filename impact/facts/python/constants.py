@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, ClassVar, NamedTuple
 
 from ....edges.dispatch import collect_node_methods
-from .text import format_dotted, get_source
+from .text import fill_format, fill_percent, format_dotted, get_source
 
 
 class TextConstant(str):
@@ -165,9 +165,7 @@ class Constants:
                 return (left if isinstance(left, list) else [left]) + (right if isinstance(right, list) else [right])
             return put_together((left, "/", right) if op is ast.Div else (left, right), node.lineno)
         if isinstance(left, str):
-            values = right if isinstance(right, list) else [right]
-            if all(isinstance(v, str) for v in values) and left.count("%s") == len(values) == left.count("%"):
-                return _fill_pattern(left.split("%s"), values, node)
+            return _join_strings(fill_percent(left, right if isinstance(right, list) else [right]), node)
         return None
 
     def evaluate_Call(self, node: ast.Call) -> Any:
@@ -190,16 +188,15 @@ class Constants:
             return arguments[0]
         elif last == "format" and isinstance(call.func, ast.Attribute):
             template = self.find_value(call.func.value)
-            if isinstance(template, str) and all(isinstance(a, str) for a in arguments) and not call.keywords:
-                pieces = template.split("{}")
-                if len(pieces) == len(arguments) + 1 and "{" not in "".join(pieces):
-                    return _fill_pattern(pieces, arguments, call)
+            if isinstance(template, str):
+                given = {**dict(enumerate(arguments)), **self.find_keywords(call)}
+                return _join_strings(fill_format(template, given), call)
         return None
 
 
-def _fill_pattern(pieces: list[str], values: list[str], node: ast.expr) -> TextConstant:
-    """Pieces of a pattern with values in between."""
-    return TextConstant(pieces[0] + "".join(v + p for v, p in zip(values, pieces[1:], strict=True)), node.lineno)
+def _join_strings(parts: list[Any], node: ast.expr) -> TextConstant | None:
+    """Strings one after the other; None where not all are known."""
+    return TextConstant("".join(parts), node.lineno) if all(isinstance(part, str) for part in parts) else None
 
 
 Constants.evaluators = collect_node_methods(Constants, "evaluate_")

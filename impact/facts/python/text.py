@@ -4,7 +4,7 @@ import ast
 import operator
 import re
 import string
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 # A comment, or a string in which a `#` is none.
@@ -45,8 +45,8 @@ COMPARISONS: dict[type, Callable[[Any, Any], Any]] = {
 
 
 _NO_NODES = frozenset((
-    "arg", "attr", "asname", "conversion", "ctx", "id", "kind", "level", "lineno", "module", "name", "op", "ops", "rest",
-    "simple", "str", "tag", "type_comment", "type_ignores", "is_async", "kwd_attrs",
+    "arg", "attr", "asname", "conversion", "ctx", "id", "is_async", "kind", "kwd_attrs", "level", "lineno", "module",
+    "name", "op", "ops", "rest", "simple", "str", "tag", "type_comment", "type_ignores",
 ))  # fmt: skip
 CHILD_FIELDS: dict[type, tuple[str, ...]] = {
     cls: tuple(field for field in cls._fields if field not in _NO_NODES)
@@ -177,3 +177,21 @@ def format_pieces(text: str) -> list[str | int | tuple[str]] | None:
     except ValueError:
         return None
     return pieces
+
+
+def fill_percent(text: str, values: Sequence[Any]) -> list[Any]:
+    """What `text % values` puts together, where it is all `%s`; a None for anything else."""
+    first, *others = text.split("%s")
+    if not text.count("%") == len(others) == len(values):
+        return [None]
+    return [first, *(piece for pair in zip(values, others, strict=True) for piece in pair)]
+
+
+def fill_format(text: str, values: Mapping[int | str, Any]) -> list[Any]:
+    """What `text.format(...)` puts together, where it writes values as str() does; a None for anything else. values: of
+    the arguments, by their places and names."""
+    pieces = format_pieces(text)
+    if pieces is None or any(spec for _, _, spec, _ in string.Formatter().parse(text)):
+        return [None]
+    return [piece if isinstance(piece, str) else values.get(piece[0] if isinstance(piece, tuple) else piece)
+            for piece in pieces]  # fmt: skip
