@@ -383,21 +383,15 @@ class PythonStatements(Expressions):
         if node.value is not None:
             value = self.follow(node.value, "read" if self.is_local(target) else "escape", self.find_target(target))
             self.bind(target, value, node.lineno, type)
-        elif target.__class__ is ast.Name:
-            if self.in_class:
-                self.own.add(target.id)  # type: ignore[attr-defined]
-                self.declare(target.id, type, node.lineno)  # type: ignore[attr-defined]
-            else:
-                self.locals.add(target.id)  # type: ignore[attr-defined]
-        elif target.__class__ is ast.Attribute:
-            path = self.find_target(target)
-            if path.startswith("this.") and path.count(".") == 1:
-                self.declare(path[5:], type, node.lineno)
+        elif self.is_local(target):
+            self.locals.add(target.id)  # type: ignore[attr-defined]
+        else:
+            head, _, name = self.find_target(target).partition(".")
+            if head == "this" and "." not in name and self.body.cls is not None:
+                if self.in_class:
+                    self.own.add(name)
+                self.body.cls.add_member(name, type, node.lineno, None)
         return STAYS
-
-    def declare(self, name: str, type: str, line: int) -> None:
-        if self.body.cls is not None:
-            self.body.cls.add_member(name, type, line, None)
 
     def read_AugAssign(self, node: ast.AugAssign) -> Leaving:
         target = node.target

@@ -151,9 +151,6 @@ class Expressions(SourceText):
                 if one is not None:
                     self.visit(one)
 
-    def visit_Name(self, node: ast.Name) -> None:
-        self.knows(node.id)
-
     def visit_Attribute(self, node) -> None:
         self.reach(node)
 
@@ -163,10 +160,7 @@ class Expressions(SourceText):
         self.follow(node, "read")
 
     visit_BoolOp = visit_Lambda = visit_NamedExpr = visit_JoinedStr = visit_IfExp
-    visit_ListComp = visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_IfExp
-
-    def visit_Call(self, node: ast.Call) -> None:
-        self.call(node)
+    visit_ListComp = visit_SetComp = visit_GeneratorExp = visit_DictComp = visit_Call = visit_Name = visit_IfExp
 
     def visit_Yield(self, node) -> None:
         if node.value is not None:

@@ -10,7 +10,7 @@ from ....edges.dispatch import collect_node_methods
 from ..condition import UNDECIDED, Condition
 from ..place import Problem, Reference
 from .bound import PYTHON2_BUILTINS, PYTHON2_METHODS
-from .text import CHILD_FIELDS, SourceText, list_caught_exceptions, list_parameters
+from .text import CHILD_FIELDS, SourceText, format_dotted, list_caught_exceptions, list_parameters
 from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, join_dotted, make_field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
 
@@ -141,7 +141,7 @@ class PythonReader(ObjectUses, SourceText):
     def visit_Name(self, node: ast.Name) -> None:
         if node.ctx.__class__ is ast.Store:
             self.scope.bound.add(node.id)
-            self.hold(node.id, "")
+            self.scope.objects[node.id] = ""
         elif node.id in self.unbound:
             self.note_use(node.id, node.lineno, node.col_offset)
 
@@ -310,7 +310,7 @@ class PythonReader(ObjectUses, SourceText):
         """The variable of a loop, which holds an element of what is walked through."""
         self.visit(target)
         if self.has_interfaces and target.__class__ is ast.Name and (type_ := self.find_type(over)):
-            self.hold(target.id, make_field_type(type_, ELEMENT))
+            self.scope.objects[target.id] = make_field_type(type_, ELEMENT)
 
     def visit_ListComp(self, node) -> None:
         outer = self.scope
@@ -390,7 +390,7 @@ class PythonReader(ObjectUses, SourceText):
                 self.visit(handler.type)
             if handler.name:
                 self.scope.bound.add(handler.name)
-                self.hold(handler.name, "")
+                self.scope.objects[handler.name] = ""
             self.walk_under(handler.body, EXCEPT if covers_import else None, instead if covers_use else None)
         self.call_conditions = outside
         self.scope.objects = done
@@ -407,8 +407,8 @@ class PythonReader(ObjectUses, SourceText):
         suppressed = False
         for item in node.items:
             call = item.context_expr
-            if isinstance(call, ast.Call) and _find_last_name(call.func) == "suppress":
-                suppressed |= any(_find_last_name(argument) in IMPORT_ERRORS for argument in call.args)
+            if isinstance(call, ast.Call) and format_dotted(call.func).rpartition(".")[2] == "suppress":
+                suppressed |= any(format_dotted(argument).rpartition(".")[2] in IMPORT_ERRORS for argument in call.args)
             self.visit(call)
             if item.optional_vars is not None:
                 self.visit(item.optional_vars)
@@ -580,7 +580,7 @@ class PythonReader(ObjectUses, SourceText):
             return
         self.visit(node.target)
         if isinstance(node.target, ast.Name):
-            self.hold(node.target.id, annotated)
+            self.scope.objects[node.target.id] = annotated
 
     def remember(self, name: str, node: ast.expr, annotated: str = "") -> None:
         scope = self.scope
@@ -597,13 +597,13 @@ class PythonReader(ObjectUses, SourceText):
         if not annotated and node.__class__ is ast.Constant and node.value is None:  # type: ignore[attr-defined]
             scope.objects.pop(name, None)
         else:
-            self.hold(name, annotated or self.find_type(node))
+            self.scope.objects[name] = annotated or self.find_type(node)
 
     def visit_NamedExpr(self, node: ast.NamedExpr) -> None:
         self.need(8, "assignment expression", node)
         self.visit(node.value)
         self.visit(node.target)
-        self.hold(node.target.id, self.find_type(node.value))
+        self.scope.objects[node.target.id] = self.find_type(node.value)
 
     def visit_Match(self, node) -> None:
         self.need(10, "match statement", node)
@@ -832,10 +832,6 @@ def _launch_arguments(node: ast.expr | None) -> tuple[str, ...] | None:
         return None
     found = tuple(name for name in names if isinstance(name, str))
     return found if len(found) == len(names) else None
-
-
-def _find_last_name(node) -> str:
-    return getattr(node, "id", None) or getattr(node, "attr", "")
 
 
 _HANDLERS = collect_node_methods(PythonReader, "visit_")

@@ -223,10 +223,6 @@ class ObjectUses(PythonValues):
             return self.find_annotated(node.slice.elts[0] if node.slice.__class__ is ast.Tuple else node.slice)
         return self.resolve_callee(node) if node.__class__ in (ast.Name, ast.Attribute) else ""
 
-    def hold(self, name: str, type_: str) -> None:
-        """A variable of the scope is bound."""
-        self.scope.objects[name] = type_
-
     def forget_rebound(self, loop: ast.AST) -> None:
         """A loop begins, in which a variable that it binds itself has a type only where that stays the same."""
         objects = self.scope.objects

@@ -93,10 +93,10 @@ class PythonValues(Constants):
 
     def find_result(self, call: ast.Call) -> Any:
         function, receiver = self.find_callee(call.func), getattr(call.func, "value", None)
-        if function in PACKAGE_CALLS or (function == "get_path" and self.has_rospkg):
-            return self.find_package_folder(call)
-        if function == "find" and isinstance(receiver, ast.Call) and self.find_callee(receiver.func) in PACKAGE_CALLS:
-            return self.find_package_folder(call)
+        asked = self.find_callee(receiver.func) if function == "find" and isinstance(receiver, ast.Call) else function
+        if asked in PACKAGE_CALLS or (function == "get_path" and self.has_rospkg):
+            package = self.find_package_argument(call)
+            return None if package is None else PackagePath(package[0], "", package[1])
         if function in JOINS:
             arguments = call.args
             if len(arguments) == 1 and isinstance(arguments[0], (ast.List, ast.Tuple)):
@@ -110,10 +110,6 @@ class PythonValues(Constants):
             inner = call.args or [keyword.value for keyword in call.keywords if keyword.arg in ("text", "param_file")]
             return self.find_text(inner[0]) if inner else None
         return None
-
-    def find_package_folder(self, call: ast.Call) -> PackagePath | None:
-        package = self.find_package_argument(call)
-        return None if package is None else PackagePath(package[0], "", package[1])
 
     def find_callee(self, node) -> str:
         """The last name of what is called, import aliases resolved."""
