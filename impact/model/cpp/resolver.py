@@ -71,17 +71,17 @@ class CppType(NamedTuple):
         """Whether it is one object, neither pointer nor several."""
         return not self.kind
 
-    def point(self) -> CppType:
+    def add_pointer(self) -> CppType:
         """A pointer to it."""
         return _wrap("pointer", self)
 
-    def dereference(self) -> CppType | None:
+    def remove_pointer(self) -> CppType | None:
         """What a pointer points to; None for what is none."""
         return self.parts[0] if self.kind == "pointer" else None
 
     def reach(self, arrow: bool) -> CppType | None:
         """The object whose members are reached by `.`, or by `->`."""
-        return self.dereference() if arrow else self
+        return self.remove_pointer() if arrow else self
 
     def find_element(self) -> CppType | None:
         """What a loop over it runs through; None for what is no container."""
@@ -100,7 +100,7 @@ class CppType(NamedTuple):
         if self.kind == "pointer":
             return self if member in _SAME else self.parts[0] if member == "value" else None
         if member in _ITERATING and (element := self.find_element()) is not None:
-            return element.point()
+            return element.add_pointer()
         if self.kind == "sequence" and member in _ELEMENT:
             return self.parts[0]
         return self.find_indexed() if member == "at" else None
@@ -349,7 +349,7 @@ class Resolver:
             return None
         if parts.array:
             found = _wrap("sequence", found)
-        return found.point() if parts.pointer else found
+        return found.add_pointer() if parts.pointer else found
 
     def resolve_name(self, name: str, place: CodePlace, depth: int = 0) -> CppType | None:
         """The class that a name without template arguments is."""
@@ -413,7 +413,7 @@ class Resolver:
         outer, _, last = name.rpartition("::")
         if outer and _POINTED.fullmatch(last):
             inner = self.resolve_name(outer, place, depth + 1)
-            return inner.point() if inner is not None else None
+            return inner.add_pointer() if inner is not None else None
         if outer and self.vocabulary is not None:
             around = next((full for full in self.list_meanings(outer, place) if full in self.vocabulary.classes), None)
             inner = self._find_released(around, last, "alias") if around is not None else None
@@ -422,7 +422,7 @@ class Resolver:
         shorter = _SUFFIX.sub("", name)
         if shorter and shorter != name and not shorter.endswith("::"):
             inner = self.resolve_name(shorter, place, depth + 1)
-            return inner.point() if inner is not None and not inner.own else None
+            return inner.add_pointer() if inner is not None and not inner.own else None
         # An alias of some class, where nothing else is so called.
         found = {
             self._find_nested(self.find_type(member.type, _make_class_place(one), depth + 1), rest, depth)
@@ -440,7 +440,7 @@ class Resolver:
             return type_
         if _ITERATOR.fullmatch(rest):
             element = type_.find_element()
-            return element.point() if element is not None else None
+            return element.add_pointer() if element is not None else None
         if type_.interface is not None:
             return self._select_section(type_, rest.split("::"))
         return self.resolve_name(f"{type_.name}::{rest}", _NOWHERE, depth + 1) if type_.name else None
@@ -473,7 +473,7 @@ class Resolver:
             section = find_section(member[:2], [part for part in parts[at + 1 :] if not _POINTED.fullmatch(part)])
             if section is not None:
                 found = CppType(interface=member[0], section=section)
-                return found.point() if pointer else found
+                return found.add_pointer() if pointer else found
         return None
 
     def _find_plain_interface(self, parts: list[str]) -> tuple[NamedInterface, str, bool] | None:
@@ -500,7 +500,7 @@ class Resolver:
         if section is None:
             return None
         found = type_._replace(section=section)
-        return found.point() if pointer else found
+        return found.add_pointer() if pointer else found
 
     def list_own_lineage(self, class_: str) -> tuple[CppClass, ...]:
         """A class of the package and those of the package that it is derived from, with the arguments of templates
@@ -601,13 +601,13 @@ class Resolver:
             if kind == "part":
                 return type_.find_part(int(expr.text))
             if kind == "unary":
-                return type_.dereference() if expr.text == "*" else type_.point()
+                return type_.remove_pointer() if expr.text == "*" else type_.add_pointer()
             return type_.find_indexed() if kind == "index" else type_.find_element()
         if kind == "this":
-            return CppType(place.owner, own=True).point() if place.owner else None
+            return CppType(place.owner, own=True).add_pointer() if place.owner else None
         if kind in ("new", "cast", "braces") and expr.text:
             type_ = self.find_type(expr.text, place)
-            return type_.point() if type_ is not None and kind == "new" else type_
+            return type_.add_pointer() if type_ is not None and kind == "new" else type_
         if kind == "conditional" and len(expr.parts) == 2:
             one, other = (self.resolve_value(part, place, depth + 1) for part in expr.parts)
             return one if one == other else None
@@ -722,7 +722,7 @@ class Resolver:
                 return self.find_type(callee.template[0], place)
             if last in _MAKERS or last in _POINTER_CASTS:
                 type_ = self.find_type(callee.template[0], place)
-                return type_.point() if type_ is not None else None
+                return type_.add_pointer() if type_ is not None else None
             if name == "std::get" and len(expr.parts) == 2:
                 value = self.resolve_value(expr.parts[1], place, depth + 1)
                 given = callee.template[0]
@@ -731,9 +731,9 @@ class Resolver:
             return self.resolve_value(expr.parts[1], place, depth + 1) if len(expr.parts) > 1 else None
         if outer and last in _MAKERS and outer not in ("std", "boost"):
             type_ = self.resolve_name(outer, place)
-            return type_.point() if type_ is not None else None
+            return type_.add_pointer() if type_ is not None else None
         if last in ("shared_from_this", "weak_from_this") and not outer:
-            return CppType(place.owner, own=True).point() if place.owner else None
+            return CppType(place.owner, own=True).add_pointer() if place.owner else None
         written = f"{name}<{', '.join(callee.template)}>" if callee.template else name
         type_ = self.find_type(written, place)
         if type_ is not None and type_.kind != "pointer":
