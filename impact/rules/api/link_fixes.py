@@ -28,8 +28,7 @@ def tell_replacement(view: TargetView, package: Package, call: DependencyCall) -
 
 def make_link_fix(view: TargetView, package: Package) -> tuple[FixAction, ...]:
     """Actions that replace every call that counts on the target; none where one of them cannot be replaced."""
-    counting = (call for call in package.build.dependency_calls if view.applies(call.conditions))
-    calls = group_pairs((call.at, call) for call in counting)
+    calls = group_pairs((call.at, call) for call in package.build.dependency_calls)
     actions: list[FixAction] = []
     for several in calls.values():
         made = _replace_call(view, package, several[0]) if len(several) == 1 else ()

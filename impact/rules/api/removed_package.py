@@ -57,7 +57,7 @@ def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterato
     uses += [
         (f.name, "found", f.conditions, f.at, _collect_search_doubts(view, f))
         for f in package.build.found
-        if view.applies(f.conditions) and not (f.quiet and not f.required and f.name in package.build.asked)
+        if not (f.quiet and not f.required and f.name in package.build.asked)
     ]
     seen = set()
     for name, how, conditions, at, doubts in uses:

@@ -1,5 +1,6 @@
 """The exports of ament packages, as the rules on them ask for it."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from ...model.cmake.build import CMakeExport
@@ -11,10 +12,10 @@ _HOWS = frozenset(
 
 
 class AmentExports(NamedTuple):
-    """What an ament package exports. exports: those that count on the target. dependencies: the packages of
+    """What an ament package exports. exports: all of them. dependencies: the packages of
     ament_export_dependencies(). found: all that dependants find along with it."""
 
-    exports: list[CMakeExport]
+    exports: tuple[CMakeExport, ...]
     dependencies: frozenset[str]
     found: frozenset[str]
 
@@ -32,11 +33,11 @@ def read_ament_exports(view: TargetView, package: Package) -> AmentExports | Non
         written = package.build.catkin_package is None and any(i.kind == "export" for i in package.build.installs)
         near = {provider.name for name in handed for provider in view.find_cmake(name)[:1]}
         return (
-            AmentExports([], frozenset(), frozenset(handed) | view.list_transitive(near))
+            AmentExports((), frozenset(), frozenset(handed) | view.list_transitive(near))
             if handed and written
             else None
         )
-    exports = [e for e in package.build.exports if view.applies(e.conditions)]
+    exports = package.build.exports
     dependencies = frozenset(e.item for e in exports if e.how == "ament_export_dependencies")
     if not exports_something(exports) or any("$" in name for name in dependencies):
         return None
@@ -45,7 +46,7 @@ def read_ament_exports(view: TargetView, package: Package) -> AmentExports | Non
     return AmentExports(exports, dependencies, view.roles.list_found_with(dependencies | handed))
 
 
-def exports_something(exports: list[CMakeExport]) -> bool:
+def exports_something(exports: Iterable[CMakeExport]) -> bool:
     """Whether a package of ament calls a command that exports packages, targets, libraries or include directories."""
     return any(export.how in _HOWS for export in exports)
 

@@ -34,6 +34,6 @@ def call_after_ament_package(view: TargetView, package: Package):
     calls = [(e.how, e.at, e.conditions) for e in package.build.exports if e.how.startswith("ament_export_")]
     calls += [("rosidl_generate_interfaces", g.at, g.conditions) for g in package.build.generated if g.how == "rosidl"]
     for name, at, conditions in calls:
-        if at.path == last.path and at.line > last.line and view.applies(conditions):
+        if at.path == last.path and at.line > last.line:
             yield Diagnostic(at, name, package.name, doubts=list_place_doubts(view, "build", conditions))
             break

@@ -27,7 +27,7 @@ def links_without(view: TargetView, package: Package, target: BuildTarget, neede
     for other in view.list_built():
         if other.name == package.name or not _links(view, other, package.name, target.export_name or target.name):
             continue
-        found = {f.name for f in other.build.found if view.applies(f.conditions)}
+        found = {f.name for f in other.build.found}
         if any("$" in name for name in found) or other.build.finds_declared:
             continue
         if names.isdisjoint(name.lower() for name in view.roles.list_found_with(found)):

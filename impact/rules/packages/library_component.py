@@ -31,11 +31,10 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 )
 def library_component(view: TargetView, package: Package):
     for found in package.build.found:
-        if found.how == "find_package" and view.applies(found.conditions):
+        if found.how == "find_package":
             yield from _list_gone(view, package, found)
     for found in package.build.handed_on:
-        if view.applies(found.conditions):
-            yield from _list_gone(view, package, found, (Doubt.DISTURBS,))
+        yield from _list_gone(view, package, found, (Doubt.DISTURBS,))
 
 
 def _list_gone(view: TargetView, package: Package, found: FoundPackage, besides: tuple[Doubt, ...] = ()):

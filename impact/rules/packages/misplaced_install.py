@@ -178,7 +178,7 @@ def _list_renamed(view: TargetView, package: Package, installs) -> Iterator[Diag
 
 def _list_components(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Libraries of registered components that no rule installs into lib, where the resource index says they are."""
-    components = {e.context for e in package.build.exports if e.how == "component" and view.applies(e.conditions)}
+    components = {e.context for e in package.build.exports if e.how == "component"}
     by_name = {t.name for t in package.build.targets if t.kind in ("library", "module") and not t.static}
     for name in sorted(components & by_name):
         place = _find_wrong_place(installs, name, "lib")

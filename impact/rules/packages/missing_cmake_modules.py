@@ -44,11 +44,7 @@ def missing_cmake_modules(view: TargetView, package: Package):
     for found in package.build.found:
         if found.how != "find_package" or f"Find{found.name}.cmake" in own or not _is_brought(view, found.name):
             continue
-        if (
-            "cmake_modules" in names
-            or view.providers.list_cmake_platforms(found.name)
-            or not view.applies(found.conditions)
-        ):
+        if "cmake_modules" in names or view.providers.list_cmake_platforms(found.name):
             continue
         needed = found.required or (found.name == "Eigen" and _lacks_eigen(view, package))
         doubts = (

@@ -143,8 +143,7 @@ def _list_included(view: TargetView, package: Package, ament: AmentExports, seen
 
 def _list_of_messages(view: TargetView, package: Package):
     """Packages of messages that the package's own are made of, and that catkin_package() does not hand on."""
-    exports = [e for e in package.build.exports if view.applies(e.conditions)]
-    named = {e.item for e in exports if e.how in ("catkin_depends", "system_depends")}
+    named = {e.item for e in package.build.exports if e.how in ("catkin_depends", "system_depends")}
     if any("$" in name for name in named):
         return
     reach = view.roles.list_found_with(named)
@@ -174,7 +173,7 @@ def _find_field_owners(package: Package, files: Collection[str]) -> set[str]:
 
 def _list_of_catkin_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """A package of catkin that hands on no package at all, though headers of others are in what it exports."""
-    hows = {e.how for e in package.build.exports if view.applies(e.conditions)}
+    hows = {e.how for e in package.build.exports}
     if not hows >= {"include_dirs", "libraries"} or hows & {"catkin_depends", "cfg_extras"}:
         return
     found = {f.name for f in package.build.found if f.how == "catkin"}

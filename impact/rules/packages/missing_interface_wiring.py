@@ -59,13 +59,8 @@ def missing_interface_wiring(view: TargetView, package: Package):
             kind = "generate_messages_cpp"
         for name in include.targets:
             target = targets.get(name)
-            if (
-                target is None
-                or not view.applies(target.conditions)
-                or _waits(orders.get(name, ()), head, kind, package.name)
-            ):
-                continue
-            wanted.setdefault((head, kind), []).append((include, target))
+            if target is not None and not _waits(orders.get(name, ()), head, kind, package.name):
+                wanted.setdefault((head, kind), []).append((include, target))
     for (head, kind), uses in wanted.items():
         include, target = min(uses, key=lambda u: (u[1].at.path, u[1].at.line, u[0].at.path, u[0].at.line))
         own = head == package.name

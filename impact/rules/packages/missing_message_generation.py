@@ -33,7 +33,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 def missing_message_generation(view: TargetView, package: Package):
     if package.build_type != "catkin":
         return
-    generated = [g for g in package.build.generated if g.how == "catkin" and view.applies(g.conditions)]
+    generated = [g for g in package.build.generated if g.how == "catkin"]
     found = {f.name for f in package.build.found}
     if not generated or "message_generation" in found:
         return

@@ -47,7 +47,7 @@ def misspelt_cmake_variable(view: TargetView, package: Package):
     prefixes = {f.prefix for f in package.build.found}  # of variables, in calls other than find_package()
     seen = set()
     for use in package.build.uses:
-        if use.name in seen or use.kind != "variable" or not view.applies(use.conditions):
+        if use.name in seen or use.kind != "variable":
             continue
         if use.alike:
             seen.add(use.name)

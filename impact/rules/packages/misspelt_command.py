@@ -40,7 +40,7 @@ def misspelt_command(view: TargetView, package: Package):
             continue
         seen.add(use.name)
         meant = {name for commands in known for name in commands if is_slip(use.name, name)}
-        if len(use.name) >= _SHORTEST and len(meant) == 1 and view.applies(use.conditions):
+        if len(use.name) >= _SHORTEST and len(meant) == 1:
             complete = not build.unresolved and not view.unknown_contents.list_unknown_found(package)
             doubts = (*list_place_doubts(view, "build", use.conditions), complete or Doubt.INCOMPLETE)
             yield Diagnostic(use.at, use.name, package.name, {"replacement": meant.pop()}, doubts=doubts)

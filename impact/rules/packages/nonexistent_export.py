@@ -108,7 +108,7 @@ _OF_LIBRARIES = frozenset({"ament_export_libraries", "libraries"})
 
 def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Include directories of the source space that have headers, none of which an install rule takes."""
-    installs = [i for i in package.build.installs if view.applies(i.conditions)]
+    installs = package.build.installs
     exports = [e for e in package.build.exports if view.is_sure(e.conditions)]
     libraries = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
     offers = any(e.how in _OF_LIBRARIES and e.item in libraries for e in exports)
@@ -136,7 +136,7 @@ def _list_of_catkin(view: TargetView, package: Package):
     found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
     installed = {posixpath.basename(item) for install in package.build.installs for item in install.items}
     for export in package.build.exports:
-        if not view.applies(export.conditions) or "$" in export.item:
+        if "$" in export.item:
             continue
         target = targets.get(export.item)
         if export.how == "libraries" and target is not None:

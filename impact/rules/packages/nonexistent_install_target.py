@@ -31,7 +31,7 @@ from .install_rules import read_installs
 def nonexistent_install_target(view: TargetView, package: Package):
     if package.build.may_add_targets:
         return
-    added = {t.name for t in package.build.targets if t.kind != "unknown" and view.applies(t.conditions)}
+    added = {t.name for t in package.build.targets if t.kind != "unknown"}
     for install in read_installs(view, package) or ():
         if install.kind == "targets" and view.is_sure(install.conditions):
             for item in install.items:

@@ -37,7 +37,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_plac
 )
 def not_a_cmake_package(view: TargetView, package: Package):
     for found in package.build.found:
-        if found.how not in ("find_package", "catkin") or not view.applies(found.conditions):
+        if found.how not in ("find_package", "catkin"):
             continue
         kind = "target" if "::" in found.name else "debian" if _is_of_debian(view, package, found.name) else ""
         if kind:

@@ -34,7 +34,7 @@ def other_qt(view: TargetView, package: Package):
     rviz = view.target.find_version("rviz") or ""
     if not rviz or not is_at_least(rviz, "1.12"):
         return
-    found = {f.name: f for f in package.build.found if f.how == "find_package" and view.applies(f.conditions)}
+    found = {f.name: f for f in package.build.found if f.how == "find_package"}
     qt4 = found.get("Qt4")
     if qt4 is None or found.keys() & {"Qt5Widgets", "Qt5"}:
         return

@@ -36,7 +36,7 @@ def refused_cmake_name(view: TargetView, package: Package):
     if is_at_least(version, _MAKES_TARGETS) and package.build_type != "catkin":
         slashed += [(i.destination, i.at, i.conditions) for i in build.installs if i.kind == "python"]
     for name, at, conditions in slashed:
-        if "/" in name and "$" not in name and view.applies(conditions):
+        if "/" in name and "$" not in name:
             yield Diagnostic(at, name, package.name, doubts=list_place_doubts(view, "build", conditions))
 
 

@@ -20,7 +20,7 @@ def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[Re
         distro = any("ROS_DISTRO" in condition.text for way in refused.ways for condition in way)
         if refused.kind == "branch" and (any(map(view.applies, refused.ways)) or not distro):
             continue
-        if refused.name not in seen and view.applies(refused.conditions):
+        if refused.name not in seen:
             seen.add(refused.name)
             yield refused
 

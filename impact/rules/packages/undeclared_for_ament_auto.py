@@ -39,6 +39,5 @@ def undeclared_for_ament_auto(view: TargetView, package: Package):
     for found in package.build.found:
         if found.how != "declared" or not found.required or found.name in named or "$" in found.name:
             continue
-        if view.applies(found.conditions):
-            doubts = () if view.is_sure(found.conditions) else (Doubt.CONDITIONAL,)
-            yield Diagnostic(found.at, found.name, package.name, doubts=doubts)
+        doubts = (view.is_sure(found.conditions) or Doubt.CONDITIONAL,)
+        yield Diagnostic(found.at, found.name, package.name, doubts=doubts)

@@ -42,7 +42,7 @@ def undeclared_test_command(view: TargetView, package: Package):
     reported = set()
     for use in package.build.uses:
         name = find_test_commands(view).get(use.name) if use.kind == "command" else None
-        if name in (None, package.name, *reported) or not view.applies(use.conditions) or not view.is_available(name):
+        if name in (None, package.name, *reported) or not view.is_available(name):
             continue
         reported.add(name)
         if name in view.build_environment(package) or name in view.list_transitive(f.name for f in package.build.found):

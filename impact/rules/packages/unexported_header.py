@@ -114,7 +114,7 @@ def _find_kind(view: TargetView, package: Package) -> str:
         return "not installed"
     if build.catkin_package is None or view.target.ros == 2:
         return ""
-    offered = {e.how for e in build.exports if view.applies(e.conditions)}
+    offered = {e.how for e in build.exports}
     return "include dirs" if "include_dirs" not in offered else "library" if "libraries" not in offered else ""
 
 

@@ -25,7 +25,6 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ...model.cmake.build import CMakeExport
 from ...model.cmake.links import list_exported_targets
 from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
 from .ament_exports import AmentExports, exports_something, list_installed_targets, read_ament_exports
@@ -67,22 +66,20 @@ def unexported_include_directory(view: TargetView, package: Package):
     if ament is not None:
         yield from _list_off_path(view, package, ament)
         yield from _list_without_folder(view, package, ament)
-        yield from _list_without_library(view, package, ament.exports)
-    elif of_catkin:
-        exports = [e for e in package.build.exports if view.applies(e.conditions)]
-        yield from _list_without_library(view, package, exports)
+    if ament is not None or of_catkin:
+        yield from _list_without_library(view, package)
 
 
 def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Headers that are installed, with a library or alone, and nothing that tells dependants where."""
     first = package.build.ament_package
-    exports = [e for e in package.build.exports if view.applies(e.conditions)]
+    exports = package.build.exports
     if exports_something(exports):
         return
     if not package.linked.public_headers or package.build.finds_declared or first is None:
         return
     installed = list_installed_targets(package)
-    alone = _has_headers_alone(view, package)
+    alone = _has_headers_alone(package)
     if not alone and not any(t.kind in ("library", "interface") and t.name in installed for t in package.build.targets):
         return
     if not any("/include/" in f"/{h}" for h in package.linked.public_headers):
@@ -114,17 +111,18 @@ def _list_without_folder(view: TargetView, package: Package, ament: AmentExports
             return
 
 
-def _has_headers_alone(view: TargetView, package: Package) -> bool:
+def _has_headers_alone(package: Package) -> bool:
     """Whether headers are all that a package builds and installs."""
     build = package.build
     if build.unresolved or build.generated or any(t.kind != "test" for t in build.targets):
         return False
-    installs = [i for i in build.installs if view.applies(i.conditions)]
-    return bool(installs) and all(i.destination.lstrip("/").partition("/")[0] == "include" for i in installs)
+    places = [i.destination.lstrip("/").partition("/")[0] for i in build.installs]
+    return bool(places) and all(place == "include" for place in places)
 
 
-def _list_without_library(view: TargetView, package: Package, exports: list[CMakeExport]) -> Iterator[Diagnostic]:
+def _list_without_library(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Libraries that nothing in the package links or loads, and whose headers alone are exported."""
+    exports = package.build.exports
     folders = tuple(f"{posixpath.normpath(e.item)}/" for e in exports if e.how in _OF_FOLDERS)
     if not folders or package.build.unresolved or package.linked.registered or package.linked.plugins:
         return
@@ -163,7 +161,7 @@ def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> I
 
 def _list_of_catkin(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """System libraries off the compiler's path that exported headers of a catkin package with a library include."""
-    exports = [e for e in package.build.exports if view.applies(e.conditions)]
+    exports = package.build.exports
     if not package.build.catkin_package or any("$" in e.item for e in exports):
         return
     if not {"include_dirs", "libraries"} <= {e.how for e in exports}:

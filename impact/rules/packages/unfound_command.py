@@ -50,7 +50,7 @@ from .undeclared_test_command import find_test_commands
 def unfound_command(view: TargetView, package: Package):
     for use in package.build.uses:
         written = use.name == "find_dependency" and re.search(r"onfig\.cmake(?:\.in)?\Z", use.at.path)
-        if use.kind == "command" and written and view.applies(use.conditions):
+        if use.kind == "command" and written:
             data = {"owner": use.context}
             yield Diagnostic(use.at, use.name, package.name, data, "configuration", (Doubt.DISTURBS,))
             break
@@ -64,8 +64,6 @@ def unfound_command(view: TargetView, package: Package):
     seen = set()
     for use in calls:
         owners = commands[use.name].split()
-        if not view.applies(use.conditions):
-            continue
         testing = is_for_tests(use.conditions)
         names = frozenset(f.name for f in found if testing or not is_for_tests(f.conditions))
         reached = _list_reached(view, package, names)

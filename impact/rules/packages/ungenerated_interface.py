@@ -32,7 +32,7 @@ _FOLDERS = frozenset({"msg", "srv", "action"})
     texts=Text("`{subject}` is not given to the generator of interfaces", "add it to the generator's files"),
 )
 def ungenerated_interface(view: TargetView, package: Package) -> Iterator[Diagnostic]:
-    made = [one for one in package.build.generated if one.how in ("rosidl", "catkin") and view.applies(one.conditions)]
+    made = [one for one in package.build.generated if one.how in ("rosidl", "catkin")]
     given = {path for one in made for path in one.files} | {path for path, _ in package.build.message_files}
     if not given or package.build.unresolved or any("$" in path or "*" in path for path in given):
         return

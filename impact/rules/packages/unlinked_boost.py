@@ -58,7 +58,7 @@ class _BoostComponents(NamedTuple):
     },
 )
 def unlinked_boost(view: TargetView, package: Package):
-    asked = _list_asked_components(view, package)
+    asked = _list_asked_components(package)
     if asked is not None and not package.build.unresolved:  # what cannot be read may ask for more
         yield from _list_not_asked_for(view, package, asked)
     yield from _list_unlinked(view, package, asked or frozenset())
@@ -120,11 +120,9 @@ def _list_doubts(view: TargetView, include, target, known: _BoostComponents) -> 
     return () if sure else (Doubt.INCOMPLETE,)
 
 
-def _list_asked_components(view: TargetView, package: Package) -> Set[str] | None:
+def _list_asked_components(package: Package) -> Set[str] | None:
     """The components of Boost that find_package() is given; None where no find_package() asks for Boost."""
-    found = [
-        f for f in package.build.found if f.how == "find_package" and f.name == "Boost" and view.applies(f.conditions)
-    ]
+    found = [f for f in package.build.found if f.how == "find_package" and f.name == "Boost"]
     components = (name for f in found for name in (*(name for name, _ in f.components), *f.optional_components))
     return frozenset(components) if found else None
 

@@ -46,7 +46,7 @@ _ROS1_PRIMITIVE = PRIMITIVES | _FROM_ROS1 | {"float", "double"}
     },
 )
 def unlisted_field_package(view: TargetView, package: Package):
-    generated = [g for g in package.build.generated if g.how in ("rosidl", "catkin") and view.applies(g.conditions)]
+    generated = [g for g in package.build.generated if g.how in ("rosidl", "catkin")]
     if not generated:
         return
     listed = {file for g in generated for file in g.files}

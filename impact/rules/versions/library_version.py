@@ -35,7 +35,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 def library_version(view: TargetView, package: Package):
     for found in package.build.found:
         version = _find_refused(view, found)
-        if not version or not view.applies(found.conditions) or found.name in view.workspace.packages:
+        if not version or found.name in view.workspace.packages:
             continue
         # A second, weaker request beside it (`find_package(OpenCV 4 QUIET)` then 3) means that both are handled.
         others = [f for f in package.build.found if f.name == found.name and f is not found]
