@@ -97,7 +97,7 @@ class TargetView(WorkspaceOnTarget):
                 self.unresolved["cmake"].add(found.name)
                 continue
             role, how = _find_role(found.conditions), "find_package" if found.how == "find_package" else "component"
-            in_tests = find_folder_role(found.at.path[len(package.path) :].lstrip("/")) == "test"
+            in_tests = find_folder_role(package.strip_path(found.at.path)) == "test"
             certain = self.is_sure(found.conditions)
             required = (
                 found.required

@@ -116,6 +116,10 @@ class Package:
                 found.add(path)
         return frozenset(found)
 
+    def strip_path(self, path: str) -> str:
+        """The path of one of its files or folders, relative to its own folder."""
+        return path[len(self.path) :].lstrip("/")
+
     def has_files(self, folder: str) -> bool:
         """True when a file lies in the folder (relative to the package)."""
         return (f"{self.path}/{folder}" if self.path else folder) in self.folders
@@ -406,7 +410,7 @@ def list_modules(package: Package) -> set[str]:
     for path in package.linked.files:
         if not path.endswith(".py"):
             continue
-        parts = path[len(package.path) :].lstrip("/").split("/")
+        parts = package.strip_path(path).split("/")
         if parts[0] == "src":
             parts = parts[1:]
         if len(parts) == 2 and parts[1] == "__init__.py":

@@ -281,6 +281,11 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return any(found.how == "declared" for found in self.found)
 
     @property
+    def installed_targets(self) -> frozenset[str]:
+        """The targets that install rules name."""
+        return frozenset(item for install in self.installs if install.kind == "targets" for item in install.items)
+
+    @property
     def builds_others(self) -> bool:
         """Whether it downloads or calls the build of something else."""
         return any(target.kind in ("external", "fetched") for target in self.targets)

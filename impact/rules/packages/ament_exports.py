@@ -49,8 +49,3 @@ def read_ament_exports(view: TargetView, package: Package) -> AmentExports | Non
 def exports_something(exports: Iterable[CMakeExport]) -> bool:
     """Whether a package of ament calls a command that exports packages, targets, libraries or include directories."""
     return any(export.how in _HOWS for export in exports)
-
-
-def list_installed_targets(package: Package) -> frozenset[str]:
-    """The targets that install rules name."""
-    return frozenset(item for rule in package.build.installs if rule.kind == "targets" for item in rule.items)

@@ -77,7 +77,7 @@ def _find_lacking(need: Need, kinds: Set[str]) -> tuple[str, Set[str]]:
 
 def _list_linked(package: Package) -> frozenset[str]:
     """The packages that installed programs and shared libraries are linked to themselves."""
-    installed = {item for install in package.build.installs if install.kind == "targets" for item in install.items}
+    installed = package.build.installed_targets
     return frozenset(
         resolve_package(link.item)
         for target in package.build.targets

@@ -26,7 +26,7 @@ def list_copying_rules(view: TargetView, package: Package) -> Iterator[Install]:
             yield install
 
 
-def is_installed(package: Package, installs: list[Install], path: str) -> bool:
+def is_installed(installs: Iterable[Install], path: str) -> bool:
     """Whether an install rule takes a file, or may take it: a path with a variable may be any that ends like it."""
     for install in installs:
         for item in install.items if install.kind != "targets" else ():  # these are built
@@ -75,7 +75,7 @@ def _list_all_references(view: TargetView) -> dict[str, dict[str, set[str]]]:
         installs = read_installs(view, package) or []
         for use in package.linked.references:
             r = use.reference
-            example = use.role == "aside" and r.package == package.name and is_installed(package, installs, use.at.path)
+            example = use.role == "aside" and r.package == package.name and is_installed(installs, use.at.path)
             if r.package and r.name and (use.role == "run" or example):
                 found.setdefault(r.package, {}).setdefault(r.kind, set()).add(r.name)
     return found

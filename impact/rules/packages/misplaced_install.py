@@ -101,7 +101,7 @@ def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
     others = [i for i in package.build.installs if i is not install and i.kind in ("directory", "files")]
     start = posixpath.normpath(folder) + "/"
     headers = {h[len(start) :] for h in package.linked.headers if h.startswith(start)}
-    if any(is_installed(package, others, start + h) for h in headers):
+    if any(is_installed(others, start + h) for h in headers):
         return False
     if headers and any(item.rstrip("/") in ("include", install.destination.rstrip("/")) for item in exported):
         return True
@@ -126,7 +126,7 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
         else:
             continue
         for path in copied:
-            inside = path[len(package.path) :].lstrip("/")
+            inside = package.strip_path(path)
             started = among_programs or inside.split("/")[0] in ("scripts", "nodes", "bin")
             if not started or path in programs or inside.endswith(_RUN_BY):
                 continue

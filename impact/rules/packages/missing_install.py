@@ -52,7 +52,7 @@ def missing_install(view: TargetView, package: Package):
         return
     started = list_references(view, package, "executable")
     unset = {f"${{{use.name}}}" for use in package.build.uses if use.kind == "unset"}
-    installed = {item for i in installs if i.kind == "targets" for item in i.items} - unset
+    installed = package.build.installed_targets - unset
     if any("$" in item for item in installed) or (any(i.kind == "export" for i in installs) and not installed):
         return
     exported = {e.item for e in package.build.exports if e.how == "libraries"}
@@ -107,15 +107,13 @@ def _is_started(view: TargetView, package: Package, name: str) -> bool:
             r = use.reference
             if (r.package, r.name, r.kind, use.role) != (package.name, name, "executable", "run") or r.conditional:
                 continue
-            if ".launch" in use.at.path and is_installed(other, installs, use.at.path):
+            if ".launch" in use.at.path and is_installed(installs, use.at.path):
                 return True
     return False
 
 
 def _is_aside(package: Package, target) -> bool:
-    inside = lambda p: p[len(package.path) :].lstrip("/")  # noqa: E731
-    if find_folder_role(inside(target.at.path)) or re.search(
-        r"(^|_)(test|tests|example|demo|benchmark)(_|$)", target.name
-    ):
+    roles = [find_folder_role(package.strip_path(path)) for path in (target.at.path, *target.sources)]
+    if roles[0] or re.search(r"(^|_)(test|tests|example|demo|benchmark)(_|$)", target.name):
         return True
-    return bool(target.sources) and all(find_folder_role(inside(s)) for s in target.sources)
+    return len(roles) > 1 and all(roles)

@@ -34,7 +34,7 @@ from ...model.misspelling import SpellingIndex
 from ...targets.providers.library import list_variables
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .absent_paths import is_absent
-from .ament_exports import list_installed_targets, read_ament_exports
+from .ament_exports import read_ament_exports
 from .install_rules import is_installed
 
 _UNSET = "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEPENDS exports nothing"
@@ -94,7 +94,7 @@ def _list_directories(view: TargetView, package: Package):
         if export.item.startswith("/") or export.item in made:
             continue
         item = posixpath.normpath(export.item)
-        inside = item[len(package.path) :].lstrip("/") if package.path and item.startswith(package.path + "/") else item
+        inside = package.strip_path(item) if package.path and item.startswith(package.path + "/") else item
         if inside.startswith("..") or not is_absent(
             view, package, posixpath.normpath(posixpath.join(package.path, inside))
         ):
@@ -110,7 +110,7 @@ def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagno
     """Include directories of the source space that have headers, none of which an install rule takes."""
     installs = package.build.installs
     exports = [e for e in package.build.exports if view.is_sure(e.conditions)]
-    libraries = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
+    libraries = {t.name for t in package.build.targets if t.kind == "library"} & package.build.installed_targets
     offers = any(e.how in _OF_LIBRARIES and e.item in libraries for e in exports)
     if not offers and package.name not in view.workspace.includers:
         return  # nobody uses the headers
@@ -124,10 +124,10 @@ def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagno
         elif export.how == "ament_export_include_directories" and posixpath.normpath(export.item) == "include":
             folder = posixpath.join(package.path, "include")
         headers = [path for path in package.linked.headers if path.startswith(f"{folder}/")]
-        if not headers or any(is_installed(package, installs, path) for path in headers):
+        if not headers or any(is_installed(installs, path) for path in headers):
             continue
         place = "${CATKIN_GLOBAL_INCLUDE_DESTINATION}" if catkin else "include"
-        data = {"directory": folder[len(package.path) :].lstrip("/"), "place": place}
+        data = {"directory": package.strip_path(folder), "place": place}
         yield Diagnostic(export.at, data["directory"], package.name, data, "no header", (Doubt.DISTURBS,))
 
 
@@ -193,7 +193,7 @@ def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diag
     installed, at which they stop."""
     targets = {t.name: t for t in package.build.targets if t.kind != "unknown"}
     names = {*targets, *(t.output_name for t in targets.values())}
-    installed = list_installed_targets(package)
+    installed = package.build.installed_targets
     if package.build.unresolved or any("$" in name for name in (*names, *installed)):
         return
     if package.build.builds_others:

@@ -62,7 +62,7 @@ def nonexistent_install(view: TargetView, package: Package):
             if install.kind == "files" and "." in path and not path.endswith(_BY_HAND):
                 continue
             if is_absent(view, package, path):
-                subject = path[len(package.path) :].lstrip("/")
+                subject = package.strip_path(path)
                 yield Diagnostic(install.at, subject, package.name, kind=kind, doubts=doubts)
 
 

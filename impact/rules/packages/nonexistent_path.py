@@ -150,7 +150,7 @@ def _find_fault(view: TargetView, package: Package, use: _Path) -> tuple[str, st
     name = posixpath.basename(file)
     if "." not in name and (name.isupper() or any(other.startswith(f"{file}.") for other in package.files)):
         return "", ""  # CMake tries the endings of sources; capitals are keywords
-    return (use.how, path[len(package.path) :].lstrip("/")) if is_absent(view, package, file) else ("", "")
+    return (use.how, package.strip_path(path)) if is_absent(view, package, file) else ("", "")
 
 
 def _find_above(package: Package, path: str) -> str:

@@ -51,7 +51,7 @@ def _tag(package: Package) -> str:
 def _list_linked(view: TargetView, package: Package):
     """System libraries that an exported library hands on to whoever links it, declared for building only."""
     declared = view.collect_declared(package)
-    installed = {item for rule_ in package.build.installs if rule_.kind == "targets" for item in rule_.items}
+    installed = package.build.installed_targets
     linked = {
         link.item: link
         for target in package.build.targets

@@ -32,7 +32,6 @@ from ...model.cmake.installed import collect_installed_headers
 from ...model.cmake.links import list_linked_items
 from ...model.package import IncludeUse
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
-from .ament_exports import list_installed_targets
 
 
 @rule(
@@ -77,7 +76,7 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
                 continue
             if view.workspace.provides_header(include.path) != [package.name] or _reaches(other, path):
                 continue
-            folder = path[len(package.path) :].lstrip("/").removesuffix(f"/{include.path}")
+            folder = package.strip_path(path).removesuffix(f"/{include.path}")
             data = {"by": name, "owner": package.name, "folder": folder, "library": libraries.get(path, "")}
             build = package.build
             at = build.catkin_package or build.ament_package or At(build.files[0], 1)
@@ -120,7 +119,7 @@ def _find_kind(view: TargetView, package: Package) -> str:
 
 def _list_libraries(package: Package) -> dict[str, str]:
     """Headers of the package, each with the installed library alone that compiles it."""
-    made = {t.name for t in package.build.targets if t.kind == "library"} & list_installed_targets(package)
+    made = {t.name for t in package.build.targets if t.kind == "library"} & package.build.installed_targets
     return {path: names[0] for path, names in package.linked.source_targets if len(names) == 1 and names[0] in made}
 
 

@@ -27,7 +27,7 @@ from collections.abc import Iterator
 
 from ...model.cmake.links import list_exported_targets
 from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
-from .ament_exports import AmentExports, exports_something, list_installed_targets, read_ament_exports
+from .ament_exports import AmentExports, exports_something, read_ament_exports
 from .include_folders import OFF_PATH
 
 
@@ -78,7 +78,7 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         return
     if not package.linked.public_headers or package.build.finds_declared or first is None:
         return
-    installed = list_installed_targets(package)
+    installed = package.build.installed_targets
     alone = _has_headers_alone(package)
     if not alone and not any(t.kind in ("library", "interface") and t.name in installed for t in package.build.targets):
         return
@@ -136,7 +136,7 @@ def _list_without_library(view: TargetView, package: Package) -> Iterator[Diagno
     linked = {link.item for target in package.build.targets for link in target.links}
     headers = {name for path, names in package.linked.source_targets if path in offered for name in names} - linked
     # Those who find a package of catkin in the devel space ask for no install rule.
-    made = headers if catkin else headers & list_installed_targets(package)
+    made = headers if catkin else headers & package.build.installed_targets
     for target in package.build.targets:
         if target.kind == "library" and target.name in made and view.is_sure(target.conditions):
             kind = "catkin library" if catkin else "library"
@@ -152,7 +152,7 @@ _OF_FOLDERS = frozenset({"ament_export_include_directories", "include_dirs"})
 
 def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
     """Header-only packages that leave the include folder of a system library out."""
-    if any(e.how == "cfg_extras" for e in ament.exports) or list_installed_targets(package):
+    if any(e.how == "cfg_extras" for e in ament.exports) or package.build.installed_targets:
         return
     if not any("$" in e.item for e in ament.exports if "include" in e.how):
         public = [need for need in view.sort_needs(package) if need.public]

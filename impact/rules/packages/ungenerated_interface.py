@@ -38,7 +38,7 @@ def ungenerated_interface(view: TargetView, package: Package) -> Iterator[Diagno
         return
     names = {posixpath.basename(path).lower() for path in given}
     for interface in package.linked.interfaces:
-        inside = interface.path[len(package.path) :].lstrip("/")
+        inside = package.strip_path(interface.path)
         folder, _, name = inside.partition("/")
         if folder in _FOLDERS and "/" not in name and name.endswith(f".{folder}") and name.lower() not in names:
             yield Diagnostic(made[-1].at, inside, package.name, doubts=(Doubt.DISTURBS,))

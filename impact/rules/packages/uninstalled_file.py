@@ -104,7 +104,7 @@ def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagn
         if not files or inside == "." or _lies_in(places, package.name, inside):
             continue
         kind = "opened"
-        if any(is_installed(package, installs, file) for file in files):
+        if any(is_installed(installs, file) for file in files):
             if places is None:
                 continue
             kind = "elsewhere"
@@ -148,16 +148,16 @@ def _list_launch_folders(package: Package, installs) -> Iterator[tuple[str, str]
     built = package.build.catkin_package or package.build.ament_package
     if built is None and package.build_type != "ament_python":
         return  # what comes after a command that cannot be followed is not known
-    if any(is_installed(package, installs, path) for path in files):
+    if any(is_installed(installs, path) for path in files):
         return
-    programs = {item for install in installs if install.kind == "targets" for item in install.items}
+    programs = package.build.installed_targets
     catkin = package.build_type == "catkin"
     siblings = catkin and any(i.kind == "directory" and i.destination.split("/")[0] == "share" for i in installs)
     for use in package.linked.references:
         path, r = use.at.path, use.reference
         own = siblings or ((r.kind, r.package) == ("executable", package.name) and r.name in programs)
         if use.role == "run" and path in files and (own if catkin else _LAUNCH.search(path)):
-            yield "launch", path[len(package.path) :].lstrip("/")
+            yield "launch", package.strip_path(path)
             return
 
 
@@ -176,7 +176,7 @@ def _list_scripts(package: Package, installs, scripts: set[str]) -> Iterator[Dia
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         beside = folder in folders and folder != package.path and "." not in name and find_folder_role(name) is None
         node = path in nodes
-        if (name in scripts or beside or node) and name not in others and not is_installed(package, installs, path):
+        if (name in scripts or beside or node) and name not in others and not is_installed(installs, path):
             kind = "script" if name in scripts else "beside" if beside else "node"
             if package.build_type == "catkin" and path not in package.linked.shells:
                 kind = f"{kind}, catkin"
@@ -193,5 +193,5 @@ def _list_nodes(package: Package, installs) -> frozenset[str]:
     if not installs or (has_programs and package.build.ament_package is None):
         return frozenset()
     nodes = {use.at.path for use in package.linked.imports if use.module.partition(".")[0] in _OF_NODES}
-    inside = {path: path[len(package.path) :].lstrip("/") for path in package.linked.scripts if path in nodes}
+    inside = {path: package.strip_path(path) for path in package.linked.scripts if path in nodes}
     return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_PROGRAMS and find_folder_role(i) is None)

@@ -52,7 +52,7 @@ def uninstalled_header(view: TargetView, package: Package):
     written = dict(package.linked.written_inner)
     for path, inner in package.linked.inner:
         place = installed.headers.get(path)
-        if place is None or find_folder_role(path[len(package.path) :].lstrip("/")):
+        if place is None or find_folder_role(package.strip_path(path)):
             continue
         lost = [to for to in inner if to not in installed.headers and to not in reported and not to.endswith(".in")]
         for to in lost if lost else ():
@@ -60,7 +60,7 @@ def uninstalled_header(view: TargetView, package: Package):
             if include is None or to in made or _is_answered(installed.headers, place, include.path):
                 continue
             reported.add(to)
-            data = {"header": posixpath.basename(path), "file": to[len(package.path) :].lstrip("/")}
+            data = {"header": posixpath.basename(path), "file": package.strip_path(to)}
             doubts = _collect_doubts(view, package, path)
             yield Diagnostic(include.at, include.path, package.name, data, doubts=doubts, together=_ONCE)
 

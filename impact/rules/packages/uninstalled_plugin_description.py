@@ -58,7 +58,7 @@ def _list_descriptions(view: TargetView, package: Package, installs) -> Iterator
             continue
         at, file = At(package.linked.manifest_path, export.line), value[len("${prefix}/") :]
         path = posixpath.normpath(posixpath.join(package.path, file))
-        if is_installed(package, installs, path):
+        if is_installed(installs, path):
             continue
         if path not in package.files:
             if path + ".in" not in package.files:
@@ -88,13 +88,13 @@ def _list_not_exported(view: TargetView, package: Package, installs) -> Iterator
     for path, plugin in package.linked.plugins:
         name = posixpath.basename(plugin.library).removeprefix("lib").removesuffix(".so")
         target = libraries.get(name)
-        if plugin.type in seen or path in seen or target is None or is_installed(package, installs, path):
+        if plugin.type in seen or path in seen or target is None or is_installed(installs, path):
             continue
-        aside = find_folder_role(path[len(package.path) :].lstrip("/"))
+        aside = find_folder_role(package.strip_path(path))
         if aside or not path.endswith(".xml") or not view.is_sure(target.conditions):
             continue
         seen.add(path)
         base = plugin.base.partition("::")[0] or "BASE_PACKAGE"
         kind = "not exported, catkin" if package.build_type == "catkin" else "not exported"
-        data = {"library": name, "base": base, "file": path[len(package.path) :].lstrip("/")}
+        data = {"library": name, "base": base, "file": package.strip_path(path)}
         yield Diagnostic(At(path, 1), posixpath.basename(path), package.name, data, kind, (Doubt.DISTURBS,))

@@ -65,7 +65,7 @@ def unlinked_library(view: TargetView, package: Package):
     if not includes or any("$" in f.name for f in package.build.found):
         return
     targets = {t.name: t for t in package.build.targets}
-    installed = {item for i in package.build.installs if i.kind == "targets" for item in i.items}
+    installed = package.build.installed_targets
     seen: set[tuple[str, str]] = set()
     for include, word in includes:
         for name in include.targets:

@@ -81,7 +81,7 @@ def unlinked_own_library(view: TargetView, package: Package):
             data = {"target": name, "function": function}
             tested = target.kind == "test" or any("TESTING" in c.text for c in target.conditions)
             doubts = (Doubt.INCOMPLETE, not tested or view.target.ros == 2 or Doubt.TEST)
-            subject = libraries[0] if libraries else other[len(package.path) :].lstrip("/")
+            subject = libraries[0] if libraries else package.strip_path(other)
             kind = "library" if libraries else "source"
             yield Diagnostic(target.at, subject, package.name, data, kind, doubts, together=(Together(other),))
             break

@@ -60,7 +60,7 @@ def _list_without_client(view: TargetView, package: Package):
         return
     linked = {t.name for t in build.targets if any(link.how in ("link", "ament", "objects") for link in t.links)}
     offered = {e.item for e in build.exports if e.how in ("libraries", "ament_export_libraries")}
-    offered.update(item for i in build.installs if i.kind == "targets" for item in i.items)
+    offered |= build.installed_targets
     programs = {
         t.name: t
         for t in build.targets

@@ -48,7 +48,7 @@ from ..vocabulary import At, Diagnostic, Doubt, TargetView, Text, list_place_dou
 def hard_coded_distro(view: TargetView) -> Iterator[Diagnostic]:
     for package in view:
         for path, file in package.linked.distros:
-            role = find_folder_role(path[len(package.path) :].lstrip("/")) or "run"
+            role = find_folder_role(package.strip_path(path)) or "run"
             yield from _list_uses(view, path, file, package.name, role)
     for path, file in view.workspace.outside.distro_scripts.items():
         yield from _list_uses(view, path, file, "", find_folder_role(path) or "run")
