@@ -9,6 +9,7 @@ import re
 
 from ...model.package import is_called_example
 from ..vocabulary import Doubt, Need, Package, TargetView
+from .dependants import list_compiled_elsewhere
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
@@ -151,14 +152,8 @@ def is_generated(view: TargetView, name: str, header: str) -> bool:
 def _stops_another(view: TargetView, package: Package, need: Need) -> bool:
     """True when another package of the workspace compiles the installed header, and nothing brings it what that
     includes either."""
-    for other in view.list_built():
-        if other.name == package.name:
-            continue
-        for include in other.linked.includes:
-            if include.role != "build" or not include.targets or not view.is_sure(include.conditions):
-                continue
-            if need.subject not in view.find_outward((include.path,))[0]:
-                continue
-            if not view.unknown_contents.may_come_along(other, need.subject, need.providers):
-                return True
-    return False
+    return any(
+        need.subject in view.find_outward((path,))[0]
+        and not view.unknown_contents.may_come_along(other, need.subject, need.providers)
+        for other, path in list_compiled_elsewhere(view, package)
+    )

@@ -1,23 +1,25 @@
 """Packages of the workspace that are sure to stop at what another one of it offers them."""
 
+from collections.abc import Iterator
+
 from ....edges.memory import cache_in_derived
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import resolve_package
 from ..vocabulary import Package, TargetView
 
 
+def list_compiled_elsewhere(view: TargetView, package: Package) -> Iterator[tuple[Package, str]]:
+    """The paths that targets of other packages include in any case, each with its package."""
+    for other in view.list_built():
+        for include in other.linked.includes if other.name != package.name else ():
+            if include.role == "build" and include.targets and view.is_sure(include.conditions):
+                yield other, include.path
+
+
 def is_compiled_elsewhere(view: TargetView, package: Package, header: str) -> bool:
     """Whether a target of another package compiles a header of this one in any case. header: path in the workspace."""
     name = f"/{header}".rpartition("/include/")[2]
-    return any(
-        include.role == "build"
-        and include.targets
-        and view.is_sure(include.conditions)
-        and name in view.find_outward((include.path,))[1]
-        for other in view.list_built()
-        if other.name != package.name
-        for include in other.linked.includes
-    )
+    return any(name in view.find_outward((path,))[1] for _, path in list_compiled_elsewhere(view, package))
 
 
 def links_without(view: TargetView, package: Package, target: BuildTarget, needed: str) -> bool:
