@@ -75,9 +75,10 @@ _REVIEWED = f"{UPSTREAM}[[ in {{standard}}]][[ ({{horizon}})]]"
 )
 def changed_signature(view: TargetView):
     seen = set()
-    for found in _list_reviewed(view):
-        seen.add((found.at.path, found.at.line))
-        yield found
+    for package in view:
+        for found in rate_upcoming(_list_reviewed(view, package)):
+            seen.add((found.at.path, found.at.line))
+            yield found
     for package in view:
         yield from rate_upcoming(
             _diagnose_use(use, package)
@@ -92,18 +93,13 @@ def _diagnose_use(use: UnservedUse, package: Package) -> Diagnostic | Upcoming:
     return diagnose(use.found, use.at, use.name, package.name, use.doubts, kind=kind, data=data)
 
 
-def _list_reviewed(view: TargetView) -> Iterator[Diagnostic]:
-    """What the tables of known changes tell. What the workspace itself brings is as it brings it."""
-    for package in view:
-        yield from rate_upcoming(_list_reviewed_of(view, package))
-
-
 def _find_row(view: TargetView, label: str) -> Availability | None:
     rows = (row for row in view.find_reviewed("use", label) if row.package not in view.workspace.may_have)
     return next((row for row in rows if row.state != "upcoming" or row.package not in _COMPILER), None)
 
 
-def _list_reviewed_of(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
+def _list_reviewed(view: TargetView, package: Package) -> Iterator[Diagnostic | Upcoming]:
+    """What the tables of known changes tell. What the workspace itself brings is as it brings it."""
     uses = [(use, found) for use in package.linked.uses if (found := _find_row(view, use.text)) is not None]
     if not uses:
         return

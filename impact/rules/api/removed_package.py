@@ -49,7 +49,7 @@ def removed_package(view: TargetView, package: Package):
 def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterator[Diagnostic | Upcoming]:
     """Diagnostics for every use of a package that a reviewed row of the given form says is gone, or will be."""
     uses = [
-        (d.name, "declared", _list_conditions(d.condition), view.find_place(package, d),
+        (d.name, "declared", (Condition("manifest", d.condition),) if d.condition else (), view.find_place(package, d),
          (d.kind in ("build", "buildtool", "exec") or Doubt.TEST,))
         for d in package.manifest.dependencies
         if d.kind not in ("conflict", "replace") and view.is_declaration_active(d.condition)
@@ -79,10 +79,6 @@ def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterato
         seen.add(name)
         data = {"distro": view.target.distro, "replacement": gone.replacement}
         yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone.replacement else how, doubts)
-
-
-def _list_conditions(condition: str) -> tuple[Condition, ...]:
-    return (Condition("manifest", condition),) if condition else ()
 
 
 def _collect_search_doubts(view: TargetView, found: FoundPackage) -> tuple[Doubt | bool, ...]:

@@ -80,7 +80,9 @@ def undefined_name(view: TargetView):
                     doubts = (*_collect_import_doubts(view, use), Doubt.LATE)
                     yield Diagnostic(use.at, use.module, package.name, {"module": use.module}, "itself", doubts)
             elif use.module or not _is_of_python2(name):
-                doubts = (*_collect_import_doubts(view, use), _is_own(package, kind, name) or Doubt.AMBIGUOUS)
+                # A module that is not there has, by its first name, to be one of the package.
+                own = kind != "module" or name.partition(".")[0] in package.linked.modules
+                doubts = (*_collect_import_doubts(view, use), own or Doubt.AMBIGUOUS)
                 # Whoever looks at the first in a file sees the others; wrong imports are mended one by one.
                 together = (Together(use.at.path if kind == "undefined" else f"{use.at.path} {name}"),)
                 yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
@@ -139,11 +141,6 @@ def _find_lacking_elsewhere(view: TargetView, package: Package) -> Iterator[Diag
 
 def _collect_import_doubts(view: TargetView, use: ImportUse) -> tuple[Doubt | bool, ...]:
     return (*list_place_doubts(view, use.role), *_collect_doubts(use), use.role != "test" or Doubt.TEST)
-
-
-def _is_own(package: Package, kind: str, module: str) -> bool:
-    """Whether a module that is not there has, by its first name, to be one of the package."""
-    return kind != "module" or module.partition(".")[0] in package.linked.modules
 
 
 def _is_of_python2(name: str) -> bool:

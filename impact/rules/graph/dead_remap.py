@@ -59,19 +59,13 @@ def _may_apply(start: LaunchedNode, renamed: GivenRemapping, ros: int) -> bool:
     """Whether a remapping may change a name of a node."""
     if start.hidden or renamed.old in _COMMON:
         return True
-    if ros == 1 and (start.hidden_parameters or renamed.old.rpartition("/")[2] in _list_last_parts(start.parameters)):
+    parameters = {name.rpartition("/")[2].lstrip("~") for name in start.parameters}
+    if ros == 1 and (start.hidden_parameters or renamed.old.rpartition("/")[2] in parameters):
         return True
     old = renamed.old.rstrip("/")
-    return any(name == old or name.startswith(f"{old}/") or _is_below(old, name) for name in start.names)
-
-
-def _is_below(old: str, name: str) -> bool:
-    """Whether a name is one that goes by another: `image/compressed`, `move/goal`."""
-    return old.startswith(f"{name}/") and old[len(name) + 1 :].partition("/")[0] in _BELOW
-
-
-def _list_last_parts(names: tuple[str, ...]) -> set[str]:
-    return {name.rpartition("/")[2].lstrip("~") for name in names}
+    if any(name == old or name.startswith(f"{old}/") for name in start.names):
+        return True
+    return any(old.startswith(f"{name}/") and old[len(name) + 1 :].partition("/")[0] in _BELOW for name in start.names)
 
 
 def _find_package(workspace: Workspace, path: str) -> str:

@@ -20,7 +20,7 @@ Not reported
 import posixpath
 import re
 
-from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule
+from ..vocabulary import At, Diagnostic, Package, TargetView, Text, rule, translate_tag
 
 # A metapackage that brings fewer packages says nothing of what it should.
 _MEMBERS = 3
@@ -48,5 +48,5 @@ def incomplete_metapackage(view: TargetView, package: Package):
         return
     if missing[0] in view.list_transitive({package.name, *declared}):
         return
-    tag = "exec_depend" if package.manifest.format > 1 else "run_depend"
-    yield Diagnostic(At(package.linked.manifest_path, 1), missing[0], package.name, {"tag": tag})
+    data = {"tag": translate_tag("exec_depend", package.manifest.format)[0]}
+    yield Diagnostic(At(package.linked.manifest_path, 1), missing[0], package.name, data)

@@ -52,7 +52,8 @@ def invalid_manifest(workspace: Workspace):
             words = tag.replace("-", "_").replace("depends", "depend")
             known = words in TAGS[min(manifest.format, 3)]
             data = {"text": text, "format": manifest.format, "replacement": f"<{words}>" if words != tag else ""}
-            fix = _respell(path, line, tag, words) if known else ()
+            tags = ((f"<{tag}>", f"<{words}>"), (f"</{tag}>", f"</{words}>"))  # where they stand in one line
+            fix = tuple(Replace(path, line, 0, old, new) for old, new in tags) if known else ()
             yield Diagnostic(At(path, line), tag, package.name, data, "tag", fix=fix)
         for export in manifest.exports:
             if export.tag in ANY_FORMAT and export.text and export.text not in package.declared:
@@ -80,8 +81,3 @@ def _is_readable(condition: str) -> bool:
     except Exception:
         return False
     return True
-
-
-def _respell(path: str, line: int, tag: str, words: str) -> tuple[Replace, ...]:
-    """Both tags of an element that stands in one line."""
-    return (Replace(path, line, 0, f"<{tag}>", f"<{words}>"), Replace(path, line, 0, f"</{tag}>", f"</{words}>"))

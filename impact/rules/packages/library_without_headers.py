@@ -22,7 +22,7 @@ Not reported
 
 import re
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule, translate_tag
 from .dependency_kinds import FOR_RUN, fix_kind
 
 
@@ -86,8 +86,7 @@ def _list_handed_on(view: TargetView, package: Package, declared, bare, need, se
     if name is None or name.startswith("libboost") or not declared[name] & FOR_RUN:
         return
     seen.add(right)
-    tag = "run_depend" if package.manifest.format == 1 else "depend"
-    data = {"declared": name, "header": need.subject, "tag": tag}
+    data = {"declared": name, "header": need.subject, "tag": translate_tag("depend", package.manifest.format)[-1]}
     fix = fix_kind(view, package, right, "depend", declared[right])
     at = view.find_place(package, name)
     together = (Together(f"`{name}` without headers", everywhere=True),)

@@ -33,6 +33,7 @@ from ...model.cmake.build import Install
 from ...model.cmake.installed import list_copied_files
 from ...model.cmake.links import list_linked_items, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from .dependants import list_compiled_elsewhere
 from .install_rules import is_installed, list_references, read_installs
 
 _OTHER_INTERPRETER = "`{subject}` is to be run by `python`, which {platform} does not have, and is installed as it is"
@@ -105,18 +106,15 @@ def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
         return False
     if headers and any(item.rstrip("/") in ("include", install.destination.rstrip("/")) for item in exported):
         return True
-    return any(
-        include.path in headers and include.role == "build" and include.targets and view.is_sure(include.conditions)
-        for other in view.list_built()
-        if other.name != package.name
-        for include in other.linked.includes
-    )
+    return any(path in headers for _, path in list_compiled_elsewhere(view, package))
 
 
 def _list_not_executable(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Scripts that are installed as data, where programs belong, or that no other rule installs as programs."""
     programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
     scripts = {*package.linked.scripts, *package.linked.shells}
+    # Nodes of ROS 1, which rosrun and roslaunch start from the package's share folder too.
+    nodes = {i.at.path for i in package.linked.imports if i.module == "rospy" and view.target.ros == 1}
     for install in installs:
         among_programs = _OF_PROGRAMS.search(install.destination)
         if install.kind == "directory" and not install.executable and among_programs:
@@ -133,19 +131,14 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
             name = posixpath.basename(path)
             if name in package.linked.interpreted:
                 continue
-            sure = among_programs or _is_node(view, package, path)
-            doubts = (bool(sure) or Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
+            sure = bool(among_programs) or path in nodes
+            doubts = (sure or Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
             if install.kind == "directory":
                 data = {"file": inside}
                 subject = posixpath.dirname(inside)
                 yield Diagnostic(install.at, subject, package.name, data, "folder", (*doubts, Doubt.LATE))
                 break
             yield Diagnostic(install.at, name, package.name, kind="not executable", doubts=doubts)
-
-
-def _is_node(view: TargetView, package: Package, script: str) -> bool:
-    """True for a node of ROS 1, which rosrun and roslaunch start from the package's share folder too."""
-    return view.target.ros == 1 and any(i.at.path == script and i.module == "rospy" for i in package.linked.imports)
 
 
 _ONE_LINE = (Together("interpreter"),)

@@ -42,7 +42,9 @@ def missing_cmake_modules(view: TargetView, package: Package):
     names |= {f.name for f in package.build.found}
     own = {p.rsplit("/", 1)[-1] for p in package.files if p.endswith(".cmake")}
     for found in package.build.found:
-        if found.how != "find_package" or f"Find{found.name}.cmake" in own or not _is_brought(view, found.name):
+        if found.how != "find_package" or f"Find{found.name}.cmake" in own:
+            continue
+        if not any(p.kind == "ros" and p.name == "cmake_modules" for p in view.providers.find_cmake(found.name)):
             continue
         if "cmake_modules" in names or view.providers.list_cmake_platforms(found.name):
             continue
@@ -67,8 +69,3 @@ def _lacks_eigen(view: TargetView, package: Package) -> bool:
         and need.role == "build" and need.certain and not view.is_met(need.providers, reached)
         for need in view.list_needs(package)
     )  # fmt: skip
-
-
-def _is_brought(view: TargetView, name: str) -> bool:
-    """Whether cmake_modules has a find module of this name."""
-    return any(p.kind == "ros" and p.name == "cmake_modules" for p in view.providers.find_cmake(name))

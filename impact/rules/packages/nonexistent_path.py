@@ -35,7 +35,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from ...facts.condition import Condition
-from ...model.cmake.build import BuildTarget, is_for_tests
+from ...model.cmake.build import is_for_tests
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .absent_paths import is_absent
 from .install_rules import list_places
@@ -103,7 +103,10 @@ def _list_paths(package: Package) -> Iterator[_Path]:
         guarded = dict(target.guarded)
         for path in target.sources if target.kind in ("executable", "library", "module", "test") else ():
             conditions = (*target.conditions, *guarded.get(path, ()))
-            yield _Path(path, "test" if _runs_file(target, path) else "source", target.name, target.at, conditions)
+            # A test whose only source is no code that is compiled runs that file.
+            alone = target.kind == "test" and target.sources == (path,)
+            how = "test" if alone and not path.endswith((".c", ".cc", ".cpp", ".cxx")) else "source"
+            yield _Path(path, how, target.name, target.at, conditions)
         for link in target.links:
             if link.how in ("link", "include"):
                 yield _Path(link.item, link.how, target.name, link.at, (*target.conditions, *link.conditions))
@@ -112,11 +115,6 @@ def _list_paths(package: Package) -> Iterator[_Path]:
     for install in build.installs:
         for path in install.items if install.kind in ("files", "programs", "directory") else ():
             yield _Path(path, "install", "", install.at, install.conditions)
-
-
-def _runs_file(target: BuildTarget, path: str) -> bool:
-    """True for a test whose only source is a file that it runs."""
-    return target.kind == "test" and target.sources == (path,) and not re.search(r"\.(?:c|cc|cpp|cxx)\Z", path)
 
 
 _LIBRARY = re.compile(r"/(?:usr|opt|lib)/.+\.(?:so[\d.]*|a)\Z")

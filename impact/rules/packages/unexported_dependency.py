@@ -18,7 +18,7 @@ Not reported
     What another dependency that is passed on brings.
 """
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule, translate_tag
 from .dependency_kinds import FOR_RUN, fix_kind, list_wrong_kinds
 
 _ONCE = (Together("not handed on"),)
@@ -36,19 +36,16 @@ _AS_DEPEND = "declare it as `<{tag}>`"
     },
 )
 def unexported_dependency(view: TargetView, package: Package):
-    yield from _list_linked(view, package)
+    tag = translate_tag("depend", package.manifest.format)[-1]
+    yield from _list_linked(view, package, tag)
     for need, name, kinds, lacking in list_wrong_kinds(view, package):
         if lacking == "dependants":
-            data = {"header": need.subject, "tag": _tag(package)}
+            data = {"header": need.subject, "tag": tag}
             fix = fix_kind(view, package, name, "depend", kinds)
             yield Diagnostic(need.at, name, package.name, data, "public", (Doubt.DISTURBS,), fix=fix, together=_ONCE)
 
 
-def _tag(package: Package) -> str:
-    return "run_depend" if package.manifest.format == 1 else "depend"
-
-
-def _list_linked(view: TargetView, package: Package):
+def _list_linked(view: TargetView, package: Package, tag: str):
     """System libraries that an exported library hands on to whoever links it, declared for building only."""
     declared = view.collect_declared(package)
     installed = package.build.installed_targets
@@ -71,7 +68,7 @@ def _list_linked(view: TargetView, package: Package):
         )
         if name in exported:
             continue
-        data = {"library": item, "tag": _tag(package)}
+        data = {"library": item, "tag": tag}
         fix = fix_kind(view, package, name, "depend", kinds)
         at = view.find_place(package, name)
         yield Diagnostic(at, name, package.name, data, "linked", (Doubt.DISTURBS,), fix=fix, together=_ONCE)

@@ -24,9 +24,9 @@ Not reported
     known to have a shared library.
 """
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule, translate_tag
 from .clean_machine import collect_chance_doubts
-from .dependency_kinds import WrongKind, fix_kind, list_wrong_kinds
+from .dependency_kinds import fix_kind, list_wrong_kinds
 
 _ONCE = (Together("linked and declared to build"),)
 _AS_DEPEND = "declare it as `<{tag}>`"
@@ -46,39 +46,20 @@ _AS_DEPEND = "declare it as `<{tag}>`"
 )
 def wrong_dependency_kind(view: TargetView, package: Package):
     for wrong in list_wrong_kinds(view, package):
-        if wrong.lacking == "build":
-            yield _diagnose_build(view, package, wrong)
-        elif wrong.lacking == "run":
-            yield _diagnose_run(view, package, wrong)
-        elif wrong.lacking == "linked":
-            data = {"tag": _tag_to_run(package)}
-            fix = fix_kind(view, package, wrong.name, "exec_depend", wrong.kinds)
-            at = view.find_place(package, wrong.name)
-            yield Diagnostic(
-                at, wrong.name, package.name, data, "run, linked", (Doubt.LATE,), fix=fix, together=_ONCE
-            )
-
-
-def _tag_to_run(package: Package) -> str:
-    return "run_depend" if package.manifest.format == 1 else "exec_depend"
-
-
-def _diagnose_build(view: TargetView, package: Package, wrong: WrongKind) -> Diagnostic:
-    need, name, kinds, _ = wrong
-    old = package.manifest.format == 1
-    doubts: tuple[Doubt, ...] = (Doubt.LATE,)  # rosdep installs run dependencies along, and bloom does not
-    chance = collect_chance_doubts(view, package, need)
-    if Doubt.LUCKY not in chance:
-        doubts = chance  # the build farm does not install it
-    kind = "for tests" if kinds == {"test"} else "to run" if "exec" in kinds else "for dependants"
-    fix = fix_kind(view, package, name, "depend", kinds)
-    data = {"tag": "build_depend" if old else "depend"}
-    return Diagnostic(need.at, name, package.name, data, f"build, {kind}", doubts, fix=fix)
-
-
-def _diagnose_run(view: TargetView, package: Package, wrong: WrongKind) -> Diagnostic:
-    need, name, kinds, _ = wrong
-    kind, doubt = ("for tests", Doubt.DISPENSABLE) if kinds == {"test"} else ("to build", Doubt.LATE)
-    data = {"tag": _tag_to_run(package)}
-    fix = fix_kind(view, package, name, "exec_depend", kinds)
-    return Diagnostic(need.at, name, package.name, data, f"run, {kind}", (doubt,), fix=fix)
+        if wrong.lacking == "dependants":
+            continue  # which unexported-dependency reports
+        at, kind, doubts, together = wrong.need.at, "run, to build", (Doubt.LATE,), ()
+        if wrong.lacking == "linked":
+            at, kind, together = view.find_place(package, wrong.name), "run, linked", _ONCE
+        elif wrong.lacking == "build":
+            chance = collect_chance_doubts(view, package, wrong.need)
+            if Doubt.LUCKY not in chance:
+                doubts = chance  # rosdep installs run dependencies along, and the build farm does not
+            others = "to run" if "exec" in wrong.kinds else "for dependants"
+            kind = "build, for tests" if wrong.kinds == {"test"} else f"build, {others}"
+        elif wrong.kinds == {"test"}:
+            kind, doubts = "run, for tests", (Doubt.DISPENSABLE,)
+        tag = "depend" if wrong.lacking == "build" else "exec_depend"
+        fix = fix_kind(view, package, wrong.name, tag, wrong.kinds)
+        data = {"tag": translate_tag(tag, package.manifest.format)[0]}
+        yield Diagnostic(at, wrong.name, package.name, data, kind, doubts, fix=fix, together=together)
