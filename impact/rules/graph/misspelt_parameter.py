@@ -21,7 +21,7 @@ Not reported
     outside of the workspace; values in a file's `/**`, which is for every node.
 """
 
-from ..vocabulary import At, Diagnostic, Text, Workspace, rule
+from ..vocabulary import Text, Workspace, rule
 from .unasked_parameters import find_unasked
 
 
@@ -36,7 +36,4 @@ from .unasked_parameters import find_unasked
     ),
 )
 def misspelt_parameter(workspace: Workspace):
-    for parameter in find_unasked(workspace):
-        if parameter.similar:
-            data = {"program": parameter.program, "replacement": parameter.similar}
-            yield Diagnostic(At(parameter.path, parameter.line), parameter.name, parameter.package, data)
+    return (found for found in find_unasked(workspace) if found.data["replacement"])

@@ -1,11 +1,10 @@
 """Parameters that launch and parameter files set, and that the node's code neither declares nor reads."""
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 from ...model.flow.launches import LaunchedNode
 from ...model.flow.misspelling import is_slip_of_name
-from ...model.workspace import Workspace
+from ..vocabulary import At, Diagnostic, Workspace
 from .launch_settings import group_by_line
 
 # What every node, or the framework around it, understands.
@@ -16,27 +15,17 @@ _COMMON = frozenset(
 _COMMON_HEADS = ("qos_overrides", "bond", "diagnostic_updater", "actionlib", "lifecycle")
 
 
-class Unasked(NamedTuple):
-    """A parameter set at a line for a program that does not ask for it. similar: the parameter of the program whose
-    name it is a misspelling of; empty when there is none."""
-
-    path: str
-    line: int
-    name: str
-    package: str
-    program: str
-    similar: str
-
-
-def find_unasked(workspace: Workspace) -> Iterator[Unasked]:
-    """The parameters of the launch and parameter files of a workspace that no node they are set for asks for."""
+def find_unasked(workspace: Workspace) -> Iterator[Diagnostic]:
+    """A diagnostic for each parameter of the launch and parameter files of a workspace that no node it is set for asks
+    for. Its data: that `program`, and as `replacement` the parameter of it whose name is misspelt; empty for none."""
     settings = group_by_line(workspace, lambda start: start.given, lambda parameter: parameter.name)
     for (path, line, name), rows in settings:
         if any(_asks(start, name) for start, _ in rows):
             continue
         start, _ = rows[0]
         similar = next((known for known in start.parameters if is_slip_of_name(_get_last(known), _get_last(name))), "")
-        yield Unasked(path, line, name, start.package, start.program.partition("/")[2], similar)
+        data = {"program": start.program.partition("/")[2], "replacement": similar}
+        yield Diagnostic(At(path, line), name, start.package, data)
 
 
 def _asks(start: LaunchedNode, name: str) -> bool:

@@ -21,8 +21,9 @@ Not reported
     (misspelt-parameter).
 """
 
-from ..vocabulary import At, Diagnostic, Text, Workspace, rule
-from .unasked_parameters import Unasked, find_unasked
+from ....edges.groups import group_pairs
+from ..vocabulary import Text, Workspace, rule
+from .unasked_parameters import find_unasked
 
 
 @rule(
@@ -41,12 +42,7 @@ from .unasked_parameters import Unasked, find_unasked
     },
 )
 def unknown_parameter(workspace: Workspace):
-    by_line: dict[tuple[str, int], list[Unasked]] = {}
-    for parameter in find_unasked(workspace):
-        if not parameter.similar:
-            by_line.setdefault((parameter.path, parameter.line), []).append(parameter)
-    for (path, line), parameters in by_line.items():
-        first, count = parameters[0], len(parameters) - 1
-        data = {"program": first.program, "count": count}
-        kind = "several" if count else "one"
-        yield Diagnostic(At(path, line), first.name, first.package, data, kind)
+    unknown = (found for found in find_unasked(workspace) if not found.data["replacement"])
+    for first, *others in group_pairs((found.at, found) for found in unknown).values():
+        data = {**first.data, "count": len(others)}
+        yield first._replace(data=data, kind="several" if others else "one")

@@ -21,6 +21,7 @@ Not reported
 """
 
 import re
+from collections.abc import Iterable, Mapping
 
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule, translate_tag
 from .dependency_kinds import FOR_RUN, fix_kind
@@ -53,14 +54,8 @@ def library_without_headers(view: TargetView, package: Package):
             continue
         if not need.certain or view.is_met(need.providers, declared) or need.providers[0].name in seen:
             continue
-        wanted = {
-            re.sub(r"(-all)?-dev\Z", "", debian)
-            for provider in need.providers
-            if provider.kind == "system"
-            for debian in view.list_debs(provider.name)
-            if debian.endswith("-dev")
-        }
-        name = next((n for n, debian in bare.items() if any(_is_same(d, w) for d in debian for w in wanted)), None)
+        wanted = (debian for p in need.providers if p.kind == "system" for debian in view.list_debs(p.name))
+        name = _find_bare(bare, (debian for debian in wanted if debian.endswith("-dev")))
         right = next((p.name for p in need.providers if view.is_available(p.name)), None)
         if name is None or right is None:
             continue
@@ -81,8 +76,7 @@ def _list_handed_on(view: TargetView, package: Package, declared, bare, need, se
     right = next((p.name for p in need.providers if declared.get(p.name) == {"build"}), None)
     if right is None or right in seen:
         return
-    stems = {re.sub(r"(-all)?-dev\Z", "", debian) for debian in view.list_debs(right)}
-    name = next((n for n, installed in bare.items() if any(_is_same(d, s) for d in installed for s in stems)), None)
+    name = _find_bare(bare, view.list_debs(right))
     if name is None or name.startswith("libboost") or not declared[name] & FOR_RUN:
         return
     seen.add(right)
@@ -91,6 +85,12 @@ def _list_handed_on(view: TargetView, package: Package, declared, bare, need, se
     at = view.find_place(package, name)
     together = (Together(f"`{name}` without headers", everywhere=True),)
     yield Diagnostic(at, right, package.name, data, "public bare", (Doubt.DISTURBS,), fix=fix, together=together)
+
+
+def _find_bare(bare: Mapping[str, Iterable[str]], wanted: Iterable[str]) -> str | None:
+    """The declared library without headers that belongs to one of the Debian packages with them."""
+    stems = {re.sub(r"(-all)?-dev\Z", "", debian) for debian in wanted}
+    return next((name for name, has in bare.items() if any(_is_same(d, s) for d in has for s in stems)), None)
 
 
 def _is_same(installed: str, stem: str) -> bool:

@@ -51,9 +51,7 @@ def misspelt_cmake_variable(view: TargetView, package: Package):
             continue
         if use.alike:
             seen.add(use.name)
-            fix = (Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", f"${{{use.alike}}}"),)
-            data = {"variable": use.alike, "replacement": f"${{{use.alike}}}"}
-            yield Diagnostic(use.at, use.name, package.name, data, "alike", (Doubt.INCOMPLETE,), fix=fix)
+            yield _diagnose_variable(package, use, "", use.alike, "alike")
             continue
         match = _VARIABLE.match(use.name)
         if match is None:
@@ -97,9 +95,9 @@ def _is_misspelt(stem: str, name: str) -> bool:
 
 
 def _diagnose_variable(package: Package, use, found: str, variable: str, kind: str) -> Diagnostic:
-    """That a variable is empty, where another one that a find_package() sets was meant."""
+    """That a variable is empty, where another one was meant. found: the find_package() that sets it, empty for none."""
     new = f"${{{variable}}}"
     fix = (Replace(use.at.path, use.at.line, use.at.column, f"${{{use.name}}}", new),)
     data = {"found": found, "variable": variable, "replacement": new}
-    together = (Together(found),)
+    together = (Together(found),) if found else ()
     return Diagnostic(use.at, use.name, package.name, data, kind, (Doubt.INCOMPLETE,), fix=fix, together=together)
