@@ -88,6 +88,14 @@ def list_linked(package: Package, target: str) -> set[str] | None:
 _VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
 
 
+def find_brought(view: TargetView, package: Package, items: Iterable[str]) -> frozenset[str] | None:
+    """The packages of catkin that link items stand for, and all that they bring; None where that cannot be told."""
+    stems = (get_stem(item) for item in items if "$" in item)
+    if not all(stem in BRING_NOTHING or view.is_package(stem) for stem in stems):
+        return None
+    return CatkinExports(view).list_transitive(find_linked_packages(view, package, items))
+
+
 def find_linked_packages(view: TargetView, package: Package, items: Iterable[str]) -> set[str]:
     """The packages that link items stand for."""
     names = {get_stem(item).partition("::")[0] for item in items}

@@ -52,7 +52,12 @@ def _links(view: TargetView, package: Package, other: str, target: str) -> bool:
 def is_only_loaded(view: TargetView, package: Package) -> bool:
     """True for a package of plugins that no package of the workspace looks for: it is loaded rather than linked."""
     plugins = any(e.how in ("plugin_description", "component") for e in package.build.exports)
-    return plugins and not _list_finders(view).get(package.name, set()) - {package.name}
+    return plugins and not is_found_elsewhere(view, package)
+
+
+def is_found_elsewhere(view: TargetView, package: Package) -> bool:
+    """Whether the CMake of another package of the workspace looks for this one."""
+    return not _list_finders(view).get(package.name, set()) <= {package.name}
 
 
 @cache_in_derived

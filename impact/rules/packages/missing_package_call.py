@@ -29,6 +29,7 @@ from collections.abc import Collection
 
 from ...model.cmake.interpreter import is_modelled
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
+from .dependants import is_found_elsewhere
 
 _HELP = "call {subject}()[[ after find_package({after})]][[ at the end of {file}]]"
 _CALLS = {
@@ -56,26 +57,21 @@ def missing_package_call(view: TargetView, package: Package):
     if any(name.startswith("rosbuild_") for name in called) or not foreign <= known.keys():
         return
     command, data = _CALLS[package.build_type]
-    others = [other for other in view.list_built() if other.name != package.name]
+    found = is_found_elsewhere(view, package)
     if package.build_type == "ament_cmake":
-        found = any(_is_asked_for(other, package.name) or _is_launched(other, package.name) for other in others)
-    else:
-        found = any(_is_asked_for(other, package.name) for other in others)
-        if not build.catkin_destinations and not foreign:  # which may call catkin_destinations()
-            made = {target.name for target in build.targets if target.kind == "executable"}
-            found = found or any(_is_launched(other, package.name, made) for other in others)
+        found = found or _is_launched(view, package)
+    elif not build.catkin_destinations and not foreign:  # which may call catkin_destinations()
+        found = found or _is_launched(view, package, {t.name for t in build.targets if t.kind == "executable"})
     kind = "" if found or package.build_type == "ament_cmake" else "installed"
     yield Diagnostic(At(build.files[0], 1), command, package.name, data, kind, (found or Doubt.DISTURBS,))
 
 
-def _is_asked_for(package: Package, name: str) -> bool:
-    return any(found.name == name for found in package.build.found)
-
-
-def _is_launched(package: Package, name: str, programs: Collection[str] | None = None) -> bool:
-    """Whether launch files or scripts of a package start or open something of another one; only the named programs of
-    it, where they are given."""
-    references = (use.reference for use in package.linked.references)
+def _is_launched(view: TargetView, package: Package, programs: Collection[str] | None = None) -> bool:
+    """Whether launch files or scripts of another package start or open something of one; only the named programs of it,
+    where they are given."""
+    others = (other for other in view.list_built() if other.name != package.name)
+    references = (use.reference for other in others for use in other.linked.references)
     return any(
-        r.package == name and (programs is None or (r.kind == "executable" and r.name in programs)) for r in references
+        r.package == package.name and (programs is None or (r.kind == "executable" and r.name in programs))
+        for r in references
     )

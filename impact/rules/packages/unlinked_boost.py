@@ -32,7 +32,7 @@ from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import list_linked_items
 from ...targets.providers.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP, find_compiled_component
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import BRING_NOTHING, PACKAGE_VARIABLE, CatkinExports, find_linked_packages, get_stem, list_linked
+from .catkin_links import PACKAGE_VARIABLE, CatkinExports, find_brought, list_linked
 
 _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component `{component}`"
 
@@ -179,10 +179,7 @@ def _lacks_boost(view: TargetView, package: Package, target: BuildTarget, compon
     linked = list_linked(package, target.name)
     if linked is None or any("$" in f.name for f in package.build.found):
         return False
-    if not all(get_stem(item) in BRING_NOTHING or view.is_package(get_stem(item)) for item in linked if "$" in item):
-        return False
-    exported = CatkinExports(view)
-    brought = exported.list_transitive(find_linked_packages(view, package, linked))
+    exported, brought = CatkinExports(view), find_brought(view, package, linked)
     return brought is not None and all(
         name in _WITH_BOOST_OF_THE_CORE or not exported.may_bring(name, "boost") for name in brought
     )

@@ -21,7 +21,7 @@ Not reported
 from ...model.cmake.build import is_for_tests
 from ...targets.providers.library import OPENCV_FUNCTIONS
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
-from .catkin_links import BRING_NOTHING, CatkinExports, find_linked_packages, get_stem, list_linked
+from .catkin_links import CatkinExports, find_brought, list_linked
 
 # Distros whose cv_bridge hands on every library of OpenCV.
 _WITH_ALL_OF_OPENCV = frozenset({"groovy", "hydro", "indigo", "jade"})
@@ -52,12 +52,8 @@ def unlinked_opencv(view: TargetView, package: Package):
         linked = list_linked(package, target.name)
         if linked is None or any("opencv" in item.lower() for item in linked):
             continue
-        if not all(
-            get_stem(item) in BRING_NOTHING or view.is_package(get_stem(item)) for item in linked if "$" in item
-        ):
-            continue
         call = next((use for use in calls if use.at.path in target.sources), None)
-        brought = exported.list_transitive(find_linked_packages(view, package, linked)) if call is not None else None
+        brought = find_brought(view, package, linked) if call is not None else None
         if call is None or brought is None:
             continue
         bringing = {name for name in brought if name != "OpenCV" and exported.may_bring(name, "opencv")}

@@ -89,10 +89,7 @@ def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     use of those is not looked at. What libraries of the package miss may come with any library that one of theirs needs
     in turn, which the linker finds by itself."""
     build = package.build
-    if build.unresolved:
-        return
-    found = {f.name for f in build.found}
-    if any("$" in name for name in found):
+    if build.unresolved or any("$" in f.name for f in build.found):
         return
     exported = CatkinExports(view)
     includes: dict[str, list[IncludeUse]] = {}

@@ -61,13 +61,14 @@ def unlisted_field_package(view: TargetView, package: Package):
         primitive = PRIMITIVES if adapted else _ROS1_PRIMITIVE
         for section in interface.definition.sections:
             for field in section.fields:
+                at = At(interface.path, field.line, field.column)
                 owner, name = find_field_owner(package, field.type), field.type.rpartition("/")[2]
                 if not owner and field.type not in primitive and "<" not in field.type:
                     names = {i.name for i in package.linked.interfaces}
                     if field.type not in names and field.type not in seen:
                         seen.add(field.type)
                         data = {"replacement": make_full_name(field.type, "") if field.type in _FROM_ROS1 else ""}
-                        yield Diagnostic(_find_place(interface, field), field.type, package.name, data, "own type")
+                        yield Diagnostic(at, field.type, package.name, data, "own type")
                     continue
                 if not owner or owner == package.name or owner in seen:
                     continue
@@ -75,7 +76,7 @@ def unlisted_field_package(view: TargetView, package: Package):
                 if owner in given:
                     if names and name not in names and (owner, name) not in seen:
                         seen.add((owner, name))
-                        at, data = _find_place(interface, field), {"owner": owner, "name": name}
+                        data = {"owner": owner, "name": name}
                         yield Diagnostic(at, f"{owner}/{name}", package.name, data, "other type")
                     continue
                 if owner in view.list_transitive(given):
@@ -85,7 +86,7 @@ def unlisted_field_package(view: TargetView, package: Package):
                 generator = "rosidl_generate_interfaces" if rosidl else "generate_messages"
                 data = {"type": field.type, "generator": generator}
                 doubts = () if rosidl or field.type != "Header" else (Doubt.INCOMPLETE,)
-                yield Diagnostic(_find_place(interface, field), owner, package.name, data, "dependency", doubts)
+                yield Diagnostic(at, owner, package.name, data, "dependency", doubts)
 
 
 def find_field_owner(package: Package, type_: str) -> str:
@@ -100,7 +101,3 @@ def _list_implied(view: TargetView, files: set[str]) -> set[str]:
     kinds = {file.rpartition(".")[2] for file in files}
     names = {"action_msgs", "service_msgs"} if "action" in kinds else {"service_msgs"} if "srv" in kinds else set()
     return {name for name in names if view.target.ros == 2 and view.is_available(name)}
-
-
-def _find_place(interface, field) -> At:
-    return At(interface.path, field.line, field.column)

@@ -85,8 +85,9 @@ def stale_binary(view: TargetView, installed: InstallSpace, libraries: SharedLib
     for missing, by_package in askers.items():
         packages = [package for package in ordered if package in by_package]
         for package, binaries in by_package.items():
-            at = _find_place(view, package, binaries, installed)
             data = {**_build_data(missing, binaries, libraries), **_build_remedy(missing, packages, libraries)}
+            known = view.workspace.packages.get(package)  # what is not in the workspace has no manifest there
+            at = At(known.linked.manifest_path if known is not None else f"{installed.label}/{data['file']}", 0)
             gone = libraries.gone and missing.there
             kind = "symbol" if missing.symbols >= 0 else "gone" if gone else "missing"
             yield Diagnostic(at, missing.subject, package, data, kind)
@@ -128,11 +129,3 @@ def _build_data(missing: _Missing, binaries: list[Binary], libraries: SharedLibr
 def _build_remedy(missing: _Missing, packages: list[str], libraries: SharedLibraries) -> dict[str, str]:
     order = " in this order" if len(packages) > 1 else ""
     return {"debian": libraries.find_package(missing.subject) or "", "rebuilt": f"{', '.join(packages) or 'it'}{order}"}
-
-
-def _find_place(view: TargetView, package: str, binaries: list[Binary], installed: InstallSpace) -> At:
-    """The package's manifest; of a package that is not in the workspace, the first file itself."""
-    known = view.workspace.packages.get(package)
-    if known is not None:
-        return At(known.linked.manifest_path, 0)
-    return At(f"{installed.label}/{min(binary.path for binary in binaries)}", 0)
