@@ -51,11 +51,11 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     exports: classes given to macros of pluginlib, rclcpp_components and Gazebo, as written without spaces; references:
     packages and files named by literals (`package://`, getPath, get_package_share_directory).
     namespaces: those that it adds to. type_names: last parts of the types that it seems to define, aliases among
-    them; announced: of those that it only declares. variables: qualified types of which some line declares a
-    variable or member itself, not a pointer or reference. made: classes of which it makes objects by `new`,
-    make_shared() or make_unique(). derives: something like `class A : public B` stands in it. initializes: a
-    constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
-    comments, literals, includes and blanks.
+    them; announced: of those that it only declares; aliased: of the qualified names in typedefs, which need no more
+    than an announcement. variables: qualified types of which some line declares a variable or member itself, not a
+    pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). derives:
+    something like `class A : public B` stands in it. initializes: a constructor may initialize members, or a
+    container makes elements (`emplace_back`). code: a digest of all but comments, literals, includes and blanks.
     """
 
     includes: tuple[Include, ...]
@@ -72,6 +72,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     namespaces: tuple[str, ...] = ()
     type_names: tuple[str, ...] = ()
     announced: tuple[str, ...] = ()
+    aliased: tuple[str, ...] = ()
     variables: tuple[str, ...] = ()
     made: tuple[str, ...] = ()
     derives: bool = False
@@ -541,6 +542,7 @@ def extract(data: bytes) -> CppFile:
         namespaces=_list_namespaces(visible) if has_namespace else (),
         type_names=type_names,
         announced=announced,
+        aliased=_list_aliased_names(visible) if "typedef" in tokens_text else (),
         variables=_list_variable_types(visible),
         made=_list_made_classes(visible, tokens_text),
         derives=any(pattern.search(visible) is not None for pattern in _DERIVED),
@@ -635,6 +637,8 @@ _DERIVED = [
 _ANNOUNCED = [
     re.compile(rf"{word}(?<!\w{word})\s+([A-Za-z_]\w*)(?:\s*:\s*\w+)?\s*;") for word in ("class", "struct", "enum")
 ]
+_ALIAS = re.compile(r"typedef(?<!\wtypedef)\b[^;{}=]{0,300}")
+_LAST_PART = re.compile(r"::\s*([A-Za-z_]\w*)(?!\w|\s*::)")
 _INITIALIZES = re.compile(r"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]|\bemplace(?:_back)?\s*\(")
 _MADE = [
     re.compile(rf"{word}(?<!\w{word}){between}(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{{,)]")
@@ -654,6 +658,11 @@ def _list_type_names(visible: str, tokens_text: str) -> tuple[tuple[str, ...], t
         names[sys.intern(match.group(match.lastindex or 0))] = None
     announced = dict.fromkeys(sys.intern(name) for pattern in _ANNOUNCED for name in pattern.findall(visible))
     return tuple(names), tuple(announced)
+
+
+def _list_aliased_names(visible: str) -> tuple[str, ...]:
+    names = (name for alias in _ALIAS.findall(visible) for name in _LAST_PART.findall(alias))
+    return tuple(dict.fromkeys(map(sys.intern, names)))
 
 
 def _list_made_classes(visible: str, tokens_text: str) -> tuple[str, ...]:

@@ -187,8 +187,9 @@ class KnownFile:
         return frozenset(self.facts.type_names)
 
     def declares_type(self, word: str) -> bool:
-        """Whether it announces or defines a type of a name."""
-        return word in self.type_names or word in self.facts.announced
+        """Whether it announces or defines a type of a name, or uses it in a typedef, for which a header that only
+        announces it is enough."""
+        return word in self.type_names or word in self.facts.announced or word in self.facts.aliased
 
     @cached_property
     def classes(self) -> dict[str, list[CppClass]]:
