@@ -1166,10 +1166,12 @@ class Interpreter:
         """Makes the target that add_library(), add_executable() or add_custom_target() adds."""
         before, conditions = self.targets.get(name), self.merge_with(name)
         if before is not None and before.added and kind not in ("imported", "alias") and name.sure and not self.silent:
-            opposite = {(held.text, not held.negated) for held in before.conditions}
+            opposite = {(held.text, not held.negated) for held in conditions}
             asked = re.compile(rf"TARGET {re.escape(name)}(?!\S)")
-            if not any((held.text, held.negated) in opposite or asked.search(held.text) for held in conditions):
-                self.refuse("twice", name, before.conditions)
+            meeting = [way for way in before.ways if not any((held.text, held.negated) in opposite for held in way)]
+            if meeting and not any(asked.search(held.text) for held in conditions):
+                # One that every branch has made stands there under what these have in common.
+                self.refuse("twice", name, before.conditions if len(meeting) == len(before.ways) else meeting[0])
         draft = self.ensure_target(name, kind, name.at)
         draft.added = name.sure and kind not in ("imported", "alias")
         return draft

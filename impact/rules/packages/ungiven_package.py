@@ -45,11 +45,13 @@ _INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 def ungiven_package(view: TargetView, package: Package):
     if package.build_type != "ament_cmake" or package.build.unresolved:
         return
-    # Many files of a target include the same headers.
-    includes = dict.fromkeys(
-        (i.path, i.targets, i.role) for i in package.linked.includes if i.targets and view.is_sure(i.conditions)
-    )
     targets = {t.name: t for t in package.build.targets}
+    # Many files of a target include the same headers; other targets are made on other machines.
+    includes = dict.fromkeys(
+        (i.path, tuple(filter(targets.__contains__, i.targets)), i.role)
+        for i in package.linked.includes
+        if i.targets and view.is_sure(i.conditions)
+    )
     find_given = cache(partial(_find_given, targets))
     yield from _list_off_path(view, package, includes, find_given)
     if shares_one_folder(view):
