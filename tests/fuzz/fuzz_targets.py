@@ -40,6 +40,7 @@ from rosimpact.impact.conditions import Environment, holds
 from rosimpact.impact.facts import allow, elf, kinds, store
 from rosimpact.impact.facts.cmake import extract as extract_cmake
 from rosimpact.impact.facts.condition import Condition
+from rosimpact.impact.facts.cpp.syntax import AskedWords, select_places
 from rosimpact.impact.facts.launch import flow as flow_launch
 from rosimpact.impact.facts.launch import parameter_files as flow_parameters
 from rosimpact.impact.facts.usage import Rows
@@ -131,7 +132,11 @@ def extractor(kind: str) -> Callable[[bytes], None]:
     def check(data: bytes) -> None:
         if kind in kinds.SEARCHES:
             first = {"searched_text": "python"}.get(kind, "cpp")
-            found = kinds.search(kind, data, kinds.extract(first, data).facts, _tables()[kind])
+            facts = kinds.extract(first, data).facts
+            table = _tables().get(kind) or AskedWords((*facts.words.split(" ")[:20], "operator+="))
+            if kind == "used_cpp":
+                table = select_places(kinds.search("mentioned_cpp", data, facts, table).facts.mentions)
+            found = kinds.search(kind, data, facts, table)
         else:
             found = kinds.extract(kind, data)
         for problem in getattr(found.facts, "problems", ()):
@@ -149,7 +154,7 @@ def _tables() -> dict[str, object]:
     """What searches are given to look for."""
     names = load_watched()
     rows = Rows([row for group in (*names.modules.values(), names.parameters) for row in group])
-    return {"searched_cpp": names.in_cpp, "searched_text": rows, "called_cpp": None}
+    return {"searched_cpp": names.in_cpp, "searched_text": rows}
 
 
 def _raise_again(kind: str, data: bytes) -> None:
