@@ -143,7 +143,7 @@ _HEAD_BACKWARDS = re.compile(r"\s*(\w*[^\W\d])(?!\w)")
 _USING = re.compile(
     r"using\s+(?:(namespace)\s+|typename\s+)?(?:::\s*)?([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*;"
 )
-_SPACE_NAME = re.compile(r"namespace\s+(\w+)\s*=\s*(?:::\s*)?([\w:\s]{1,300}?)\s{0,20};")
+_SPACE_NAME = re.compile(r"namespace\s+(\w+)\s*=\s*(?:::\s*)?(\w[\w:\s]{0,300}?)\s{0,20};")
 _EXPORT = re.compile(
     r"(?P<macro>PLUGINLIB_(?:EXPORT|REGISTER|DECLARE)_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODE(?:_\w+)?"
     r"|CLASS_LOADER_REGISTER_CLASS(?:_\w+)?|RCLCPP_COMPONENTS_REGISTER_NODES"

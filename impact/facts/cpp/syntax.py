@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
+from itertools import chain, islice
 from typing import NamedTuple
 
 import msgspec
@@ -104,7 +105,8 @@ def used_cpp(data: bytes, facts: CppFile, table: AskedPlaces) -> UsedCpp:
 def mentioned_cpp(data: bytes, facts: CppFile, table: AskedWords) -> MentionedCpp:
     """How words are mentioned in a C++ file."""
     text = decode_source(data)
-    return MentionedCpp(tuple(mention for word in table.words for mention in _list_mentions(text, word)))
+    found = (islice(_list_mentions(text, word), _MOST_MENTIONS) for word in table.words)
+    return MentionedCpp(tuple(chain.from_iterable(found)))
 
 
 @lru_cache(maxsize=2)  # what a file declares and uses is asked in turns
@@ -135,6 +137,8 @@ _MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
 _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
 _CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*(?:\(|=?\s*\{))")
 _FARTHEST, _FAR = 4000, 160
+# Beyond these, a file is no person's, and reading on would take too long.
+_DEEPEST, _MOST_MENTIONS = 48, 5000
 
 
 def _list_mentions(text: str, word: str) -> Iterator[Mention]:
@@ -208,6 +212,8 @@ def _parse_arguments(text: str, at: int) -> Given:
         sign, place = mark.group(), mark.end()
         if sign in "([{":
             depth += 1
+            if depth > _DEEPEST:
+                break
         elif sign in ")]}":
             depth -= 1
             if depth == 0:
