@@ -122,12 +122,14 @@ _SCOPES = re.compile(r"(?:\s*::\s*\w*[A-Za-z_])+(?![\w>:])")
 _OF_STD = re.compile(r"(?<![\w:])std\s*::\s*\w+\s*<[^<>;(){}]*>\s*::\s*\Z")
 # What may stand before a name that is used, and is no type of one that is declared: `emit finished()`.
 _NO_TYPES = KEYWORDS | {"emit", "not", "and", "or", "xor", "compl", "bitand", "bitor"}
-# What the text of arguments has where one of them shows itself to be something that can be refused.
+# What the text of arguments has where one of them alone shows itself to be something that can be refused.
 _SHOWN = {
     shown: re.compile(pattern)
     for shown, pattern in (
-        ("text", r"\""), ("this", r"\bthis\b"), ("new", r"\bnew\b"), ("float", r"\d"), ("integer", r"\d"),
-        ("bool", r"\b(?:true|false)\b"), ("null", r"\b(?:nullptr|NULL)\b"), ("lambda", r"\["),
+        ("text", r"(?:\A|,)\s*\w{0,3}\""), ("this", r"\bthis\b"), ("new", r"(?:\A|,)\s*new\b"),
+        *((kind, r"(?:\A|,)\s*[-+]?\s*\.?\d[\w'.+-]*\s*(?:,|\Z)") for kind in ("float", "integer")),
+        ("bool", r"(?:\A|,)\s*(?:true|false)\s*(?:,|\Z)"), ("null", r"(?:\A|,)\s*(?:nullptr|NULL)\s*(?:,|\Z)"),
+        ("lambda", r"(?:\A|,)\s*\["),
         ("qos", r"rclcpp\s*::\s*\w*QoS|(?i:qos)\w*\s*(?![\w\s:({])"),
         ("profile", r"rmw_qos_profile|(?i:qos|profile)\w*\s*(?![\w\s:({])"),
     )
