@@ -123,17 +123,17 @@ _OF_STD = re.compile(r"(?<![\w:])std\s*::\s*\w+\s*<[^<>;(){}]*>\s*::\s*\Z")
 # What may stand before a name that is used, and is no type of one that is declared: `emit finished()`.
 _NO_TYPES = KEYWORDS | {"emit", "not", "and", "or", "xor", "compl", "bitand", "bitor"}
 # What the text of arguments has where one of them alone shows itself to be something that can be refused.
-_SHOWN = {
-    shown: re.compile(pattern)
+_SHOWN = tuple(
+    (shown.split(), re.compile(pattern))
     for shown, pattern in (
         ("text", r"(?:\A|,)\s*\w{0,3}\""), ("this", r"\bthis\b"), ("new", r"(?:\A|,)\s*new\b"),
-        *((kind, r"(?:\A|,)\s*[-+]?\s*\.?\d[\w'.+-]*\s*(?:,|\Z)") for kind in ("float", "integer")),
+        ("float integer", r"(?:\A|,)\s*[-+]?\s*\.?\d[\w'.+-]*\s*(?:,|\Z)"),
         ("bool", r"(?:\A|,)\s*(?:true|false)\s*(?:,|\Z)"), ("null", r"(?:\A|,)\s*(?:nullptr|NULL)\s*(?:,|\Z)"),
         ("lambda", r"(?:\A|,)\s*\["),
         ("qos", r"rclcpp\s*::\s*\w*QoS|(?i:qos)\w*\s*(?![\w\s:({])"),
         ("profile", r"rmw_qos_profile|(?i:qos|profile)\w*\s*(?![\w\s:({])"),
     )
-}  # fmt: skip
+)  # fmt: skip
 _SPACE = re.compile(r"\s*")
 _MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
 _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
@@ -203,7 +203,7 @@ def _is_declared(text: str, before: int, at: int) -> bool:
 
 
 def _show(given: str) -> frozenset[str]:
-    return frozenset(shown for shown, pattern in _SHOWN.items() if pattern.search(given))
+    return frozenset(kind for kinds, pattern in _SHOWN if pattern.search(given) for kind in kinds)
 
 
 @lru_cache(maxsize=64)  # a call is often looked at as a construction too
