@@ -5,7 +5,6 @@ What the files themselves say is read in cpp/uses.py.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from typing import Generic, NamedTuple, TypeVar
@@ -16,7 +15,7 @@ from ..facts.cpp.schema import CodeSpot
 from ..facts.cpp.syntax import ASSIGNING
 from ..facts.surface import Entity
 from ..targets.asked_versions import AskedVersions
-from ..targets.surface.changes import ChangeEvent, Form, Line
+from ..targets.surface.changes import ChangeEvent, Form, Line, Overload
 from ..targets.surface.offers import Standing, find_standing
 from ..targets.surface.offers_cpp import (
     compare_defaults,
@@ -24,12 +23,13 @@ from ..targets.surface.offers_cpp import (
     is_not_deducible,
     list_callable_forms,
     list_refused_kinds,
+    makes_anew,
+    may_be_implicit,
 )
 from ..targets.surface.overrides import list_virtual_forms
 from ..targets.surface.store import SurfaceHistory
 
 T = TypeVar("T")
-_COPIED = re.compile(r"(?:const )?(?:\w*::)*(?:<.*>)?(?: const)?&{1,2}")
 CALLED = frozenset(("function", "method", "constructor", "conversion", "macro"))
 """Kinds of names that are called."""
 CLASSES = frozenset(("class", "struct", "union"))
@@ -73,7 +73,7 @@ class ChangingName:
 
     def __init__(self, package: str, name: str, what: str, lines: tuple[tuple[Sequence[ChangeEvent], _Forms], ...]):
         self.package, self.name, self.what, self._lines = package, name, what, lines
-        self._by_count: dict[int, tuple[bool, bool]] = {}
+        self._by_count: dict[tuple[int, bool], tuple[bool, bool]] = {}
 
     def add_line(self, events: Sequence[ChangeEvent], forms_of: _Forms) -> ChangingName:
         """The same name with the line of another generation, which goes first and says what it is."""
@@ -102,9 +102,8 @@ class ChangingName:
     def takes_braces(self) -> bool:
         """Whether braces behind the name of the class call one of these constructors with what they hold: each of the
         versions declares some that make it no aggregate, and none takes all of it as one list."""
-        class_ = self.name.rpartition("::")[2]
         return all(
-            any(type_ and not _COPIED.fullmatch(type_.replace(class_, "")) for one in forms for type_ in one.types)
+            any(makes_anew(one, self.name) for one in forms)
             and not any("initializer_list" in type_ for one in forms for type_ in one.types)
             for forms in (list_callable_forms(form.standing.here) for form in self.forms)
         )
@@ -130,44 +129,51 @@ class ChangingName:
             for (_, _, here, before, after, past, future), *_ in self.forms
         )
 
-    @cached_property
-    def refuses(self) -> frozenset[str]:
-        """What arguments may show themselves to be and one of the versions does not take, but one beside it may."""
-        found: set[str] = set()
-        for one in self.forms:
-            here = list_callable_forms(one.standing.here)
-            types = {other.types for form in _list_other_forms(one.standing) for other in list_callable_forms(form)}
-            if types - {other.types for other in here}:
-                found.update(*(list_refused_kinds(type_) for other in here for type_ in other.types))
-        return frozenset(found)
-
-    def differs(self, how: str, arguments: int, given: Collection[str], templated: bool = False) -> bool:
-        """Whether a use of it may be wrong in one of the versions."""
+    def differs(
+        self, how: str, arguments: int, given: Sequence[Sequence[str]] = (), templated: bool = False
+    ) -> bool:
+        """Whether a use of it may be wrong in one of the versions. given: by argument, what it may show itself to be,
+        empty where that is nothing."""
         if self.there or how in ("override", "implement"):
             return True
-        if how != "call":
+        if how != "call" or arguments < 0:
             return False
-        if not self.refuses.isdisjoint(given):
-            return True
-        if arguments < 0:
-            return False
-        known = self._by_count.get(arguments)
+        copied = self.what == "constructor" and may_be_implicit(self.name, (), arguments, given)
+        known = self._by_count.get((arguments, copied))
         if known is None:
-            known = self._by_count[arguments] = self._differs(arguments)
-        return known[templated]
+            known = self._by_count[arguments, copied] = self._differs(arguments, copied)
+        return known[templated] or (any(given) and self._may_refuse(arguments, given))
 
-    def _differs(self, arguments: int) -> tuple[bool, bool]:
-        """Whether a call with so many arguments may be wrong, and the same where its template arguments are written."""
+    def _may_refuse(self, arguments: int, given: Sequence[Sequence[str]]) -> bool:
+        """Whether one of the versions takes no such arguments, and one beside it may."""
+        for one in self.forms:
+            here = [form for form in list_callable_forms(one.standing.here) if form.accepts(arguments)]
+            if not here or any(_surely_takes(form, given) for form in here):
+                continue
+            others = (form for other in _list_other_forms(one.standing) for form in list_callable_forms(other))
+            if any(form.accepts(arguments) and _may_take(form, given) for form in others):
+                return True
+        return False
+
+    def _differs(self, arguments: int, implicit: bool) -> tuple[bool, bool]:
+        """Whether a call with so many arguments may be wrong, and the same where its template arguments are written.
+        implicit: it may be one of a constructor that the compiler makes, where no header declares others."""
         unwritten = False
         for standing, version, last, first, history in self.forms:
-            here = [one for one in list_callable_forms(standing.here) if one.accepts(arguments)]
+            declared = list_callable_forms(standing.here)
+            here = [one for one in declared if one.accepts(arguments)]
+            made = implicit and (arguments > 0 or may_be_implicit(self.name, declared, arguments, ()))
             if not here:
                 others = (one for form in _list_other_forms(standing) for one in list_callable_forms(form))
-                if any(one.accepts(arguments) for one in others):
+                if not made and any(one.accepts(arguments) for one in others):
                     return True, True
                 continue
-            relying = _has_other_default(standing) and all(one.most < 0 or arguments < one.most for one in here)
-            if relying and (history is None or compare_defaults(history(), self.name, last, first, arguments)):
+            relying = not made and _has_other_default(standing)
+            if (
+                relying
+                and all(one.most < 0 or arguments < one.most for one in here)
+                and (history is None or compare_defaults(history(), self.name, last, first, arguments))
+            ):
                 return True, True
             if not unwritten and any(one.accepts(arguments) for one in find_lost_forms(standing.before, standing.here)):
                 # An argument of a template may have to be written.
@@ -186,6 +192,18 @@ def _list_other_forms(standing: Standing) -> list[Form]:
 def _has_other_default(standing: Standing) -> bool:
     """Whether the last change up to a version was one of defaults alone, which forms do not tell."""
     return bool(standing.past) and all(reported.kind == "default" for reported in standing.past[-1].reported)
+
+
+def _surely_takes(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
+    """Whether no argument shows itself to be what its parameter does not take."""
+    pairs = zip(given, overload.types, strict=False)
+    return all(list_refused_kinds(type_).isdisjoint(shown) for shown, type_ in pairs)
+
+
+def _may_take(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
+    """Whether each argument may be something that its parameter takes."""
+    pairs = zip(given, overload.types, strict=False)
+    return all(not shown or not list_refused_kinds(type_).issuperset(shown) for shown, type_ in pairs)
 
 
 def _is_pure(form: Form | None) -> bool:

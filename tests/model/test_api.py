@@ -184,7 +184,7 @@ def uses(text: str, changes: Changes, *headers: str) -> list[str]:
         ("class K : public arm::Arm {}; namespace n { class K : public ::K { void tick(); }; }",
          ["arm::Base::tick/0!"]),
         ("namespace n { class K : public ::arm::Arm { void tick(); }; }", ["arm::Base::tick/0!"]),
-        ("void g() { arm::Arm a(std::map<int, std::function<void(int)>>{}); }", ["arm::Arm::Arm/1"]),
+        ("void g() { arm::Arm a(std::map<int, std::function<void(int)>>{}, 1); }", ["arm::Arm::Arm/2"]),
         # how many arguments a pack has cannot be told
         ("template<class... T> void g(arm::Base & b, T... t) { b.went(t...); }", ["arm::Base::went/-1"]),
     ],

@@ -40,9 +40,9 @@ def test_which_names_a_file_declares_in_a_namespace(text, declared, others):
     } == declared
 
 
-def test_members_of_a_type():
-    known = make_known("struct A { n::B b; B * c; std::vector<B> d; B e[2]; B f, g; B h(); };")
-    assert sorted(known.list_members_of_type("B")) == ["b", "f", "g"]
+def test_what_a_type_may_declare():
+    known = make_known("struct A { n::B b; B * c; std::vector<B> d; B e[2]; B f, g; B h(); B i{1}; };")
+    assert [one.names for one in known.list_mentions(["B"]) if one.names] == [("b",), ("f", "g"), ("h",), ("i",)]
 
 
 def test_names_that_using_makes_known():

@@ -120,7 +120,8 @@ _HIDDEN = re.compile(
 _DIRECTIVE = re.compile(
     r"#[ \t]*(ifdef|ifndef|if|elifdef|elifndef|elif|else|endif|define)\b([^\n]*(?:(?<=\\)\n[^\n]*)*)"
 )
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+"""A comment, one that is not ended too."""
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")
 _WORDS = re.compile(r"\w+(?:\s*::\s*\w+)*")
 # White space to an expression, but not to bytes.split().
@@ -421,7 +422,7 @@ def scan(data: bytes) -> Scan:
             continue
         body = match.group(2)
         if '"' in body:
-            body = _COMMENT.sub(" ", text[match.start(2) : match.end(2)])
+            body = COMMENT.sub(" ", text[match.start(2) : match.end(2)])
         directives.append((start, match.end(), match.group(1), " ".join(body.replace("\\\n", " ").split())))
 
     guard = _guard(directives, visible)
@@ -546,7 +547,7 @@ def extract(data: bytes) -> CppFile:
         variables=_list_variable_types(visible),
         made=_list_made_classes(visible, tokens_text),
         derives=any(pattern.search(visible) is not None for pattern in _DERIVED),
-        initializes=_INITIALIZES.search(visible) is not None,
+        initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
     )
 
@@ -639,7 +640,7 @@ _ANNOUNCED = [
 ]
 _ALIAS = re.compile(r"typedef(?<!\wtypedef)\b[^;{}=]{0,300}")
 _LAST_PART = re.compile(r"::\s*([A-Za-z_]\w*)(?!\w|\s*::)")
-_INITIALIZES = re.compile(r"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]|\bemplace(?:_back)?\s*\(")
+_INITIALIZES = re.compile(r"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]")
 _MADE = [
     re.compile(rf"{word}(?<!\w{word}){between}(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{{,)]")
     for word, between in (("new", r"\s+"), ("make_shared", r"\s*<\s*"), ("make_unique", r"\s*<\s*"))

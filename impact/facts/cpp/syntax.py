@@ -17,7 +17,7 @@ import msgspec
 
 from ..place import Problem
 from ..usage import compute_stamp, find_template_arguments
-from .lexical import KEYWORDS, CppFile, decode_source, find_words
+from .lexical import COMMENT, KEYWORDS, CppFile, decode_source, find_words
 from .schema import CppUse, FileDeclarations
 
 ASSIGNING = {f"operator{sign}=": f"{sign}=" for sign in "+-*/"}
@@ -28,10 +28,10 @@ UNREAD = -2
 
 class Given(NamedTuple):
     """What parentheses or braces behind a name give. number: how many arguments; -1 where they open something else,
-    UNREAD where it takes a parser. shown: what they show themselves to be, as far as their text tells."""
+    UNREAD where it takes a parser. shown: by argument, what it may show itself to be; empty where none shows."""
 
     number: int
-    shown: frozenset[str] = frozenset()
+    shown: tuple[tuple[str, ...], ...] = ()
 
 
 class Mention(NamedTuple):
@@ -42,7 +42,7 @@ class Mention(NamedTuple):
     than names stand there; of an operator the word, or the sign, before it. of_std: the scopes are a template of std.
     call: what is given behind it; construction: the same where it may be a class. templated: template arguments stand
     behind it. typed: a type may stand before it. listed: a colon or comma stands before it and a bracket behind it, as
-    in the initializer list of a constructor."""
+    in the initializer list of a constructor. names: what it may declare, as the type before these names."""
 
     word: str
     offset: int
@@ -54,6 +54,7 @@ class Mention(NamedTuple):
     templated: bool = False
     typed: bool = False
     listed: bool = False
+    names: tuple[str, ...] = ()
 
 
 class AskedWords(NamedTuple):
@@ -122,22 +123,26 @@ _SCOPES = re.compile(r"(?:\s*::\s*\w*[A-Za-z_])+(?![\w>:])")
 _OF_STD = re.compile(r"(?<![\w:])std\s*::\s*\w+\s*<[^<>;(){}]*>\s*::\s*\Z")
 # What may stand before a name that is used, and is no type of one that is declared: `emit finished()`.
 _NO_TYPES = KEYWORDS | {"emit", "not", "and", "or", "xor", "compl", "bitand", "bitor"}
-# What the text of arguments has where one of them alone shows itself to be something that can be refused.
-_SHOWN = tuple(
-    (shown.split(), re.compile(pattern))
-    for shown, pattern in (
-        ("text", r"(?:\A|,)\s*\w{0,3}\""), ("this", r"\bthis\b"), ("new", r"(?:\A|,)\s*new\b"),
-        ("float integer", r"(?:\A|,)\s*[-+]?\s*\.?\d[\w'.+-]*\s*(?:,|\Z)"),
-        ("bool", r"(?:\A|,)\s*(?:true|false)\s*(?:,|\Z)"), ("null", r"(?:\A|,)\s*(?:nullptr|NULL)\s*(?:,|\Z)"),
-        ("lambda", r"(?:\A|,)\s*\["),
-        ("qos", r"rclcpp\s*::\s*\w*QoS|(?i:qos)\w*\s*(?![\w\s:({])"),
-        ("profile", r"rmw_qos_profile|(?i:qos|profile)\w*\s*(?![\w\s:({])"),
-    )
-)  # fmt: skip
+# What an argument shows itself to be by its text, among what can be refused.
+_SHOWN = re.compile(
+    r"""
+      (?P<text>\w{0,3}\".*)  |  (?P<lambda>\[.*)  |  (?P<this>this)  |  (?P<new>new\b.*)
+    | (?P<bool>true|false)  |  (?P<null>nullptr|NULL)
+    | (?P<float>[-+]?\s*(?!0[xX])(?=\.?\d)[\d'a-zA-Z]*[.eE][\w'.+-]*)
+    | (?P<integer>[-+]?\s*(?:0[xX][\w']+|\d[\d'a-df-zA-DF-Z]*))
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+# The same of what its type tells, so that its name may.
+_SHOWN_BY_NAME = (
+    ("qos", re.compile(r"rclcpp\s*::\s*\w*QoS|(?i:qos)\w*\s*(?![\w\s:({])")),
+    ("profile", re.compile(r"rmw_qos_profile|(?i:qos|profile)\w*\s*(?![\w\s:({])")),
+)
 _SPACE = re.compile(r"\s*")
 _MARKS = re.compile(r"[()\[\]{},;<\"']|/[/*]|\.\.\.")
 _LITERALS = {'"': re.compile(r'"(?:[^"\\\n]|\\.)*"'), "'": re.compile(r"'(?:[^'\\\n]|\\.)*'")}
 _CONSTRUCTED = re.compile(r"\s*(?:[({]|>\s*\(|[A-Za-z_]\w*\s*(?:\(|=?\s*\{))")
+_NAMES = re.compile(r"\s+([A-Za-z_]\w*(?:\s*,\s*[A-Za-z_]\w*){0,9})\s*[;={(]")
 _FARTHEST, _FAR = 4000, 160
 # Beyond these, a file is no person's, and reading on would take too long.
 _DEEPEST, _MOST_MENTIONS = 48, 5000
@@ -177,9 +182,13 @@ def _list_mentions(text: str, word: str) -> Iterator[Mention]:
         opened = types.end() if types is not None else end
         constructed = _CONSTRUCTED.match(text, opened)
         construction = _parse_arguments(text, constructed.end() - 1) if constructed is not None else None
+        declared = _NAMES.match(text, opened)
+        names = tuple(declared[1].replace(",", " ").split()) if declared is not None else ()
+        if names and construction is not None and construction.number == 0 and text[constructed.end() - 1] == "(":
+            construction = None  # `Type name()` declares a function
         opened = _SPACE.match(text, opened).end()  # type: ignore[union-attr]
         call = _parse_arguments(text, opened) if text.startswith("(", opened) else None
-        yield Mention(word, at, form, ahead, of_std, call, construction, templated, typed, listed)
+        yield Mention(word, at, form, ahead, of_std, call, construction, templated, typed, listed, names)
 
 
 def _find_end_before(text: str, at: int) -> int:
@@ -202,14 +211,23 @@ def _is_declared(text: str, before: int, at: int) -> bool:
     return last != "" and last not in _NO_TYPES and not last.isupper() and not last.startswith("__")
 
 
-def _show(given: str) -> frozenset[str]:
-    return frozenset(kind for kinds, pattern in _SHOWN if pattern.search(given) for kind in kinds)
+def _show(argument: str) -> tuple[str, ...]:
+    if "/" in argument:
+        argument = COMMENT.sub(" ", argument)
+    argument = argument.strip()
+    while argument.startswith("(") and argument.endswith(")"):
+        argument = argument[1:-1].strip()
+    shown = _SHOWN.fullmatch(argument)
+    if shown is not None and shown.lastgroup is not None:
+        return (shown.lastgroup,)
+    return tuple(kind for kind, pattern in _SHOWN_BY_NAME if pattern.search(argument))
 
 
 @lru_cache(maxsize=64)  # a call is often looked at as a construction too
 def _parse_arguments(text: str, at: int) -> Given:
     """What a bracket gives that opens at an offset."""
-    depth, commas, place = 1, 0, at + 1
+    depth, place = 1, at + 1
+    starts = [place]
     while (mark := _MARKS.search(text, place, at + _FARTHEST)) is not None:
         sign, place = mark.group(), mark.end()
         if sign in "([{":
@@ -219,10 +237,12 @@ def _parse_arguments(text: str, at: int) -> Given:
         elif sign in ")]}":
             depth -= 1
             if depth == 0:
-                given = text[at + 1 : place - 1]
-                return Given(commas + 1 if given.strip() else 0, _show(given))
+                ends = (*(start - 1 for start in starts[1:]), place - 1)
+                given = [text[start:end] for start, end in zip(starts, ends, strict=True)]
+                shown = tuple(map(_show, given))
+                return Given(len(given) if len(given) > 1 or given[0].strip() else 0, shown if any(shown) else ())
         elif sign == "," and depth == 1:
-            commas += 1
+            starts.append(place)
         elif sign == ";" and depth == 1:
             return Given(-1)  # the body of a class
         elif sign == "<" and depth == 1:

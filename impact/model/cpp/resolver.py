@@ -212,13 +212,6 @@ class KnownFile:
         """Names that it declares in any way, outside of functions."""
         return frozenset((*self.classes, *self.names, *self.members, *self.facts.defined))
 
-    def list_members_of_type(self, class_: str) -> Iterator[str]:
-        """The members that are declared as objects of a type. class_: the last part of the type."""
-        for one in self.declarations.classes if self.mentions(class_) else ():
-            for name, those in one.members.items():
-                if any(each.kind == "variable" and _ends_in(each.type, class_) for each in those):
-                    yield name
-
     def declares_in(self, scope: str, word: str) -> bool:
         """Whether it declares a name in a namespace."""
         full = f"{scope}::{word}"
@@ -777,12 +770,6 @@ def _find_kind(last: str) -> tuple[str, int | None]:
     if last in _SEQUENCES:
         return "sequence", 1
     return ("map", 2) if last in _MAPS else ("tuple", None) if last in _TUPLES else ("", 0)
-
-
-def _ends_in(written: str, class_: str) -> bool:
-    """Whether a type as written is an object of a class, of which the last part is given."""
-    parts = parse_type(written)
-    return not (parts.pointer or parts.array or parts.tail) and parts.outer.rpartition("::")[2] == class_
 
 
 def _select_only(found: set[T]) -> T | None:

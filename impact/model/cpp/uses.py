@@ -95,7 +95,8 @@ class ApiUses:
         return any(not names.isdisjoint(file.words) for file in self.resolver.files)
 
     def _differs(self, found: FoundName) -> bool:
-        return self.vocabulary.names[found.name].differs(found.how, found.arguments, found.given, found.templated)
+        given = [(shown,) if shown else () for shown in found.given]
+        return self.vocabulary.names[found.name].differs(found.how, found.arguments, given, found.templated)
 
     def _resolve_use(self, use: Written) -> FoundName | None:
         if use.form == "member":
@@ -243,17 +244,27 @@ class ApiUses:
         parts = (name.text.split("::")[-2:] for name in known.facts.qualified)
         owners = {one[0] for one in parts if one[0] == one[-1]} | known.type_names
         homes = [file for file in files if not owners.isdisjoint(file.type_names)]
-        declared = (name for file in homes for class_ in classes for name in file.list_members_of_type(class_))
-        members = sorted({name for name in declared if known.mentions(name)})
-        for use in known.list_uses(one for one in known.list_mentions(members) if one.listed) if members else ():
+        declared: dict[str, set[str]] = {}
+        for file in homes:
+            for mention in file.list_mentions(sorted(filter(file.mentions, classes))):
+                for name in filter(known.mentions, mention.names):
+                    declared.setdefault(name, set()).add(mention.word)
+        mentions = known.list_mentions(sorted(declared)) if declared else ()
+        listed = (one for one in mentions if one.listed and self._may_construct(declared[one.word], one))
+        for use in known.list_uses(listed):
             if use.form == "initializer":
                 yield from self._list_differing(resolver.resolve_variable(use.word, use.place), use)
-        emplacing = list(filter(known.mentions, _EMPLACING))
-        for use in known.list_uses(known.list_mentions(emplacing)) if emplacing else ():
+        mentions = known.list_mentions(emplacing) if (emplacing := list(filter(known.mentions, _EMPLACING))) else ()
+        for use in known.list_uses(one for one in mentions if self._may_construct(classes, one)):
             value = resolver.resolve_value(use.object, use.place) if use.object is not None else None
             holder = value.reach(use.arrow) if value is not None else None
             if holder is not None and holder.kind == _EMPLACING[use.word]:
                 yield from self._list_differing(holder.parts[0], use)
+
+    def _may_construct(self, classes: Iterable[str], mention: Mention) -> bool:
+        """Whether arguments behind a word may be those of a constructor that differs between versions, of a class
+        whose name ends with one of some words."""
+        return any(self._may_be_any(self.vocabulary.list_constructors(one), mention) for one in classes)
 
     def _list_differing(self, type_: CppType | None, use: Written) -> Iterator[FoundName]:
         """The constructor of a class that a use calls, where that may be wrong."""
@@ -410,7 +421,7 @@ def _may_differ(known: ChangingName, mention: Mention) -> bool:
     given = mention.construction if known.what == "constructor" else mention.call
     if given is None or given.number == UNREAD:
         return given is not None
-    return known.differs("call", given.number, known.refuses & given.shown, mention.templated)
+    return known.differs("call", given.number, given.shown, mention.templated)
 
 
 def _is_among(class_: str, names: Collection[str]) -> bool:

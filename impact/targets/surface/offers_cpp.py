@@ -4,7 +4,7 @@ longer overriding, on its way out. Asked of the names that only some stored vers
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 
 from ...facts.surface import Entity, format_declaration
@@ -182,8 +182,9 @@ def _check_call(offers: Offers, offered: Offered, arguments: int, given: tuple[s
     here = list_callable_forms(offered.here)
     if not here:
         return None
-    if offered.what == "constructor" and arguments < 2:
-        return None  # what the compiler makes by itself is not told
+    shown = [(one,) for one in given]
+    if offered.what == "constructor" and may_be_implicit(offered.name, here, arguments, shown):
+        return None
     fitting = [one for one in here if one.accepts(arguments)]
     if not fitting or (any(given) and not any(_takes(one, given) for one in fitting)):
         for event, form, earlier in iterate_other_forms(offers, offered):
@@ -198,6 +199,24 @@ def _check_call(offers: Offers, offered: Offered, arguments: int, given: tuple[s
     return None
 
 
+def may_be_implicit(name: str, here: Iterable[Overload], arguments: int, given: Sequence[Sequence[str]]) -> bool:
+    """Whether a call may be one of a constructor that no header declares, since the compiler makes it: one that copies,
+    or takes nothing where no other is declared. here: those that are. given: by argument, what it may show itself to
+    be."""
+    if arguments == 0:
+        return not any(makes_anew(one, name) for one in here)
+    return arguments == 1 and not any(_ANYTHING.intersection(shown) for shown in given)
+
+
+_COPIED = re.compile(r"(?:const )?(?:\w*::)*(?:<.*>)?(?: const)?&{1,2}")
+
+
+def makes_anew(overload: Overload, name: str) -> bool:
+    """Whether a constructor is another than the ones that take nothing or copy. name: its own, in full."""
+    class_ = name.rpartition("::")[2]
+    return any(type_ and not _COPIED.fullmatch(type_.replace(class_, "")) for type_ in overload.types)
+
+
 def list_callable_forms(form: Form | None) -> list[Overload]:
     """The overloads of a form that may be called."""
     return [one for one in form.overloads if "deleted" not in one.traits] if form is not None else []
@@ -208,6 +227,7 @@ def _takes(overload: Overload, given: Iterable[str]) -> bool:
     return not any(shown in list_refused_kinds(type_) for shown, type_ in zip(given, overload.types, strict=False))
 
 
+# What an argument may show itself to be and no object of a class is.
 _ANYTHING = frozenset(("text", "float", "integer", "bool", "null", "lambda", "this", "new"))
 # Types of parameters, to what an argument may show itself to be that is not converted to them. `0` is a null pointer,
 # and a pointer is a bool; of other classes, constructors may take anything.
