@@ -505,11 +505,26 @@ class Vocabulary:
         return self._known[self.classes[full]].pure.get(full, ()) if full in self.classes else ()
 
     @cached_property
+    def pure_words(self) -> dict[str, frozenset[str]]:
+        """Last parts of the methods that only some versions make others implement, with those of the classes that have
+        them, and of those derived from them."""
+        owners = ((full.rpartition("::")[2], owner) for known in self._wanted
+                  for owner, methods in known.pure.items() for full in methods)  # fmt: skip
+        return {
+            word: frozenset().union(*map(self.list_speakers, every)) for word, every in group_pairs(owners).items()
+        }
+
+    @cached_property
     def speakers_of_pure(self) -> frozenset[str]:
         """Last parts of the classes with methods that only some versions make others implement, and of those derived
         from them."""
-        owners = (owner for known in self._wanted for owner in known.pure)
-        return frozenset().union(*(self.list_speakers(owner) for owner in owners))
+        return frozenset().union(*self.pure_words.values())
+
+    def has_pure(self, bases: frozenset[str], words: frozenset[str]) -> bool:
+        """Whether a class may lack such a method. bases: words of its bases; words: of the file that defines it."""
+        return any(
+            word not in words and not speakers.isdisjoint(bases) for word, speakers in self.pure_words.items()
+        )
 
     @cache_method
     def list_constructors(self, word: str) -> tuple[str, ...]:

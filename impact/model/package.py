@@ -927,7 +927,7 @@ class PackageJoin:
         are compiled."""
         from .api import ASSIGNING, Vocabulary
         from .cpp.resolver import Resolver
-        from .cpp.uses import ApiUses
+        from .cpp.uses import ApiUses, collect_bases
 
         if self.changing is None:
             return
@@ -955,11 +955,9 @@ class PackageJoin:
             own = [path, *sorted(to for to in self.list_reached(path) if to != path and to in spoken)]
             offered = self.list_offered(path)
             near = [*(spoken[at] for at in own if at in spoken), *map(self.list_words, offered)]
-            has_asked = (
-                has_asked
-                and any(not one.isdisjoint(vocabulary.speakers_of_pure) for one in near)
-                and not asked_words.isdisjoint(self.load(path).type_names)
-            )
+            if has_asked:
+                bases = collect_bases(asked_words & self.load(path).type_names, map(self.load, (*own, *offered)))
+                has_asked = vocabulary.has_pure(bases, spoken[path])
             words = [word for word in sorted(words) if vocabulary.can_be_meant(word, near)]
             # What a class initializes is its own, so that its package declares it.
             sources = [spoken[at] for at in own if at in spoken] if initializes else []

@@ -19,6 +19,7 @@ import msgspec
 
 from ..condition import Condition
 from ..place import Problem, Reference
+from .names import cut_templates
 
 
 class Include(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -53,8 +54,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     namespaces: those that it adds to. type_names: last parts of the types that it seems to define, aliases among
     them; announced: of those that it only declares; aliased: of the qualified names in typedefs, which need no more
     than an announcement. variables: qualified types of which some line declares a variable or member itself, not a
-    pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). derives:
-    something like `class A : public B` stands in it. initializes: a constructor may initialize members, or a
+    pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). parents:
+    derived classes and aliases of types, with the words of their bases or of what they stand for. initializes: a constructor may initialize members, or a
     container makes elements (`emplace_back`). code: a digest of all but comments, literals, includes and blanks.
     """
 
@@ -75,7 +76,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     aliased: tuple[str, ...] = ()
     variables: tuple[str, ...] = ()
     made: tuple[str, ...] = ()
-    derives: bool = False
+    parents: tuple[tuple[str, str], ...] = ()
     initializes: bool = False
     code: str = ""
 
@@ -546,7 +547,7 @@ def extract(data: bytes) -> CppFile:
         aliased=_list_aliased_names(visible) if "typedef" in tokens_text else (),
         variables=_list_variable_types(visible),
         made=_list_made_classes(visible, tokens_text),
-        derives=any(pattern.search(visible) is not None for pattern in _DERIVED),
+        parents=_list_parents(visible),
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
     )
@@ -632,9 +633,14 @@ _TYPE = re.compile(
 _TYPE_WORDS = ("struct", "class", "union", "enum", "using", "typedef", "ROS_DECLARE_MESSAGE")
 _BEGIN_TYPES = {word: re.compile(rf"{word}(?<!\w{word})") for word in _TYPE_WORDS}
 _MOST_TYPES = 400
-_DERIVED = [
-    re.compile(rf"{word}(?<!\w{word})\s[^;{{}}()]{{0,400}}[^:]:(?!:)[^;{{}}()]") for word in ("class", "struct")
-]
+_PARENTS = (
+    *(
+        (re.compile(rf"{word}(?<!\w{word})\s([^;{{}}()]{{0,400}}[^:]):(?!:)([^;{{}}()]{{1,1000}})"), 1, 2)
+        for word in ("class", "struct")
+    ),
+    (re.compile(r"using(?<!\wusing)\s{1,20}([^\W\d]\w*)\s{0,20}=([^;{}()]{1,400})"), 1, 2),
+    (re.compile(r"typedef(?<!\wtypedef)\s([^;{}()]{1,400}?)([^\W\d]\w*)\s*;"), 2, 1),
+)
 _ANNOUNCED = [
     re.compile(rf"{word}(?<!\w{word})\s+([A-Za-z_]\w*)(?:\s*:\s*\w+)?\s*;") for word in ("class", "struct", "enum")
 ]
@@ -664,6 +670,16 @@ def _list_type_names(visible: str, tokens_text: str) -> tuple[tuple[str, ...], t
 def _list_aliased_names(visible: str) -> tuple[str, ...]:
     names = (name for alias in _ALIAS.findall(visible) for name in _LAST_PART.findall(alias))
     return tuple(dict.fromkeys(map(sys.intern, names)))
+
+
+def _list_parents(visible: str) -> tuple[tuple[str, str], ...]:
+    found = []
+    for pattern, head, meant in _PARENTS:
+        for match in pattern.finditer(visible):
+            names = [word for word in _IDENTIFIER.findall(cut_templates(match[head])) if word != "final"]
+            if names:
+                found.append((sys.intern(names[-1]), " ".join(_IDENTIFIER.findall(match[meant]))))
+    return tuple(dict.fromkeys(found))
 
 
 def _list_made_classes(visible: str, tokens_text: str) -> tuple[str, ...]:

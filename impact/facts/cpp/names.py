@@ -5,14 +5,19 @@ import re
 _ARGUMENTS = re.compile(r"<[^<>]*>")
 
 
-def strip_templates(text: str) -> str:
-    """A name without its template arguments and white space."""
+def cut_templates(text: str) -> str:
+    """A text without the template arguments in it."""
     while "<" in text:
         shorter = _ARGUMENTS.sub("", text)
         if shorter == text:
             break
         text = shorter
-    return "".join(text.split())
+    return text
+
+
+def strip_templates(text: str) -> str:
+    """A name without its template arguments and white space."""
+    return "".join(cut_templates(text).split())
 
 
 def join_scope(scope: str, name: str) -> str:

@@ -226,7 +226,7 @@ def _show(argument: str) -> tuple[str, ...]:
 @lru_cache(maxsize=64)  # a call is often looked at as a construction too
 def _parse_arguments(text: str, at: int) -> Given:
     """What a bracket gives that opens at an offset."""
-    depth, place = 1, at + 1
+    depth, place, angle = 1, at + 1, -1
     starts = [place]
     while (mark := _MARKS.search(text, place, at + _FARTHEST)) is not None:
         sign, place = mark.group(), mark.end()
@@ -237,6 +237,8 @@ def _parse_arguments(text: str, at: int) -> Given:
         elif sign in ")]}":
             depth -= 1
             if depth == 0:
+                if 0 < angle < starts[-1] and ">" in text[angle:place]:
+                    return Given(UNREAD)
                 ends = (*(start - 1 for start in starts[1:]), place - 1)
                 given = [text[start:end] for start, end in zip(starts, ends, strict=True)]
                 shown = tuple(map(_show, given))
@@ -249,6 +251,8 @@ def _parse_arguments(text: str, at: int) -> Given:
             types = find_template_arguments(text, place)
             if types is not None and "," in types.group():
                 return Given(UNREAD)
+            if types is None and angle < 0:
+                angle = place
         elif sign == "..." and depth == 1:
             return Given(UNREAD)
         elif sign == "//":

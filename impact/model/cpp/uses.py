@@ -3,6 +3,7 @@
 import re
 from collections.abc import Collection, Iterable, Iterator
 
+from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.cpp.schema import CodePlace, CodeSpot, CppClass, Expr, WrittenParameter
 from ...facts.cpp.schema import CppUse as Written
@@ -44,7 +45,7 @@ class ApiUses:
             for found in (self._resolve_use(use), self._find_construction(use)):
                 if found is not None and found.package not in home and self._differs(found):
                     yield found
-        if known.facts.derives:
+        if known.facts.parents:
             declared = {one.word for one in mentions if one.typed and one.call is not None}
             yield from (found for found in self._find_overrides(declared) if found.package not in home)
 
@@ -332,7 +333,9 @@ class ApiUses:
     def _find_overrides(self, words: Collection[str]) -> Iterator[FoundName]:
         """Methods that classes of the file declare and that a base in another package has, virtual in some version."""
         names = self.vocabulary.names
-        virtual = {word for word in words if self._is_near(self.vocabulary.list_virtual_speakers(word))}
+        own = (name for name, _ in self.resolver.known.facts.parents)
+        bases = collect_bases(own, self.resolver.files) if words else frozenset[str]()
+        virtual = {word for word in words if not bases.isdisjoint(self.vocabulary.list_virtual_speakers(word))}
         for class_ in self.resolver.known.declarations.classes if virtual else ():
             if not class_.bases:
                 continue
@@ -393,7 +396,7 @@ class ApiUses:
         """Methods that a base class in another package makes others implement in some version, and that a class of the
         file does not have of which objects are made. exported: the names of such classes."""
         known = self.resolver.known
-        for class_ in known.declarations.classes if known.facts.derives else ():
+        for class_ in known.declarations.classes if known.facts.parents else ():
             if class_.open or class_.template or not _is_among(class_.name, exported):
                 continue
             own = self.resolver.list_own_lineage(class_.name)
@@ -414,6 +417,20 @@ class ApiUses:
 
     def _find_first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
         return next((found for one in classes if (found := self.vocabulary.find_member(one, word)) is not None), None)
+
+
+def collect_bases(names: Iterable[str], files: Iterable[KnownFile]) -> frozenset[str]:
+    """Words that the bases of some classes can be named by, by what some files say of these and of aliases. names: the
+    last parts of the classes."""
+    parents = group_pairs(pair for file in files for pair in file.facts.parents)
+    waiting = list(dict.fromkeys(names))
+    seen, found = set(waiting), set[str]()
+    for name in waiting:
+        more = {word for meant in parents.get(name, ()) for word in meant.split()}
+        found |= more
+        waiting.extend(more - seen)
+        seen |= more
+    return frozenset(found)
 
 
 def _may_differ(known: ChangingName, mention: Mention) -> bool:

@@ -179,16 +179,19 @@ def test_names_of_types(text, names):
 
 
 @pytest.mark.parametrize(
-    ("text", "made", "derives", "initializes"),
+    ("text", "made", "parents", "initializes"),
     [
-        ("auto a = new A(1); auto b = std::make_shared<n::B>();", ("A", "n::B"), False, False),
-        ("class A : public B { A() : b_(1) {} };", (), True, True),
-        ("struct A { n::B b; }; // new A(), class A : public B", (), False, False),
+        ("auto a = new A(1); auto b = std::make_shared<n::B>();", ("A", "n::B"), (), False),
+        ("class X_API A final : public B { A() : b_(1) {} };", (), (("A", "public B"),), True),
+        ("template<class T> struct A<T *>\n  : n::B<T>, C {};", (), (("A", "n B T C"),), False),
+        ("struct A { n::B b; void f() { v.emplace_back(1); } }; // new A(), class A : public B", (), (), True),
+        ("using A = n::B<C>; typedef ::n::D const * E; using n::F; typedef void (*G)(H);",
+         (), (("A", "n B C"), ("E", "n D const")), False),
     ],
-)
-def test_what_is_made_derived_and_initialized(text, made, derives, initializes):
+)  # fmt: skip
+def test_what_is_made_derived_and_initialized(text, made, parents, initializes):
     facts = extract(text.encode())
-    assert (facts.made, facts.derives, facts.initializes) == (made, derives, initializes)
+    assert (facts.made, facts.parents, facts.initializes) == (made, parents, initializes)
 
 
 def test_short_words_stand_apart():
