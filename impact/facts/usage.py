@@ -96,6 +96,7 @@ _INTEGER_CAST = re.compile(r"static_cast|\bint\s*\(|\(int\)|\(long\)|\b(?:round|
 _OPENED = re.compile(rb"\s*\(")
 _AHEAD_OF_DECLARED = frozenset((b"", b" ", b"\t", b"\n", b":"))
 _SCOPES = re.compile(rb"(?:[A-Za-z_]\w*::)+\Z")
+_NO_TYPE_ENDS = frozenset((b"", b";", b"{", b"}", b",", b"(", b"=", b":"))
 # A type at the end of a line that begins no comment.
 _TYPE_AHEAD = re.compile(rb"\A(?!\s*(?://|\*))[^/\n]*?([A-Za-z_]\w*|[>*]|(?<!&)&)[ \t]+\Z")
 # A macro in the place of a type: `SERVICE_PTR(T) create(...)`.
@@ -201,6 +202,8 @@ def declares(data: bytes, function: str) -> bool:
             ahead = _SCOPES.sub(b"", data[start:at])
             if start and (not ahead or ahead.isspace()):
                 ahead = data[_find_line_start(data, start - 1) : start - 1].rstrip() + b" "
+            if ahead.rstrip(b" \t")[-1:] in _NO_TYPE_ENDS:
+                continue
             found = _TYPE_AHEAD.search(ahead) or _MACRO_AHEAD.search(ahead)
             if found is not None and found.group(1).decode("ascii", "replace") not in _NOT_A_TYPE:
                 return True

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from ...edges.memory import cache_method
 from ..targets.target import Provider
@@ -32,11 +32,17 @@ _PLAIN_FOLDERS = frozenset(("include", "src", "lib"))
 def _may_be_called_after(name: str, wanted: str) -> bool:
     """Whether a library's package may be called after what is wanted of it. A package that carries one library is
     called after all of the library's name; a release of many may be called after its beginning."""
+    whole, stem = _find_stems(wanted)
     if name.endswith("_vendor"):
-        whole = re.sub(r"[^a-z]", "", re.split(r"/|::", wanted.lower())[0])
         return len(whole) >= _SHORTEST and whole in name.replace("_", "")
-    stem = re.split(r"[^a-z]", wanted.lower())[0]
     return len(stem) >= _SHORTEST and stem in name
+
+
+@lru_cache(maxsize=4096)
+def _find_stems(wanted: str) -> tuple[str, str]:
+    """The letters of the first part of something wanted, and the first of them that stand together."""
+    first = re.split(r"/|::", wanted.lower())[0]
+    return re.sub(r"[^a-z]", "", first), re.split(r"[^a-z]", wanted.lower())[0]
 
 
 def is_called_after(name: str, folder: str) -> bool:

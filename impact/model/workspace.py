@@ -448,7 +448,8 @@ def is_interface_header(rest: str, names: Iterable[str]) -> bool:
 
 def _group(named: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
     """Names to those that have them, each once and in order. named: pairs of the two."""
-    return {name: list(dict.fromkeys(owners)) for name, owners in group_pairs(named).items()}
+    groups = group_pairs(named)
+    return {name: list(dict.fromkeys(those)) if len(those) > 1 else those for name, those in groups.items()}
 
 
 def link(

@@ -172,7 +172,7 @@ def _list_mentions(text: str, word: str) -> Iterator[Mention]:
             form = "declared"
         opened = _SPACE.match(text, end).end()  # type: ignore[union-attr]
         last = text[before - 1 : before]
-        listed = text.startswith(("(", "{"), opened) and last in (":", ",")
+        listed = form != "scoped" and last in (":", ",") and text.startswith(("(", "{"), opened)
         typed = last in ("*", "&") or (before < at and (last in (">", "]") or last.isalnum() or last == "_"))
         templated = text.startswith("<", opened)
         types = find_template_arguments(text, opened + 1) if templated else None
