@@ -148,10 +148,10 @@ class ChangingName:
         """Whether one of the versions takes no such arguments, and one beside it may."""
         for one in self.forms:
             here = [form for form in list_callable_forms(one.standing.here) if form.accepts(arguments)]
-            if not here or any(_surely_takes(form, given) for form in here):
+            if not here or any(_is_accepted(form, given) for form in here):
                 continue
             others = (form for other in _list_other_forms(one.standing) for form in list_callable_forms(other))
-            if any(form.accepts(arguments) and _may_take(form, given) for form in others):
+            if any(form.accepts(arguments) and _may_accept(form, given) for form in others):
                 return True
         return False
 
@@ -194,13 +194,13 @@ def _has_other_default(standing: Standing) -> bool:
     return bool(standing.past) and all(reported.kind == "default" for reported in standing.past[-1].reported)
 
 
-def _surely_takes(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
+def _is_accepted(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
     """Whether no argument shows itself to be what its parameter does not take."""
     pairs = zip(given, overload.types, strict=False)
     return all(list_refused_kinds(type_).isdisjoint(shown) for shown, type_ in pairs)
 
 
-def _may_take(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
+def _may_accept(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
     """Whether each argument may be something that its parameter takes."""
     pairs = zip(given, overload.types, strict=False)
     return all(not shown or not list_refused_kinds(type_).issuperset(shown) for shown, type_ in pairs)
