@@ -181,11 +181,13 @@ def _list_mentions(text: str, word: str) -> Iterator[Mention]:
             continue
         opened = types.end() if types is not None else end
         constructed = _CONSTRUCTED.match(text, opened)
-        construction = _parse_arguments(text, constructed.end() - 1) if constructed is not None else None
         declared = _NAMES.match(text, opened)
         names = tuple(declared[1].replace(",", " ").split()) if declared is not None else ()
-        if names and construction is not None and construction.number == 0 and text[constructed.end() - 1] == "(":
-            construction = None  # `Type name()` declares a function
+        construction = None
+        if constructed is not None:
+            construction = _parse_arguments(text, constructed.end() - 1)
+            if names and construction.number == 0 and text[constructed.end() - 1] == "(":
+                construction = None  # `Type name()` declares a function
         opened = _SPACE.match(text, opened).end()  # type: ignore[union-attr]
         call = _parse_arguments(text, opened) if text.startswith("(", opened) else None
         yield Mention(word, at, form, ahead, of_std, call, construction, templated, typed, listed, names)
