@@ -56,7 +56,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     than an announcement. variables: qualified types of which some line declares a variable or member itself, not a
     pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). parents:
     derived classes and aliases of types, with the words of their bases or of what they stand for. initializes: a
-    constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but comments, literals, includes and blanks.
+    constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
+    comments, literals, includes and blanks.
     """
 
     includes: tuple[Include, ...]
