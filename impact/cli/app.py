@@ -345,12 +345,20 @@ def data_status(
 
 @_add_command(data_app, "build")
 def data_build(
-    rosdistro: Path = _make_argument("Clone of the rosdistro git repository with its tags, bare or not.", default=...),
-    output: Path = _make_option("Folder to write the snapshot to.", "--output", "-o", default=...),
+    sources: Path = _make_argument(
+        "TOML file that names the sources of all tables; or a clone of rosdistro, for the snapshot alone.",
+        default=...,
+    ),
+    output: Path = _make_option("Data folder to write to.", "--output", "-o", default=...),
     work: Path | None = _make_option("Folder for intermediate results; the next run continues from it."),
-    meta_ros: Path | None = _make_option("Clone of ros/meta-ros, for the dependencies of released packages."),
+    meta_ros: Path | None = _make_option("Beside a clone of rosdistro: one of ros/meta-ros, for dependencies."),
+    step: list[str] = _make_option("Build this table alone; can be given several times."),
+    again: list[str] = _make_option("Build this table though it was built already."),
 ) -> None:
-    """Rebuild the snapshot from git repositories."""
+    """Rebuild the shipped data from git repositories, package indices and compilers.
+
+    Exit status: 0 built, 2 a table could not be built.
+    """
 
 
 @_add_command(data_app, "update")

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ...edges.console import escape_json, format_count, make_step_reporter, run_command, say
+from ...edges.console import UserError, escape_json, format_count, make_step_reporter, run_command, say
 from .output import READ_SO_FAR, make_command, print_answer
 
 
@@ -28,25 +28,60 @@ def data_status(format: str) -> str:
     return "\n".join(lines)
 
 
-def data_build(rosdistro: Path, output: Path, work: Path | None, meta_ros: Path | None) -> int:
-    """Builds the snapshot from git repositories."""
+def data_build(
+    sources: Path, output: Path, work: Path | None, meta_ros: Path | None, step: list[str], again: list[str]
+) -> int:
+    """Builds the data that a TOML file names the sources of; the snapshot alone from a git repository."""
 
     def build_it() -> int:
-        from ...databuild.snapshot import build
         from ..cache import cache_folder
 
-        built = build(rosdistro, output, work or cache_folder() / "build", meta_ros, make_step_reporter())
-        print_answer(
-            f"data of {built.date} in {output}: {format_count(built.releases, 'release')}, "
-            f"{format_count(built.manifests, 'manifest')}, {format_count(built.rules, 'rosdep rule')}, "
-            f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)",
-            "text",
-        )
-        for name, count in built.unreadable.items():
-            say(f"rosimpact: {name}: {format_count(count, 'version')} of its distribution file could not be read")
-        return 0
+        kept = work or cache_folder() / "build"
+        if sources.suffix == ".toml" and not sources.is_dir():
+            if meta_ros is not None:
+                raise UserError("--meta-ros: has no effect with a file of sources; name it there, as meta_ros")
+            return _build_everything(sources, output, kept, step, again)
+        if step or again:
+            raise UserError(f"{'--step' if step else '--again'}: needs a file of sources (.toml) that names them")
+        return _build_snapshot(sources, output, kept, meta_ros)
 
-    return run_command(build_it, READ_SO_FAR, rosdistro)
+    return run_command(build_it, READ_SO_FAR, sources)
+
+
+def _build_everything(sources: Path, output: Path, work: Path, step: list[str], again: list[str]) -> int:
+    from ...databuild.everything import LOGS, build_everything
+
+    status = 0
+    for built in build_everything(sources, output, work, step, again, make_step_reporter()):
+        told = f": {'; '.join(built.said)}" if built.said else ""
+        took = f" in {built.seconds:.0f} s" if built.outcome == "made" else ""
+        print_answer(f"{built.step}: {_OUTCOMES[built.outcome]}{took}{told}", "text")
+        if built.outcome in ("failed", "blocked"):
+            status = 2
+        if built.outcome == "failed":
+            say(f"rosimpact: {built.step} failed; all that it printed is in {work / LOGS / built.step}.txt")
+    return status
+
+
+_OUTCOMES = {
+    "made": "built", "kept": "built by an earlier run", "left": "left as it is, since no sources are named",
+    "failed": "failed", "blocked": "not built",
+}  # fmt: skip
+
+
+def _build_snapshot(rosdistro: Path, output: Path, work: Path, meta_ros: Path | None) -> int:
+    from ...databuild.snapshot import build
+
+    built = build(rosdistro, output, work, meta_ros, make_step_reporter())
+    print_answer(
+        f"data of {built.date} in {output}: {format_count(built.releases, 'release')}, "
+        f"{format_count(built.manifests, 'manifest')}, {format_count(built.rules, 'rosdep rule')}, "
+        f"{built.packed / 1e6:.1f} MB ({built.unpacked / 1e6:.1f} MB unpacked)",
+        "text",
+    )
+    for name, count in built.unreadable.items():
+        say(f"rosimpact: {name}: {format_count(count, 'version')} of its distribution file could not be read")
+    return 0
 
 
 def data_update() -> int:

@@ -46,7 +46,9 @@ KINDS = {
 }
 """One letter for each kind of dependency, as stored in dependencies.entries."""
 
-DATA = Path(__file__).parent / "data"
+DATA_VARIABLE = "ROSIMPACT_DATA"
+"""A variable of the environment that names another data folder than the shipped one, as `rosimpact data build` made."""
+DATA = Path(os.environ.get(DATA_VARIABLE) or Path(__file__).parent / "data")
 
 
 class SnapshotInfo(msgspec.Struct, frozen=True):

@@ -1,0 +1,91 @@
+"""`rosimpact data build SOURCES.toml`: which steps run, what is kept, what is said of sources that are not there."""
+
+import json
+from pathlib import Path
+
+import pytest
+from rosimpact.databuild.everything import STEPS, build_everything
+from rosimpact.edges.console import UserError
+
+LISTENING = """find_path(EAR_INCLUDE_DIR ear.h)
+find_package_handle_standard_args(Ear REQUIRED_VARS EAR_INCLUDE_DIR)
+"""
+PACKAGE = "<package format='3'><name>ear_cmake</name><version>1.0.0</version></package>"
+
+
+@pytest.fixture
+def sources(tmp_path: Path) -> Path:
+    modules = tmp_path / "cmake/Modules"
+    modules.mkdir(parents=True)
+    (modules / "FindEar.cmake").write_text(LISTENING)
+    file = tmp_path / "sources.toml"
+    file.write_text('[cmake]\nmodules = ["cmake/Modules"]\n')
+    return file
+
+
+def run(sources: Path, *only: str, again: tuple[str, ...] = ()) -> dict[str, str]:
+    """What became of the steps that were not left."""
+    home = sources.parent
+    built = build_everything(sources, home / "data", home / "work", only, again)
+    return {one.step: one.outcome for one in built if one.outcome != "left"}
+
+
+def test_each_step_comes_behind_those_that_it_reads():
+    names = [step.name for step in STEPS]
+    assert all(names.index(other) < names.index(step.name) for step in STEPS for other in step.after)
+
+
+def test_what_has_sources_is_built_once(sources):
+    assert run(sources) == {"find-modules": "made"}
+    data = sources.parent / "data"
+    assert json.loads((data / "find_modules.json").read_bytes()) == {"Ear": {"header": ["ear.h"]}}
+    assert (data / "behaviour.json").stat().st_size > 1000  # reviewed tables come along
+    assert run(sources) == {"find-modules": "kept"}
+    assert run(sources, again=("find-modules",)) == {"find-modules": "made"}
+    assert run(sources, "conda") == {}
+
+
+def test_a_step_is_run_again_when_what_it_reads_changed(sources, tmp_path):
+    (tmp_path / "cmakes").mkdir()
+    (tmp_path / "cmakes/package.xml").write_text(PACKAGE)
+    (tmp_path / "cmakes/ear.cmake").write_text("function(ear_listen)\nendfunction()\n")
+    sources.write_text('commands = ["cmakes"]\n')
+    assert run(sources) == {"commands": "made"}
+    assert '"ear_listen": "ear_cmake"' in (tmp_path / "data/commands.json").read_text()
+    surfaces = tmp_path / "data/surfaces.sqlite"
+    surfaces.write_bytes(surfaces.read_bytes() + b"\0" * 512)
+    assert run(sources) == {"commands": "made"}
+
+
+def test_a_step_that_fails_blocks_those_that_read_what_it_makes(sources, tmp_path):
+    for folder in ("lists", "cmakes"):
+        (tmp_path / folder).mkdir()
+    sources.write_text('[lists]\n"debian bookworm" = "lists"\n[cmake]\nmodules = ["cmake/Modules"]\n')
+    found = {one.step: one for one in build_everything(sources, tmp_path / "data", tmp_path / "work")}
+    assert {name: one.outcome for name, one in found.items() if one.outcome != "left"} == {
+        "providers": "failed", "apt": "blocked", "sonames": "failed", "find-modules": "made",
+    }  # fmt: skip
+    assert "no Contents or no Packages index" in " ".join(found["providers"].said)
+    assert found["apt"].said == ("`providers` failed",)
+    assert (tmp_path / "work/logs/providers.txt").stat().st_size
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('clones = "nowhere"', "sources.toml: nowhere: not there; correct the path, or leave it out"),
+        ('clonse = "."', "unknown field `clonse`"),
+        ("clones = [", "sources.toml:1: "),
+        ("gcc = 13", "Expected `object`"),
+    ],
+)
+def test_what_is_wrong_with_sources_is_said(sources, text, said):
+    sources.write_text(text)
+    with pytest.raises(UserError) as told:
+        run(sources)
+    assert said in str(told.value)
+
+
+def test_an_unknown_step_is_said_with_those_there_are(sources):
+    with pytest.raises(UserError, match="no step `find`; the steps are snapshot, "):
+        run(sources, "find")
