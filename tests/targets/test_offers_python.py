@@ -150,6 +150,11 @@ def test_a_class_is_called_as_its_constructor(offers):
     assert (lost.evidence.old, lost.evidence.new) == (("arm.C(a)",), ("arm.C(a, b)",))
 
 
+def test_a_class_has_the_constructor_of_every_object(offers):
+    known = offers("2.0.0", "class C:\n  def __init__(self): pass", "class C: pass")
+    assert known.ask(use("arm.C.__init__", "call", 1), ["arm"]) is None
+
+
 def test_a_method_called_by_its_class_is_left_alone(offers):
     known = offers("2.0.0", "class C:\n  def m(self, a): pass", "class C:\n  def m(self): pass")
     assert known.ask(use("arm.C.m", "call", 2), ["arm"]) is None

@@ -108,6 +108,8 @@ class PythonOffers:
             return None
         parts = use.name.split(".")
         gone = next(name for n in range(1, len(parts) + 1) if names.find(name := ".".join(parts[:n])) is None)
+        if hasattr(object, gone.rpartition(".")[2]):
+            return None  # every class has it
         versions = offer.line.versions
         earlier, later = self._find_telling_places(offer, gone, place)
         # Versions of older distros that got it meanwhile stand before those of newer ones that have not.
