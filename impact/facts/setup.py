@@ -12,7 +12,7 @@ from msgspec import structs
 from ...edges.documents import DocumentError, load_toml
 from .markup import decode
 from .place import Problem
-from .python.constants import Constants, TextConstant, UnknownValue
+from .python.constants import MORE, Constants, TextConstant, UnknownValue
 from .python.source import PythonFile, read
 from .python.source import extract as read_python
 from .python.text import format_dotted
@@ -93,6 +93,7 @@ class _Reader(Constants):
     def __init__(self) -> None:
         super().__init__()
         self.arguments: dict[str, Any] = {}
+        self.unresolved: list[str] = []
 
     def run(self, body: list[ast.stmt]) -> None:
         """Statements in order; both branches of an if, and the body of a loop once, since each may run."""
@@ -138,6 +139,7 @@ class _Reader(Constants):
 
     def make_file(self) -> SetupFile:
         given = self.arguments
+        self.note_unknown("arguments", given.get(MORE))
         directories = given.get("package_dir")
         return SetupFile(
             # Paths of folders do as well as dotted names.

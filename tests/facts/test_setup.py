@@ -101,7 +101,7 @@ GIVEN = [
     ("setup(options={'develop': read(), 'build': {}})", "unresolved", ("options: `read()`",)),
     ("setup(options=read())", "unresolved", ("options: `read()`",)),
     ("print 'a'\nsetup(packages=['b'])", "packages", ("b",)),  # as Python 2 has it
-    ("setup(**read())", "unresolved", ("arguments are `read()`",)),
+    ("setup(**read())", "unresolved", ("arguments: `read()`",)),
 ]  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from ....edges.dispatch import collect_node_methods
 from ..place import Problem
-from ..python.text import fill_format, fill_percent, list_parameters
+from ..python.text import fill_format, fill_percent, list_parameters, make_mapping
 from .actions import (
     Action,
     ActionCondition,
@@ -573,16 +573,9 @@ class Walker:
                 arguments += value.items if isinstance(value, Items) else [Unknown(get_source(argument))]
             else:
                 arguments.append(value)
-        keywords: dict[str, Any] = {}
-        for keyword in node.keywords:
-            value = self.evaluate(keyword.value)
-            if keyword.arg is not None:
-                keywords[keyword.arg] = value
-            elif isinstance(value, Pairs):
-                for key, held in value.items:
-                    name = find_literal(key.value) if isinstance(key, TextValue) else None
-                    if name is not None:
-                        keywords[name] = held
+        given = self.evaluate_Dict(make_mapping(node)).items
+        named = [(find_literal(key.value), value) for key, value in given if isinstance(key, TextValue)]
+        keywords = {name: value for name, value in named if name is not None}
         if isinstance(function, LaunchFunction):
             return self.call_function(function, arguments, keywords)
         if isinstance(function, LaunchClass):

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, ClassVar, NamedTuple
 
 from ....edges.dispatch import collect_node_methods
-from .text import fill_format, fill_percent, format_dotted, get_source
+from .text import fill_format, fill_percent, format_dotted, get_source, make_mapping
 
 
 class TextConstant(str):
@@ -78,20 +78,20 @@ def join_path(parts: Iterable[Any], line: int) -> Any:
     return put_together(interleaved[:-1], line)
 
 
+MORE = "**"
+"""The key of what a mapping has besides, under keys that are not known."""
 JOINS = frozenset({"os.path.join", "path.join", "join", "posixpath.join", "osp.join"})
 GLOBS = frozenset({"glob", "glob.glob", "iglob", "glob.iglob"})
 SAME = frozenset({"list", "tuple", "sorted", "str", "os.path.normpath", "set"})
 
 
 class Constants:
-    """Names and what they hold, as statements assign it one after the other. unresolved: what was left out of mappings
-    that were taken apart, in one clause each."""
+    """Names and what they hold, as statements assign it one after the other."""
 
     evaluators: ClassVar[dict[type, Callable[..., Any]]]
 
     def __init__(self) -> None:
         self.names: dict[str, Any] = {}
-        self.unresolved: list[str] = []
 
     def assign(self, target: ast.expr, value: Any) -> None:
         """Takes in an assignment. What a tuple is taken apart into is not followed."""
@@ -106,17 +106,8 @@ class Constants:
                 owner[key] = value
 
     def find_keywords(self, call: ast.Call) -> dict[str, Any]:
-        """The keyword arguments of a call, those of `**` included where they are known."""
-        found: dict[str, Any] = {}
-        for keyword in call.keywords:
-            value = self.find_value(keyword.value)
-            if keyword.arg is not None:
-                found[keyword.arg] = value
-            elif isinstance(value, dict):
-                found.update(value)
-            elif isinstance(value, UnknownValue):
-                self.unresolved.append(f"arguments are {value.what}")
-        return found
+        """The keyword arguments of a call, those of `**` included where they are known, else an unknown value MORE."""
+        return self.evaluate_Dict(make_mapping(call))
 
     def find_value(self, node: ast.expr) -> Any:
         """A str (with its line), PackagePath, list, dict, or Unresolved; a file pattern is a str."""
@@ -143,6 +134,8 @@ class Constants:
                 merged[key] = value
             elif key is None and isinstance(value, dict):
                 merged.update(value)
+            else:
+                merged[MORE] = UnknownValue(key_node or value_node)
         return merged
 
     def evaluate_Name(self, node: ast.Name) -> Any:

@@ -70,6 +70,15 @@ def list_parameters(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, as
         yield "kwargs", arguments.kwarg, None
 
 
+def make_mapping(call: ast.Call) -> ast.Dict:
+    """The keyword arguments of a call as the mapping that `dict(...)` would make of them."""
+    keys: list[ast.expr | None] = [
+        ast.Constant(one.arg, lineno=one.lineno, col_offset=one.col_offset) if one.arg is not None else None
+        for one in call.keywords
+    ]
+    return ast.Dict(keys, [one.value for one in call.keywords])
+
+
 def format_dotted(node: ast.expr) -> str:
     """A path of names; nothing stands before the first dot of one that begins with anything else."""
     parts: list[str] = []
