@@ -9,7 +9,7 @@ from rosimpact.impact.model.python.api import count_unresolved
 from rosimpact.impact.model.python.own_types import OwnTypes
 
 FILES = {
-    "arm/__init__.py": "",
+    "arm/__init__.py": "from .parts import Fitted as Part",
     "arm/base.py": """
         from lib import Node, other
         class Base(Node):
@@ -39,6 +39,13 @@ FILES = {
             global turned
             turned = 3
         """,
+    "arm/parts/__init__.py": """
+        from ..base import Base as _Base, Open
+        from .made import Made as Fitted
+        from lib import gone as Open
+        Base = _Base
+        """,
+    "arm/parts/made.py": "from ..base import Base\nfrom lib import Tool\nclass Made(Tool): pass\nclass Own(Base): pass",
     "arm/every.py": "from .base import *\nfrom .make import *\n",
 }
 
@@ -60,13 +67,25 @@ FILES = {
         ("from .make import make\nmake().m()", {"lib.Node.m"}),
         ("from . import make\nmake.choose(1).m()", {"lib.Node.m"}),
         ("from .make import node\nnode.m()\nnode.clock.m()", {"lib.Node.m", "lib.other.Clock.m"}),
+        # under another name, over two modules
+        ("from .parts import Fitted\nFitted(1)", {"lib.Tool"}),
+        ("from arm import Part\nPart().m()", {"lib.Tool", "lib.Tool.m"}),
+        ("from arm import Part as P\nclass D(P):\n  def _f(self): self.m()", {"lib.Tool.m"}),
+        ("from arm import Part\nclass D(Part):\n  @classmethod\n  def _f(cls): cls.m()", {"lib.Tool.m"}),
+        ("from .parts import Made\nMade().m()", set()),
+        ("from .parts import Open\nOpen()", set()),
+        # what constructs objects
+        ("from .base import Base, Open\nBase(1)\nOpen(1)", {"lib.Node"}),
+        ("from .parts.made import Made\nclass D(Made):\n  def __init__(self): super().__init__(1)", {"lib.Tool"}),
+        ("from .parts.made import Own\nOwn(1)", set()),
+        ("from .make import make\nmake()", set()),
         ("from .make import several, each, later, turned\nseveral().m(), each().m(), later().m(), turned.m()", set()),
     ],
 )
 def test_what_own_names_are_of_other_packages(source, expected):
     files = {path: extract(textwrap.dedent(text).encode()) for path, text in FILES.items()}
     files["arm/user.py"] = extract(source.encode())
-    types = OwnTypes(files, {"arm", "base", "make", "every", "user"})
+    types = OwnTypes(files, {"arm", "base", "make", "every", "user", "parts", "made"})
     names = [types.resolve("arm/user.py", use.name) for use in files["arm/user.py"].uses]
     assert {name for several in names for name in several if name.startswith("lib.")} == expected
 

@@ -16,7 +16,8 @@ from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, P
 
 
 class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """`import module` or `from module import names`. level counts leading dots. lazy: inside a function."""
+    """`import module` or `from module import names`. level counts leading dots. lazy: inside a function. called: what
+    the names are called here, empty where that is how they are called there."""
 
     module: str
     names: tuple[str, ...]
@@ -25,6 +26,7 @@ class Import(msgspec.Struct, frozen=True, array_like=True, gc=False):
     column: int
     lazy: bool = False
     conditions: tuple[Condition, ...] = ()
+    called: tuple[str, ...] = ()
 
 
 class AttributeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -257,7 +259,9 @@ class PythonReader(ObjectUses, SourceText):
         dotted = "." * node.level + module
         column = self.find_column(node.lineno, node.col_offset)
         names = tuple(sys.intern(alias.name) for alias in node.names)
-        self.imports.append(Import(module, names, node.level, node.lineno, column, self.function, self.conditions))
+        called = tuple(sys.intern(alias.asname or alias.name) for alias in node.names)
+        self.imports.append(Import(module, names, node.level, node.lineno, column, self.function, self.conditions,
+                                   () if called == names else called))  # fmt: skip
         for alias in node.names:
             if alias.name == "*":
                 self.starred.append(dotted)
@@ -590,7 +594,7 @@ class PythonReader(ObjectUses, SourceText):
         else:
             scope.machine.pop(name, None)
         scope.bound.add(name)
-        value = self.find_text(node)
+        value = self.find_text(node) or self.find_unpacked(name, node)
         if name in scope.values and scope.values[name] != value:
             value = None
         scope.values[name] = value

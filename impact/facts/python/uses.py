@@ -15,6 +15,7 @@ from typing import NamedTuple
 import msgspec
 
 from ..condition import Condition
+from .constants import MORE
 from .values import PythonValues
 
 
@@ -30,7 +31,8 @@ class PythonUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A use of something of another module, the first one like it. more: lines and columns of further calls like it.
 
     name: dotted, import aliases resolved; a relative import has leading dots. A member of an object is called by what
-    made the object, `pkg.mod.Class.member`, whether that is a class or a function.
+    made the object, `pkg.mod.Class.member`, whether that is a class or a function. A subclass that is constructed, and
+    `super().__init__()`, is a call of the class whose constructor that is.
     how: `call`, `method` (a call of a member of an object), `member` (of an object, not called) or `override` (a method
     that a class defines; name is then that of the base's). given: of a call. parameters: of an override, as Python
     writes them, defaults as `...`.
@@ -74,12 +76,14 @@ class FieldUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class _Class(msgspec.Struct, eq=False):
-    """A class of the file. bases: as types. members: what it defines itself. objects: types of what `self` holds."""
+    """A class of the file. bases: as types. members: what it defines itself. objects: types of what `self` holds.
+    above: what super() of it is, a class of the same bases that defines nothing."""
 
     bases: list[str]
     members: set[str] = set()
     objects: dict[str, str] = {}
     methods: dict[str, tuple[int, int, str]] = {}
+    above: "_Class | None" = None
 
 
 class _Raw(NamedTuple):
@@ -101,6 +105,7 @@ _PARAMETER = "@"
 KINDS = frozenset(("msg", "srv", "action"))
 SECTIONS = frozenset(("Request", "Response", "Goal", "Result", "Feedback"))
 ELEMENT = "[]"
+CONSTRUCTORS = ("__init__", "__new__")
 # Before what one of several star imports brings.
 STARRED = "*"
 # Of types whose objects have the members of what stands in brackets, the names.
@@ -287,7 +292,7 @@ class ObjectUses(PythonValues):
         """`object.a.b`, called or not. type_: of the object. steps: the nodes of its members, the last is the whole."""
         own, outer = type_[:1] == OWN and "." not in type_, steps[-1]
         if outer.ctx.__class__ is ast.Load:
-            given = _make_call_arguments(call) if call is not None else None
+            given = self.make_call_arguments(call) if call is not None else None
             if not own or len(steps) == 1:
                 self.note(type_, steps[0].attr, given if len(steps) == 1 else None, outer)
             elif len(steps) == 2:
@@ -315,18 +320,30 @@ class ObjectUses(PythonValues):
 
     def use_of_super(self, member: str, call: ast.Call | None, node) -> None:
         """`super().member`."""
-        for base in self.inside_class.bases if self.inside_class is not None else ():
-            self.note(base, member, _make_call_arguments(call) if call is not None else None, node)
+        if self.inside_class is not None:
+            given = self.make_call_arguments(call) if call is not None else None
+            self.note(f"{OWN}{id(self.inside_class.above)}", member, given, node)
 
     def use_call(self, call: ast.Call) -> None:
-        """A call of something that an import brought."""
+        """A call of something that an import brought, or of a class of the file."""
         name = self.resolve_callee(call.func)
-        if name and name[0] != OWN and not _is_stdlib(name):
-            self.note(name, "", _make_call_arguments(call), call.func)
+        if name[:1] == OWN and name[1:] in self.classes:
+            self.note(name, "__init__", self.make_call_arguments(call), call.func)
+        elif name and name[0] != OWN and not _is_stdlib(name):
+            self.note(name, "", self.make_call_arguments(call), call.func)
             if _INTERFACE.fullmatch(name):
                 for keyword in call.keywords:
                     if keyword.arg is not None:
                         self.use_field(name, keyword.arg, (keyword.lineno, keyword.col_offset))
+
+    def make_call_arguments(self, call: ast.Call) -> CallArguments:
+        positional = sum(argument.__class__ is not ast.Starred for argument in call.args)
+        keywords: list[str] = []
+        for keyword in call.keywords:
+            unpacked = self.find_value(keyword.value) if keyword.arg is None else None
+            keywords += map(str, unpacked) if isinstance(unpacked, dict) else (keyword.arg or MORE,)
+        named = tuple(name for name in keywords if name != MORE)
+        return CallArguments(positional, named, positional < len(call.args) or len(named) < len(keywords))
 
     def use_field(self, type_: str, name: str, place: tuple[int, int]) -> None:
         self.raw_fields[type_, name] = min(place, self.raw_fields.get((type_, name), place))
@@ -344,7 +361,7 @@ class ObjectUses(PythonValues):
 
     def enter_class(self, node: ast.ClassDef) -> _Class:
         """A class of the file, from here on known by its name."""
-        found = _Class([self.resolve_callee(base) for base in node.bases])
+        found = _Class([self.resolve_callee(base) for base in node.bases if getattr(base, "id", "") != "object"])
         if node.keywords:
             found.bases.append("")  # a metaclass may add members
         known = self.classes.get(node.name)
@@ -352,7 +369,10 @@ class ObjectUses(PythonValues):
         if known is not None:
             known.bases.append("")
             found.bases.append("")
-        self.classes[str(id(found))] = found
+        found.above = _Class(found.bases)
+        self.classes.update((str(id(one)), one) for one in (found, found.above))
+        if node.decorator_list:
+            found.members.update(CONSTRUCTORS)  # which a decorator may make
         return found
 
     def enter_method(self, node) -> None:
@@ -370,12 +390,13 @@ class ObjectUses(PythonValues):
         """Every use of what is not the file's own, in the order of the source. column: of a line and an offset."""
         found: dict[tuple, PythonUse] = {}
         for raw in self.raw.values():
-            how = "member" if raw.given is None else "method" if raw.member else "call"
+            constructs = raw.member == "__init__" and raw.given is not None
+            how = "member" if raw.given is None else "method" if raw.member and not constructs else "call"
             types = list(self.list_types(raw))
             if raw.member and not self.resolve(raw.type):
                 self.count_unknown(raw.member, 1 + len(raw.more))
             for type_, alone in types:
-                name = f"{type_}.{raw.member}" if raw.member else type_
+                name = f"{type_}.{raw.member}" if raw.member and not constructs else type_
                 key = (name, how, raw.given, raw.conditions)
                 more = tuple((line, column(line, offset)) for line, offset in raw.more)
                 use = PythonUse(name, how, raw.line, column(raw.line, raw.offset), raw.given, "", raw.lazy, alone,
@@ -438,7 +459,7 @@ class ObjectUses(PythonValues):
             return
         bases = list(self.list_bases(one))
         members = one.members.union(*(self.classes[own].members for _, own in bases if own))
-        if raw.member in members or "__getattr__" in members:
+        if not members.isdisjoint(CONSTRUCTORS if raw.member == "__init__" else (raw.member, "__getattr__")):
             return
         outside = [base for base, own in bases if not own]
         yield from ((base, len(outside) == 1) for base in outside if base and not _is_stdlib(base))
@@ -532,14 +553,6 @@ def make_field_type(type_: str, name: str) -> str:
 def _is_stdlib(name: str) -> bool:
     """Whether a dotted name is one of Python's own library, in which no package of ROS has anything."""
     return name.partition(".")[0] in sys.stdlib_module_names
-
-
-def _make_call_arguments(call: ast.Call) -> CallArguments:
-    positional = [a for a in call.args if a.__class__ is not ast.Starred]
-    keywords = tuple(k.arg for k in call.keywords if k.arg is not None)
-    return CallArguments(
-        len(positional), keywords, len(positional) + len(keywords) < len(call.args) + len(call.keywords)
-    )
 
 
 def _format_parameters(arguments: ast.arguments) -> str:

@@ -56,6 +56,7 @@ class PythonValues(Constants):
 
     def __init__(self, text: str) -> None:
         super().__init__()
+        self.text = text
         self.has_rospkg = "rospkg" in text
         self.scope = PythonScope(None, False)
         self.launch_defaults: dict[str, str] = {}
@@ -76,6 +77,15 @@ class PythonValues(Constants):
         if isinstance(value, list):
             value = put_together(_flatten_list(value))
         return str(value) if isinstance(value, str) else value if isinstance(value, PackagePath) else None
+
+    def find_unpacked(self, name: str, node: ast.expr) -> dict[str, Any] | None:
+        """The mapping that a name is bound to, where all that is done with the name in the file is to unpack it."""
+        if node.__class__ not in (ast.Dict, ast.Call) or f"**{name}" not in self.text:
+            return None
+        if re.search(rf"(?<!\*\*)\b{name}\b(?!\s*=\s*(?:\{{|dict\())", self.text):
+            return None
+        value = self.find_value(node)
+        return value if isinstance(value, dict) else None
 
     def evaluate_Name(self, node: ast.Name) -> Any:
         for scope in self.scope.chain:
@@ -104,6 +114,8 @@ class PythonValues(Constants):
             if function == "joinpath" and receiver is not None:
                 arguments = [receiver, *arguments]
             return join_path(map(self.find_text, arguments), call.lineno)
+        if function == "dict" and receiver is None and not call.args:
+            return self.find_keywords(call)
         if function in ("as_posix", "resolve") and receiver is not None:
             return self.find_text(receiver)
         if function in WRAPPERS:

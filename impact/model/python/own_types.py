@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 
 from ...facts.python.reader import Import
 from ...facts.python.source import PythonFile
-from ...facts.python.uses import OWN, STARRED, TypedName, join_dotted
+from ...facts.python.uses import CONSTRUCTORS, OWN, STARRED, TypedName, join_dotted
 from .undefined import PackageModules
 
 # Steps from one name to another, which may go in circles.
@@ -25,7 +25,7 @@ class OwnTypes:
 
     def resolve(self, path: str, name: str, depth: int = 0) -> set[str]:
         """The names of other packages that a dotted name in a file may be, empty for one that is not known; none where
-        the package has it itself."""
+        the package has it itself. A class is those of its bases that its objects are constructed by."""
         if not name or depth > _DEEPEST:
             return {""}
         parts = name.lstrip(".").split(".")
@@ -51,12 +51,10 @@ class OwnTypes:
             return self._follow_imported(path, parts, depth)
         if not found.members:
             return self.resolve(path, ".".join((found.types[0], *rest)), depth + 1) if rest and found.types[0] else {""}
-        if not rest:
-            return set()
-        held = typed.get(f"{head}.{rest[0]}")
+        held = typed.get(f"{head}.{rest[0]}") if rest else None
         if held is not None:
             return self.resolve(path, ".".join((held.types[0], *rest[1:])), depth + 1) if rest[1:] else set()
-        if f" {rest[0]} " in found.members or " __getattr__ " in found.members:
+        if any(f" {name} " in found.members for name in ((rest[0], "__getattr__") if rest else CONSTRUCTORS)):
             return {""} if rest[1:] else set()
         names: set[str] = set()
         for base in found.types:
@@ -68,13 +66,15 @@ class OwnTypes:
 
     def _follow_imported(self, path: str, parts: list[str], depth: int) -> set[str]:
         """The same of a name that a module imports itself, in any case and only once."""
-        named = [item for item in self._files[path].imports if parts[0] in item.names]
+        named = [item for item in self._files[path].imports if parts[0] in (item.called or item.names)]
         if not named:
             return self._follow_starred(path, parts, depth)
         if len(named) != 1 or named[0].lazy or named[0].conditions:
             return {""}
-        return self.resolve(path, ".".join((join_dotted("." * named[0].level + named[0].module, parts[0]), *parts[1:])),
-                            depth + 1)  # fmt: skip
+        (item,) = named
+        original = item.names[(item.called or item.names).index(parts[0])]
+        dotted = join_dotted("." * item.level + item.module, original)
+        return self.resolve(path, ".".join((dotted, *parts[1:])), depth + 1)
 
     def _follow_starred(self, path: str, parts: list[str], depth: int) -> set[str]:
         """The same of a name that a star import of a module of the package brings; the last one holds."""

@@ -66,6 +66,14 @@ def told(source: str) -> set[tuple[str, str]]:
         ("from a import C\nclass D(C):\n  def f(self): self.m(1)", {("a.C.f", "override"), ("a.C.m", "method")}),
         ("from a import C\nclass D(C):\n  def _f(self): super()._f(1)", {("a.C._f", "method")}),
         ("from a import C\nclass D(C): pass\nclass E(D):\n  def _f(me): me.x", {("a.C.x", "member")}),
+        ("from a import C\nclass D(C):\n  @classmethod\n  def _f(cls): cls.m()", {("a.C.m", "method")}),
+        ("from a import C\nclass M:\n  def _f(self): pass\nclass D(M, C):\n  def _f(self): super()._f(1)", set()),
+        # a constructor is called by its class, also where that is a subclass which has none itself
+        ("from a import C\nclass D(C):\n  def __init__(self): super().__init__(1)", {("a.C", "call")}),
+        ("from a import C\nclass D(C): pass\nclass E(D, object): pass\nE(1)", {("a.C", "call")}),
+        ("from a import C\nclass D(C):\n  def __init__(self): pass\nD(1)", set()),
+        ("from a import C\nclass D(C):\n  def __new__(cls): pass\nclass E(D): pass\nE(1)", set()),
+        ("from a import C\n@dataclass\nclass D(C):\n  x: int\nD(1)", set()),
         ("from a import C\nclass D(C):\n  def _f(self): self._g()\n  def _g(self): pass", set()),
         ("from a import C\nclass D(C):\n  def _f(self):\n    self.x = 1\n    self.x.y", set()),
         ("from a import C\nclass D(C):\n  @staticmethod\n  def _f(self): self.m()", set()),
@@ -91,6 +99,28 @@ def test_members_of_what_shows_no_type_are_counted():
 def test_arguments_of_a_call():
     found = [use.given for use in uses("from a import f\nf(1, 2, k=3)\nf(*x)\nf(1, **y)")]
     assert found == [CallArguments(2, ("k",)), CallArguments(0, (), True), CallArguments(1, (), True)]
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        ("f(1, **{'k': 1, 'l': 2}, m=3)", CallArguments(1, ("k", "l", "m"))),
+        ("o = {'k': 1}\nf(**o)", CallArguments(0, ("k",))),
+        ("o = dict(k=1)\ndef g(): f(**o, l=2)", CallArguments(0, ("k", "l"))),
+        ("def g():\n  o = {}\ndef h():\n  o = {'k': 1}\n  f(**o)", CallArguments(0, ("k",))),
+        # what is not all known, or may be another mapping, or have been changed
+        ("o = {'k': 1, x: 2}\nf(**o)", CallArguments(0, ("k",), True)),
+        ("f(**{'k': 1, **x})", CallArguments(0, ("k",), True)),
+        ("o = dict(x, k=1)\nf(**o)", CallArguments(0, (), True)),
+        ("o = {'k': 1}\no['l'] = 2\nf(**o)", CallArguments(0, (), True)),
+        ("o = {'k': 1}\nprint(o)\nf(**o)", CallArguments(0, (), True)),
+        ("o = {'k': 1}\ndef g(o): f(**o)", CallArguments(0, (), True)),
+        ("if x:\n  o = {'k': 1}\nelse:\n  o = {}\nf(**o)", CallArguments(0, (), True)),
+    ],
+)
+def test_arguments_that_a_mapping_gives(source, expected):
+    found = [use.given for use in uses(f"from a import f\n{source}") if use.name == "a.f"]
+    assert found == [expected]
 
 
 @pytest.mark.parametrize(
@@ -134,6 +164,8 @@ def test_an_attribute_is_lazy_when_every_use_of_it_is():
 def test_a_second_base_class_leaves_it_open_whose_member_it_is():
     found = uses("from a import C, E\nclass D(C, E):\n    def _f(self): self.m()")
     assert {(use.name, use.alone) for use in found} == {("a.C.m", False), ("a.E.m", False)}
+    found = uses("from a import C, E\nclass D(C, E):\n    def __init__(self): super().__init__(1)")
+    assert {(use.name, use.alone) for use in found} == {("a.C", False), ("a.E", False)}
 
 
 def test_what_stands_under_a_try_says_so():
