@@ -46,7 +46,8 @@ class Attribute(NamedTuple):
 
 class Element(msgspec.Struct, eq=False):
     """An element in document order. parent: index into Document.elements, -1 for the root. text: its own text, children
-    excluded, stripped; text_offset: where that starts (the tag's own start when there is none)."""
+    excluded, stripped; text_offset: where that starts (the tag's own start when there is none). children: those right
+    in it."""
 
     name: str
     attributes: tuple[Attribute, ...]
@@ -54,10 +55,15 @@ class Element(msgspec.Struct, eq=False):
     parent: int
     text_offset: int
     text: str = ""
+    children: list["Element"] = []
 
     def get(self, name: str, default: str = "") -> str:
         """Value of an attribute, default when it is not there."""
         return next((attribute.value for attribute in self.attributes if attribute.name == name), default)
+
+    def find(self, *names: str) -> Attribute | None:
+        """The first attribute of one of these names."""
+        return next((attribute for attribute in self.attributes if attribute.name in names), None)
 
 
 class Document:
@@ -177,6 +183,8 @@ def scan(data: bytes) -> Document:
                 for m in ATTRIBUTE.finditer(rest)
             )
         elements.append(Element(name, attributes, start, open_[-1] if open_ else -1, start))
+        if open_:
+            elements[open_[-1]].children.append(elements[-1])
         if not rest.endswith("/"):
             open_.append(len(elements) - 1)
     return Document(text, elements, find_xml_problems(data))

@@ -61,6 +61,7 @@ def _add(tag: str, body: YamlNode, elements: list[Element], parent: int) -> None
     element = Element(tag, (), body.offset, parent, body.offset)
     place = len(elements)
     elements.append(element)
+    elements[parent].children.append(element)
     if body.kind == "list":
         _add_listed(body, elements, place)
     elif body.kind == "scalar":

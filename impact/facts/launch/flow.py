@@ -7,8 +7,7 @@ values are sequences of pieces.
 from __future__ import annotations
 
 import re
-
-import msgspec
+from itertools import groupby
 
 from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
@@ -169,19 +168,6 @@ def join_with_separator(values: list[Value], separator: str = " ") -> Value:
     return join_all([part for value in values for part in (make_literal(separator), value)][1:])
 
 
-# XML and YAML as one kind of tree
-
-
-class _Entity(msgspec.Struct, eq=False):
-    """An element of a launch file. attributes: the values as written, a list where YAML has one."""
-
-    tag: str
-    line: int
-    attributes: dict[str, str | list[str]] = {}
-    children: list[_Entity] = []
-    text: str = ""
-
-
 def _launch(data: bytes, kind: str) -> LaunchFile:
     document = read_document(data, kind)
     is_yaml = kind == "launch_yaml"
@@ -190,32 +176,9 @@ def _launch(data: bytes, kind: str) -> LaunchFile:
         lacking = Problem(1, "has no `launch:` list" if is_yaml else "has no `<launch>` element")
         return LaunchFile(language, 2 if is_yaml else 0, (), (*document.problems, lacking))
     generation = 2 if is_yaml else find_generation(document)
-    entities: list[_Entity] = []
-    depths: list[int] = []
-    problems = list(document.problems)
-    for element in document.elements:
-        depth = depths[element.parent] + 1 if element.parent >= 0 else 0
-        entity = _Entity(element.name if is_yaml else element.name.lower(), document.locate(element.offset)[0])
-        for attribute in element.attributes:
-            if attribute.listed:
-                items = entity.attributes.setdefault(attribute.name, [])
-                if isinstance(items, list):
-                    items.append(attribute.value)
-            elif is_yaml:
-                entity.attributes[attribute.name] = attribute.value
-            else:
-                # XML's readers make blanks of line ends and tabs in values; the first of two of a name counts.
-                entity.attributes.setdefault(attribute.name, _BLANK.sub(" ", attribute.value))
-        entity.text = _read_own_text(document, element) if element.text and entity.tag == "rosparam" else ""
-        entities.append(entity)
-        depths.append(depth)
-        if depth == DEEPEST:
-            problems.append(Problem(entity.line, f"nested more than {DEEPEST} deep"))
-        elif 0 < depth < DEEPEST:
-            entities[element.parent].children.append(entity)
-    reader = _Reader(generation)
-    actions = reader.read_actions(entities[0].children)
-    return LaunchFile(language, generation, actions, (*problems, *reader.problems))
+    reader = _Reader(document, is_yaml, generation)
+    actions = reader.read_actions(document.elements[0].children)
+    return LaunchFile(language, generation, actions, (*document.problems, *reader.problems))
 
 
 _BLANK = re.compile(r"\r\n|[\r\n\t]")
@@ -276,102 +239,106 @@ _ATTRIBUTES = {
 
 
 class _Reader:
-    """Entities to actions."""
+    """Elements to actions."""
 
-    def __init__(self, generation: int):
-        self.generation = generation
+    def __init__(self, document: Document, is_yaml: bool, generation: int):
+        self.document, self.is_yaml, self.generation = document, is_yaml, generation
         self.problems: list[Problem] = []
+        self.depth = 1
 
-    def read_actions(self, entities: list[_Entity], inside: str = "") -> tuple[Action, ...]:
-        found: list[Action] = []
-        for entity in entities:
-            found += self.read_action(entity, inside)
+    def read_actions(
+        self, elements: list[Element], inside: str = "", above: tuple[Value, ...] = ()
+    ) -> tuple[Action, ...]:
+        """inside: the kind of the action around. above: what the names of parameters begin with."""
+        if self.depth == DEEPEST:
+            self.problems += (Problem(self.find_line(one), f"nested more than {DEEPEST} deep") for one in elements)
+            return ()
+        self.depth += 1
+        found = [action for element in elements for action in self.read_action(element, inside, above)]
+        self.depth -= 1
         return tuple(found)
 
-    def read_value(self, text: str | list[str]) -> Value:
-        if isinstance(text, list):
-            items = join_with_separator([self.read_value(item) for item in text], ", ")
-            return join_all([make_literal("["), items, make_literal("]")])
-        return parse_substitutions(text, self.generation)
+    def find_line(self, element: Element) -> int:
+        return self.document.locate(element.offset)[0]
 
-    def read_action(self, entity: _Entity, inside: str) -> list[Action]:
-        kind = _KINDS.get(entity.tag)
-        if kind is None:
-            if entity.tag in _IDLE:
-                return []
-            attributes = (("text", make_literal(f"<{entity.tag}>")),)
-            return [Action("unknown", entity.line, attributes, self.read_conditions(entity))]
-        if inside == "include" and kind in ("argument", "let"):
-            kind = "pass"
-        if entity.tag == "param" and "from" in entity.attributes:
-            kind = "parameter-file"
-        if kind == "parameter":
-            return self.read_parameter(entity, ())
-        attributes = self.read_attributes(entity, kind)
-        conditions = self.read_conditions(entity)
-        if entity.tag == "timer":
-            period = self.read_value(entity.attributes.get("period", ""))
-            conditions = (*conditions, ActionCondition("after", join_all([period, make_literal(" s")]), entity.line))
-        if entity.tag == "rosparam" and entity.text:
-            fill = "subst_value" in entity.attributes
-            attributes.append(("text", self.read_value(entity.text) if fill else make_literal(entity.text)))
-        children = self.read_actions(entity.children, kind)
-        return [Action(kind, entity.line, tuple(attributes), conditions, children)]
-
-    def read_conditions(self, entity: _Entity) -> tuple[ActionCondition, ...]:
-        return tuple(
-            ActionCondition(kind, self.read_value(entity.attributes[kind]), entity.line)
-            for kind in ("if", "unless")
-            if kind in entity.attributes
-        )
-
-    def read_attributes(self, entity: _Entity, kind: str) -> list[tuple[str, Value]]:
-        found: list[tuple[str, Value]] = []
-        for name, text in entity.attributes.items():
-            if kind == "parameter-file":
-                # ROS 1's `ns` and `param` name what the file is loaded below, ROS 2's `from` the file
-                key = {"from": "file", "param": "name"}.get(name) or _ATTRIBUTES.get(name)
-                if key == "name" and "ns" in entity.attributes:
-                    continue
-                if name == "ns":
-                    below = [self.read_value(text)]
-                    if "param" in entity.attributes:
-                        below += (make_literal("/"), self.read_value(entity.attributes["param"]))
-                    found.append(("name", join_all(below)))
-                    continue
-            elif kind == "parameter" and name == "type":
-                key = "type"
-            elif name == "ros_args":
-                found += [("arguments", make_literal("--ros-args"))]
-                key = "arguments"
-            else:
-                key = _ATTRIBUTES.get(name)
-            if key == "arguments" or (key == "command" and kind == "process"):
-                found += [(key, word) for word in split_command_line(self.read_value(text))]
-            elif key is not None:
-                found.append((key, self.read_value(text)))
-        if kind in ("test", "node") and "test-name" in entity.attributes:
-            test = [value for key, value in found if key == "test-name"]
-            found = [(key, value) for key, value in found if key != "test-name"]
-            if "name" not in entity.attributes:
-                found.append(("name", test[0]))
+    def read_values(self, element: Element) -> dict[str, Value]:
+        """The values of attributes by their names; the first of two of a name counts."""
+        found: dict[str, Value] = {}
+        for name, attributes in groupby(element.attributes, lambda one: one.name):
+            first, *more = attributes
+            # XML's readers make blanks of line ends and tabs in values.
+            texts = [one.value if self.is_yaml else _BLANK.sub(" ", one.value) for one in (first, *more)]
+            values = [parse_substitutions(text, self.generation) for text in texts]
+            if first.listed:
+                values = [join_all([make_literal("["), join_with_separator(values, ", "), make_literal("]")])]
+            found.setdefault(name, values[0])
         return found
 
-    def read_parameter(self, entity: _Entity, above: tuple[Value, ...]) -> list[Action]:
-        """A parameter, or those nested in it, whose names are joined by dots."""
-        if entity.tag == "set_use_sim_time":
-            attributes = [("name", make_literal("use_sim_time")), *self.read_attributes(entity, "parameter")]
-            return [Action("parameter", entity.line, tuple(attributes), self.read_conditions(entity))]
-        attributes = self.read_attributes(entity, "parameter")
-        name = next((value for key, value in attributes if key == "name"), make_literal(""))
-        nested = [child for child in entity.children if child.tag == "param"]
-        if nested:
-            found: list[Action] = []
-            for child in nested:
-                found += self.read_parameter(child, (*above, name, make_literal(".")))
-            return found
-        attributes = [(key, join_all([*above, value]) if key == "name" else value) for key, value in attributes]
-        return [Action("parameter", entity.line, tuple(attributes), self.read_conditions(entity))]
+    def read_action(self, element: Element, inside: str, above: tuple[Value, ...]) -> tuple[Action, ...]:
+        tag, line, values = element.name.lower(), self.find_line(element), self.read_values(element)
+        conditions = tuple(
+            ActionCondition(kind, values[kind], line) for kind in ("if", "unless") if kind in values
+        )
+        kind = _KINDS.get(tag)
+        if kind is None:
+            text = make_literal(f"<{tag}>")
+            return () if tag in _IDLE else (Action("unknown", line, (("text", text),), conditions),)
+        if inside == "include" and kind in ("argument", "let"):
+            kind = "pass"
+        if tag == "param" and "from" in values:
+            kind = "parameter-file"
+        attributes = _list_attributes(values, kind)
+        if tag == "set_use_sim_time":
+            attributes.insert(0, ("name", make_literal("use_sim_time")))
+        if kind == "parameter":
+            attributes = [(key, join_all([*above, value]) if key == "name" else value) for key, value in attributes]
+            nested = [child for child in element.children if child.name.lower() == "param"]
+            if nested:  # whose names are joined by dots
+                name = dict(attributes).get("name", join_all(above))
+                return self.read_actions(nested, "", (name, make_literal(".")))
+            return (Action(kind, line, tuple(attributes), conditions),)
+        if tag == "timer":
+            period = join_all([values.get("period", make_literal("")), make_literal(" s")])
+            conditions = (*conditions, ActionCondition("after", period, line))
+        if tag == "rosparam" and element.text:
+            text = _read_own_text(self.document, element)
+            fill = "subst_value" in values
+            attributes.append(("text", parse_substitutions(text, self.generation) if fill else make_literal(text)))
+        return (Action(kind, line, tuple(attributes), conditions, self.read_actions(element.children, kind)),)
+
+
+def _list_attributes(values: dict[str, Value], kind: str) -> list[tuple[str, Value]]:
+    """The attributes of an action from those of its element."""
+    found: list[tuple[str, Value]] = []
+    for name, value in values.items():
+        if kind == "parameter-file":
+            # ROS 1's `ns` and `param` name what the file is loaded below, ROS 2's `from` the file
+            key = {"from": "file", "param": "name"}.get(name) or _ATTRIBUTES.get(name)
+            if key == "name" and "ns" in values:
+                continue
+            if name == "ns":
+                below = [value]
+                if "param" in values:
+                    below += (make_literal("/"), values["param"])
+                found.append(("name", join_all(below)))
+                continue
+        elif kind == "parameter" and name == "type":
+            key = "type"
+        elif name == "ros_args":
+            found += [("arguments", make_literal("--ros-args"))]
+            key = "arguments"
+        else:
+            key = _ATTRIBUTES.get(name)
+        if key == "arguments" or (key == "command" and kind == "process"):
+            found += [(key, word) for word in split_command_line(value)]
+        elif key is not None:
+            found.append((key, value))
+    if kind in ("test", "node") and "test-name" in values:
+        test = [value for key, value in found if key == "test-name"]
+        found = [(key, value) for key, value in found if key != "test-name"]
+        if "name" not in values:
+            found.append(("name", test[0]))
+    return found
 
 
 def split_command_line(value: Value) -> list[Value]:

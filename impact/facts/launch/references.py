@@ -189,7 +189,7 @@ def _find_conditions(document: Document) -> list[tuple[Condition, ...]]:
     without arguments, or that cannot be told."""
     defaults: dict[str, set[str]] = {}
     for element in document.elements:
-        if element.name == "arg" and (preset := _find_attribute(element, "default", "value")) is not None:
+        if element.name == "arg" and (preset := element.find("default", "value")) is not None:
             plain = element.parent < 0 or document.elements[element.parent].name == "launch"
             if plain and not any(a.name in ("if", "unless") for a in element.attributes):
                 defaults.setdefault(element.get("name"), set()).add(preset.value)
@@ -232,10 +232,6 @@ def _read_test_of_machine(attribute: Attribute) -> Condition:
     return Condition("python", _OTHER.sub("undecided", text).strip(), attribute.name == "unless")
 
 
-def _find_attribute(element: Element, *names: str) -> Attribute | None:
-    return next((a for a in element.attributes if a.name in names), None)
-
-
 def _add_all_mentions(found: _Found, element: Element, conditional: bool) -> None:
     """Mentions in all attributes and the text of an element."""
     for attribute in element.attributes:
@@ -251,22 +247,21 @@ def _read_launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
     if kind == "launch_yaml" and not document.elements:  # arguments or parameters, called like a launch file
         return structs.replace(_read_yaml(data), problems=document.problems)
     found = _Found(document.locate)
-    given = _find_include_arguments(document)
-    for at, (element, conditions) in enumerate(zip(document.elements, _find_conditions(document), strict=True)):
+    for element, conditions in zip(document.elements, _find_conditions(document), strict=True):
         name, conditional = element.name, found.stand_under(conditions)
-        found.arguments = given.get(at)
+        found.arguments = _list_include_arguments(element) if name == "include" else None
         if name in NODES:
             _add_node(found, element, conditional)
         elif name in ("composable_node", "load_composable_node"):
-            package, plugin = _find_package(found, element), _find_attribute(element, "plugin")
+            package, plugin = _find_package(found, element), element.find("plugin")
             if plugin is not None and CLASS.match(plugin.value):
                 known = package.value if package is not None else ""
                 found.add("plugin", known, plugin.value, plugin.offset, conditional)
         elif name == "executable":
-            _add_command(found, _find_attribute(element, "cmd"), conditional)
+            _add_command(found, element.find("cmd"), conditional)
         elif name == "param":
-            _add_command(found, _find_attribute(element, "command"), conditional)
-            value = _find_attribute(element, "value")
+            _add_command(found, element.find("command"), conditional)
+            value = element.find("value")
             if value is not None and PLUGIN_KEY.search(element.get("name")):
                 for m in re.finditer(r"[^\s,\[\]'\"]+", value.value):
                     if CLASS.match(m.group()):
@@ -278,22 +273,16 @@ def _read_launch(data: bytes, kind: str = "launch_xml") -> ReferenceFile:
     return structs.replace(found.make_file(*document.problems), generation=generation)
 
 
-def _find_include_arguments(document: Document) -> dict[int, tuple[str, ...]]:
-    """Names of the arguments that each `<include>` gives, by its place among the elements; those that give all that
-    they know themselves are left out."""
-    given: dict[int, list[str]] = {
-        at: [] for at, element in enumerate(document.elements)
-        if element.name == "include" and element.get("pass_all_args").strip().lower() not in ("true", "1")
-    }  # fmt: skip
-    for element in document.elements:
-        if element.name in ("arg", "let") and element.parent in given:
-            given[element.parent].append(element.get("name"))
-    return {at: tuple(names) for at, names in given.items() if not any("$" in name for name in names)}
+def _list_include_arguments(include: Element) -> tuple[str, ...] | None:
+    """Names of the arguments that an `<include>` gives; None for one that gives all that it knows itself."""
+    names = tuple(child.get("name") for child in include.children if child.name in ("arg", "let"))
+    passes_all = include.get("pass_all_args").strip().lower() in ("true", "1")
+    return None if passes_all or any("$" in name for name in names) else names
 
 
 def _find_package(found: _Found, element: Element) -> Attribute | None:
     """The attribute that names an element's package; one that only running tells is unresolved, and None."""
-    package = _find_attribute(element, "pkg")
+    package = element.find("pkg")
     if package is None or PACKAGE.match(package.value):
         return package
     if "$" in package.value:
@@ -303,14 +292,14 @@ def _find_package(found: _Found, element: Element) -> Attribute | None:
 
 def _add_node(found: _Found, element: Element, conditional: bool) -> None:
     package = _find_package(found, element)
-    executable = _find_attribute(element, "exec", "type")
+    executable = element.find("exec", "type")
     if package is None:
         return
     if executable is None or "$" in executable.value or not executable.value.strip():
         found.add("package", package.value, "", package.offset, conditional)
         return
     found.add("executable", package.value, executable.value.strip(), package.offset, conditional)
-    arguments = _find_attribute(element, "args")
+    arguments = element.find("args")
     if package.value == "nodelet" and arguments is not None:
         loaded = re.match(r"\s*(?:load|standalone)\s+(\S+)", arguments.value)
         if loaded is not None and CLASS.match(loaded.group(1)):
@@ -332,7 +321,7 @@ def _read_robot_description(data: bytes) -> ReferenceFile:
     for element, conditions in zip(document.elements, _find_conditions(document), strict=True):
         conditional = found.stand_under(conditions)
         if element.name == "plugin":
-            library = _find_attribute(element, "filename")
+            library = element.find("filename")
             if library is not None and library.value and not any(c in library.value for c in "$/{"):
                 found.add("plugin", "", library.value, library.offset, conditional)
             elif element.text and CLASS.match(element.text):
