@@ -172,22 +172,13 @@ def extract(data: bytes) -> Manifest:
 def _list_children(document: Document, root: int) -> tuple[list[Element], list[Element]]:
     """Children of <package>, and those of its <export>. In a file that is not well-formed, where a closing tag may be
     missing, a dependency counts at any depth."""
-    children: list[Element] = []
-    exported: list[Element] = []
-    elements = document.elements
-    broken = bool(document.problems)
-    export = -1
-    for index in range(root + 1, len(elements)):
-        element = elements[index]
-        if element.parent == root:
-            children.append(element)
-            if element.name == "export":
-                export = index
-        elif element.parent == export and export != -1:
-            exported.append(element)
-        elif broken and element.name in ANY_FORMAT:
-            children.append(element)
-    return children, exported
+    top = document.elements[root]
+    exported = [inner for child in top.children if child.name == "export" for inner in child.children]
+    if not document.problems:
+        return top.children, exported
+    inside = set(exported)
+    below = (element for element in document.elements[root + 1 :] if element not in inside)
+    return [element for element in below if element.parent == root or element.name in ANY_FORMAT], exported
 
 
 def _find_first(children: list[Element], tag: str) -> Element | None:
@@ -222,10 +213,7 @@ def _is_plain(
         return False
     # catkin_pkg takes CDATA for no text, and allows elements in the description and the export section alone
     if "<![CDATA[" in document.text or any(
-        element.parent > 0
-        and document.elements[element.parent].parent == 0
-        and document.elements[element.parent].name not in ("description", "export")
-        for element in document.elements
+        child.children and child.name not in ("description", "export") for child in root.children
     ):
         return False
     count = {"name": 0, "version": 0, "description": 0, "maintainer": 0, "license": 0, "export": 0}
