@@ -10,6 +10,7 @@ from ....edges.dispatch import collect_node_methods
 from ..condition import UNDECIDED, Condition
 from ..place import Problem, Reference
 from .bound import PYTHON2_BUILTINS, PYTHON2_METHODS
+from .constants import MORE
 from .text import CHILD_FIELDS, SourceText, format_dotted, list_caught_exceptions, list_parameters
 from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, join_dotted, make_field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
@@ -750,7 +751,7 @@ class PythonReader(ObjectUses, SourceText):
         else:
             self.visit(node.func)
         if function == "IncludeLaunchDescription" and node.args:
-            self.included = _launch_arguments(keywords.get("launch_arguments"))
+            self.included = self.list_given_arguments(keywords.get("launch_arguments"))
             self.visit(node.args[0])
             self.included = None
             self.walk_all(node.args[1:])
@@ -758,6 +759,16 @@ class PythonReader(ObjectUses, SourceText):
             self.walk_all(node.args)
         self.walk_all(keyword.value for keyword in node.keywords)
         self.conditional, self.undecided = before
+
+    def list_given_arguments(self, node: ast.expr | None) -> tuple[str, ...] | None:
+        """Names of the arguments that `launch_arguments=` of an include gives; None where they cannot all be told."""
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
+            node = node.func.value
+        value = {} if node is None else self.find_value(node)
+        if not isinstance(value, (dict, list)) or MORE in value:
+            return None
+        names = [one[0] if isinstance(one, list) and one else one for one in value]
+        return tuple(map(str, names)) if all(isinstance(name, str) for name in names) else None
 
     def add_package_call(self, node: ast.Call, function: str) -> None:
         value = self.find_text(node)
@@ -817,25 +828,6 @@ class PythonReader(ObjectUses, SourceText):
         package, name = words[0], words[1]
         if package and name and PACKAGE_NAME.fullmatch(package):
             self.refer_to(kind, package, name, node)
-
-
-def _launch_arguments(node: ast.expr | None) -> tuple[str, ...] | None:
-    """Names of the arguments that `launch_arguments=` of an include gives; None where they cannot all be told."""
-    if node is None:
-        return ()
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
-        node = node.func.value
-    if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "dict" and not node.args:
-        names: list[object] = [keyword.arg for keyword in node.keywords]
-    elif isinstance(node, ast.Dict):
-        names = [getattr(key, "value", None) for key in node.keys]
-    elif isinstance(node, (ast.List, ast.Tuple)):
-        names = [getattr(pair.elts[0], "value", None) if isinstance(pair, ast.Tuple) and pair.elts else None
-                 for pair in node.elts]  # fmt: skip
-    else:
-        return None
-    found = tuple(name for name in names if isinstance(name, str))
-    return found if len(found) == len(names) else None
 
 
 _HANDLERS = collect_node_methods(PythonReader, "visit_")
