@@ -7,7 +7,6 @@ values are sequences of pieces.
 from __future__ import annotations
 
 import re
-from itertools import groupby
 
 from ..markup import TOKEN, Document, Element, unescape
 from ..place import Problem
@@ -264,14 +263,15 @@ class _Reader:
     def read_values(self, element: Element) -> dict[str, Value]:
         """The values of attributes by their names; the first of two of a name counts."""
         found: dict[str, Value] = {}
-        for name, attributes in groupby(element.attributes, lambda one: one.name):
-            first, *more = attributes
+        lists: dict[str, list[Value]] = {}
+        for name, text, _, listed in element.attributes:
             # XML's readers make blanks of line ends and tabs in values.
-            texts = [one.value if self.is_yaml else _BLANK.sub(" ", one.value) for one in (first, *more)]
-            values = [parse_substitutions(text, self.generation) for text in texts]
-            if first.listed:
-                values = [join_all([make_literal("["), join_with_separator(values, ", "), make_literal("]")])]
-            found.setdefault(name, values[0])
+            value = parse_substitutions(text if self.is_yaml else _BLANK.sub(" ", text), self.generation)
+            found.setdefault(name, value)
+            if listed:
+                lists.setdefault(name, []).append(value)
+        for name, items in lists.items():
+            found[name] = join_all([make_literal("["), join_with_separator(items, ", "), make_literal("]")])
         return found
 
     def read_action(self, element: Element, inside: str, above: tuple[Value, ...]) -> tuple[Action, ...]:
