@@ -107,6 +107,11 @@ class LaunchFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 SHOWN = 120
+TEXT_METHODS = frozenset(
+    ("lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "replace", "capitalize", "title",
+     "removeprefix", "removesuffix"),
+)  # fmt: skip
+"""The methods of str that a value may be the result of."""
 
 
 def make_literal(text: str) -> Value:

@@ -309,6 +309,8 @@ class _Reader:
 
 def _list_attributes(values: dict[str, Value], kind: str) -> list[tuple[str, Value]]:
     """The attributes of an action from those of its element."""
+    if kind in ("test", "node") and "test-name" in values:
+        values.setdefault("name", values.pop("test-name"))
     found: list[tuple[str, Value]] = []
     for name, value in values.items():
         if kind == "parameter-file":
@@ -333,11 +335,6 @@ def _list_attributes(values: dict[str, Value], kind: str) -> list[tuple[str, Val
             found += [(key, word) for word in split_command_line(value)]
         elif key is not None:
             found.append((key, value))
-    if kind in ("test", "node") and "test-name" in values:
-        test = [value for key, value in found if key == "test-name"]
-        found = [(key, value) for key, value in found if key != "test-name"]
-        if "name" not in values:
-            found.append(("name", test[0]))
     return found
 
 

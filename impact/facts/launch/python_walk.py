@@ -14,6 +14,7 @@ from ....edges.dispatch import collect_node_methods
 from ..place import Problem
 from ..python.text import fill_format, fill_percent, list_parameters, make_mapping
 from .actions import (
+    TEXT_METHODS,
     Action,
     ActionCondition,
     Value,
@@ -702,7 +703,7 @@ class Walker:
             given = {**dict(enumerate(arguments)), **keywords}
             filled = fill_format(pattern, {key: self.make_text(each, node) for key, each in given.items()})
             return _join_filled(filled, node)
-        if name in STRING_METHODS:
+        if name in TEXT_METHODS:
             return TextValue((ValuePart("method", name, (value, *(self.make_text(a, node) for a in arguments))),))
         return Unknown(get_source(node))
 
@@ -759,10 +760,6 @@ class Walker:
 # Calls whose result is no action, where a lambda stands for an action that is run for its effect.
 _NO_ACTION = ("nothing()", "os.", "shutil.", "logging.", "sys.", "time.", "warnings.", "print(")
 _BOOLEAN_PIECES = frozenset(("equals", "not", "and", "or", "in"))
-STRING_METHODS = frozenset(
-    ("lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "replace", "capitalize", "title",
-     "removeprefix", "removesuffix"),
-)  # fmt: skip
 
 
 def _join_filled(pieces: Sequence[Any], node: ast.AST) -> TextValue | Unknown:

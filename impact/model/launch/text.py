@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ...facts.launch.actions import ActionCondition, Value, ValuePart
+from ...facts.launch.actions import TEXT_METHODS, ActionCondition, Value, ValuePart
 from ...facts.launch.parameter_files import extract as parameters
 from ...facts.launch.parameter_files import parse_scalar
 from ...facts.python.text import ARITHMETIC, COMPARISONS
@@ -118,10 +118,7 @@ _FUNCTIONS: dict[str, Any] = {
     "round": round, "any": any, "all": all,
 }  # fmt: skip
 _OF_MATH = frozenset(("sqrt", "sin", "cos", "radians", "degrees", "floor", "ceil"))
-METHODS = frozenset(
-    ("lower", "upper", "strip", "lstrip", "rstrip", "startswith", "endswith", "replace", "capitalize", "title", "split",
-     "removeprefix", "removesuffix", "isdigit", "find", "count"),
-)  # fmt: skip
+METHODS = TEXT_METHODS | {"split", "isdigit", "find", "count"}
 
 
 def call_text_method(receiver: str, name: str, arguments: Sequence[Any]) -> Any:
