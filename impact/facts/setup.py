@@ -174,6 +174,7 @@ class _Reader(Constants):
         self.note_unknown(argument, value)
 
     def note_unknown(self, argument: str, value: Any) -> None:
+        value = value.get(MORE) if isinstance(value, dict) else value
         if isinstance(value, UnknownValue):
             self.unresolved.append(f"{argument}: {value.what}")
 

@@ -102,6 +102,7 @@ GIVEN = [
     ("setup(options=read())", "unresolved", ("options: `read()`",)),
     ("print 'a'\nsetup(packages=['b'])", "packages", ("b",)),  # as Python 2 has it
     ("setup(**read())", "unresolved", ("arguments: `read()`",)),
+    ("setup(entry_points=dict(**read()))", "unresolved", ("entry_points: `read()`",)),
 ]  # fmt: skip
 
 
