@@ -9,8 +9,8 @@ ROOT = Path(__file__).parent.parent
 VERBS = frozenset((Path(__file__).parent / "verbs.txt").read_text(encoding="utf-8").split())
 # Searches are called as the facts that they make, and what libraries call has the name that they call.
 _NAMED_OTHERWISE = (
-    "main", "called_cpp", "mentioned_cpp", "searched_cpp", "searched_text", "used_cpp", "getresponse", "getheaders",
-    "frombuf",
+    "main", "called_cpp", "declared_cpp", "mentioned_cpp", "searched_cpp", "searched_text", "used_cpp",
+    "getresponse", "getheaders", "frombuf",
 )  # fmt: skip
 
 _NOUN = re.compile(r"_*(?!is_|list_|use_)[^_]+_of(?:_|\Z)")

@@ -61,9 +61,7 @@ A kind with a dot is the full name of a module of another room that makes facts,
 `rosimpact.room.module:variant`. It needs no entry here: such a module has `extract`, which is given the variant where
 there is one, `Facts`, its struct, and `LIMITS`, by variant the name of the limit that the size of its files has."""
 WITH_KIND = frozenset({"colcon", "distros", "interface", "launch.flow", "launch.references", "setup"})
-SEARCHES = frozenset((
-    *(kind for kind, (module, _) in EXTRACTORS.items() if module == "searches"), "mentioned_cpp", "used_cpp",
-))  # fmt: skip
+SEARCHES = frozenset(kind for kind, (module, _) in EXTRACTORS.items() if module in ("searches", "cpp.syntax"))
 """Kinds that are made of a file's first facts too, and of a table that says what to look for; see search()."""
 _OTHERS_READ_TOO = {
     "script": ("python", "shell"),

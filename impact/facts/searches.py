@@ -12,6 +12,7 @@ from .condition import Condition
 from .cpp.lexical import CppFile, find_word_uses
 from .place import Problem
 from .usage import (
+    Pattern,
     Rows,
     UsageTable,
     WatchedUse,
@@ -66,7 +67,7 @@ class SearchedText(msgspec.Struct, frozen=True, array_like=True, gc=False):
     functions: tuple[str, ...] = ()
 
 
-def searched_text(data: bytes, facts: object, table: Rows) -> SearchedText:
+def searched_text(data: bytes, facts: object, table: Rows[tuple[str, Pattern]]) -> SearchedText:
     """The uses of a table that a file has."""
     rows = [(label, pattern) for label, pattern in table.rows if pattern.word.encode() in data]
     called = {pattern.word for _, pattern in rows if pattern.calls and pattern.language == "python"}

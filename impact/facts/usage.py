@@ -8,6 +8,7 @@ import hashlib
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
+from typing import Generic, TypeVar
 
 import msgspec
 
@@ -16,6 +17,7 @@ from .cpp.lexical import KEYWORDS, CppFile, decode_source, find_words, scan
 from .expressions import find_last_literals, find_needed, has_needed
 from .python.python2 import mask
 
+T = TypeVar("T")
 _MEMBER = r"(?:->|\.)\s*"
 
 
@@ -140,10 +142,10 @@ class UsageTable:
                     yield WatchedUse(label, name.line, name.column, name.conditions)
 
 
-class Rows:
-    """Uses to look for in files that no compiler reads: (label, pattern). stamp: differs whenever other rows do."""
+class Rows(Generic[T]):
+    """What to look for in files: words, places, or labels with patterns. stamp: differs whenever other rows do."""
 
-    def __init__(self, rows: Sequence[tuple[str, Pattern]]):
+    def __init__(self, rows: Sequence[T]):
         self.rows = rows
         self.stamp = compute_stamp(rows)
 

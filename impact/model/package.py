@@ -379,12 +379,12 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
         return {"cpp": ("searched_cpp", self.in_cpp)}
 
     @cached_property
-    def in_parameters(self) -> Rows:
+    def in_parameters(self) -> Rows[tuple[str, Pattern]]:
         """What to look for in files of parameters."""
         return Rows(self.parameters)
 
     @cached_property
-    def in_python(self) -> dict[str, Rows]:
+    def in_python(self) -> dict[str, Rows[tuple[str, Pattern]]]:
         """What to look for in Python files, by the package that they import."""
         return {name: Rows(rows) for name, rows in self.modules.items()}
 
@@ -771,7 +771,7 @@ class PackageJoin:
     def spaces(self) -> frozenset[str]:
         """First parts of the qualified names and namespaces in C++ files."""
         names = {name.text for facts in self.cpp.values() for name in facts.qualified}
-        names.update(name for facts in self.cpp.values() for name in (*facts.using, *facts.opened, *facts.types))
+        names.update(name for facts in self.cpp.values() for name in (*facts.using, *facts.opened, *facts.namespaces))
         return frozenset(name.removeprefix("::").partition("::")[0] for name in names)
 
     @cache_method

@@ -40,7 +40,6 @@ from rosimpact.impact.conditions import Environment, holds
 from rosimpact.impact.facts import allow, elf, kinds, store
 from rosimpact.impact.facts.cmake import extract as extract_cmake
 from rosimpact.impact.facts.condition import Condition
-from rosimpact.impact.facts.cpp.syntax import AskedWords, select_places
 from rosimpact.impact.facts.launch import flow as flow_launch
 from rosimpact.impact.facts.launch import parameter_files as flow_parameters
 from rosimpact.impact.facts.usage import Rows
@@ -133,9 +132,10 @@ def extractor(kind: str) -> Callable[[bytes], None]:
         if kind in kinds.SEARCHES:
             first = {"searched_text": "python"}.get(kind, "cpp")
             facts = kinds.extract(first, data).facts
-            table = _tables().get(kind) or AskedWords((*facts.words.split(" ")[:20], "operator+="))
+            table = _tables().get(kind) or Rows((*facts.words.split(" ")[:20], "operator+="))
             if kind == "used_cpp":
-                table = select_places(kinds.search("mentioned_cpp", data, facts, table).facts.mentions)
+                mentions = kinds.search("mentioned_cpp", data, facts, table).facts.mentions
+                table = Rows([(one.word, one.offset) for one in mentions])
             found = kinds.search(kind, data, facts, table)
         else:
             found = kinds.extract(kind, data)

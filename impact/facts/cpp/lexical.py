@@ -11,7 +11,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import accumulate, count
+from itertools import accumulate, count, islice
 from operator import add
 from typing import NamedTuple
 
@@ -19,7 +19,6 @@ import msgspec
 
 from ..condition import Condition
 from ..place import Problem, Reference
-from .names import cut_templates
 
 
 class Include(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -85,7 +84,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def types(self) -> tuple[str, ...]:
         """The types that it defines in namespaces, with each of these, since which encloses which is not followed."""
         found = (f"{space}::{name}" for space in self.namespaces for name in self.type_names)
-        return tuple(sys.intern(name) for _, name in zip(range(_MOST_TYPES), found, strict=False))
+        return tuple(islice(found, _MOST_TYPES))
 
 
 # Conditions beyond these are one unknown condition: hostile input must not cost quadratic memory.
@@ -529,7 +528,7 @@ def extract(data: bytes) -> CppFile:
     long_words = [word for word in ordered if len(word) > 3 and (word.isascii() or len(word.decode()) > 3)]
     using, opened = _list_using_names(visible) if "using" in tokens_text else ((), ())
     has_namespace = "namespace" in tokens_text
-    type_names, announced = _list_type_names(visible, tokens_text)
+    type_names, announced, aliased, parents = _list_types(visible, tokens_text)
     return CppFile(
         includes=collect_includes(scanned),
         qualified=tuple(qualified),
@@ -545,10 +544,10 @@ def extract(data: bytes) -> CppFile:
         namespaces=_list_namespaces(visible) if has_namespace else (),
         type_names=type_names,
         announced=announced,
-        aliased=_list_aliased_names(visible) if "typedef" in tokens_text else (),
+        aliased=aliased,
         variables=_list_variable_types(visible),
         made=_list_made_classes(visible, tokens_text),
-        parents=_list_parents(visible),
+        parents=parents,
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
     )
@@ -625,27 +624,19 @@ def _list_variable_types(visible: str) -> tuple[str, ...]:
 _NAMESPACE = re.compile(r"namespace(?<!\wnamespace)\s+([^\W\d]\w*(?:\s*::\s*[^\W\d]\w*)*)\s*\{")
 _TYPE = re.compile(
     r"(?:(?:struct|class|union|enum(?:\s+class|\s+struct)?)\s{1,20}"
-    r"(?:[A-Za-z_]\w{0,60}(?:\([^(){};\n]{0,80}\))?\s{1,20}){0,3}?(?:\w{1,60}::){0,4}([^\W\d]\w*)\s{0,20}"
-    r"(?:final\s{0,20})?(?::[^:;{}()][^;{}()]{0,400})?\{"
-    r"|using\s{1,20}([^\W\d]\w*)\s{0,20}=|typedef\b[^;{}]{1,200}?\b([^\W\d]\w*)\s{0,20};"
-    r"|ROS_DECLARE_MESSAGE\s*\(\s*([^\W\d]\w*)"  # the macro of ros/message_forward.h that announces a message
-    r"|typedef\s{1,20}(?=(?:struct|class|union|enum)[^;{}]{0,100}\{[^{}]{0,4000}\}\s*([^\W\d]\w*)))"
+    r"(?:[A-Za-z_]\w{0,60}(?:\([^(){};\n]{0,80}\))?\s{1,20}){0,3}?(?:\w{1,60}::){0,4}(?P<type>[^\W\d]\w*)\s{0,20}"
+    r"(?P<special><(?:[^;{}():]|::){1,200}>\s{0,20})?(?:final\s{0,20})?"
+    r"(?::(?P<bases>[^:;{}()][^;{}()]{0,1000})[{(]|\{)"
+    r"|(?:struct|class|enum)\s+(?P<announced>[A-Za-z_]\w*)(?:\s*:\s*\w+)?\s*;"
+    r"|using\s{1,20}(?P<alias>[^\W\d]\w*)\s{0,20}=(?P<meant>[^;{}()]{0,400})"
+    r"|typedef\s(?P<typedef>[^;{}]{1,400}?)\b(?P<defined>[^\W\d]\w*)\s{0,20};"
+    # The macro of ros/message_forward.h that announces a message.
+    r"|ROS_DECLARE_MESSAGE\s*\(\s*(?P<message>[^\W\d]\w*)"
+    r"|typedef\s{1,20}(?=(?:struct|class|union|enum)[^;{}]{0,100}\{[^{}]{0,4000}\}\s*(?P<struct>[^\W\d]\w*)))"
 )
 _TYPE_WORDS = ("struct", "class", "union", "enum", "using", "typedef", "ROS_DECLARE_MESSAGE")
 _BEGIN_TYPES = {word: re.compile(rf"{word}(?<!\w{word})") for word in _TYPE_WORDS}
 _MOST_TYPES = 400
-_PARENTS = (
-    *(
-        (re.compile(rf"{word}(?<!\w{word})\s([^;{{}}()]{{0,400}}[^:]):(?!:)([^;{{}}()]{{1,1000}})"), 1, 2)
-        for word in ("class", "struct")
-    ),
-    (re.compile(r"using(?<!\wusing)\s{1,20}([^\W\d]\w*)\s{0,20}=([^;{}()]{1,400})"), 1, 2),
-    (re.compile(r"typedef(?<!\wtypedef)\s([^;{}()]{1,400}?)([^\W\d]\w*)\s*;"), 2, 1),
-)
-_ANNOUNCED = [
-    re.compile(rf"{word}(?<!\w{word})\s+([A-Za-z_]\w*)(?:\s*:\s*\w+)?\s*;") for word in ("class", "struct", "enum")
-]
-_ALIAS = re.compile(r"typedef(?<!\wtypedef)\b[^;{}=]{0,300}")
 _LAST_PART = re.compile(r"::\s*([A-Za-z_]\w*)(?!\w|\s*::)")
 _INITIALIZES = re.compile(r"\)\s*(?:noexcept\s*)?:\s*[A-Za-z_]")
 _MADE = [
@@ -658,29 +649,24 @@ def _list_namespaces(visible: str) -> tuple[str, ...]:
     return tuple(sys.intern(name) for name in dict.fromkeys(_SPACE.sub("", m) for m in _NAMESPACE.findall(visible)))
 
 
-def _list_type_names(visible: str, tokens_text: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Last parts of the types that a file seems to define, and of those it announces. tokens_text: all its words."""
-    names: dict[str, None] = {}
+def _list_types(visible: str, tokens_text: str):
+    """What a file says of types: type_names, announced, aliased and parents of CppFile. tokens_text: all its words."""
+    names, announced, aliased, parents = [], [], [], []
     begins = [begin for word, begin in _BEGIN_TYPES.items() if word in tokens_text]
     for match in _matches(_TYPE, begins, visible):
-        names[sys.intern(match.group(match.lastindex or 0))] = None
-    announced = dict.fromkeys(sys.intern(name) for pattern in _ANNOUNCED for name in pattern.findall(visible))
-    return tuple(names), tuple(announced)
-
-
-def _list_aliased_names(visible: str) -> tuple[str, ...]:
-    names = (name for alias in _ALIAS.findall(visible) for name in _LAST_PART.findall(alias))
-    return tuple(dict.fromkeys(map(sys.intern, names)))
-
-
-def _list_parents(visible: str) -> tuple[tuple[str, str], ...]:
-    found = []
-    for pattern, head, meant in _PARENTS:
-        for match in pattern.finditer(visible):
-            names = [word for word in _IDENTIFIER.findall(cut_templates(match[head])) if word != "final"]
-            if names:
-                found.append((sys.intern(names[-1]), " ".join(_IDENTIFIER.findall(match[meant]))))
-    return tuple(dict.fromkeys(found))
+        if match["announced"]:
+            announced.append(match["announced"])
+            continue
+        name = match["type"] or match["alias"] or match["defined"] or match["message"] or match["struct"]
+        if not match["special"]:
+            names.append(name)
+        if match["typedef"]:
+            aliased += _LAST_PART.findall(match[0])
+        meant = match["bases"] or match["meant"] or match["typedef"]
+        if meant and "(" not in meant:
+            parents.append((sys.intern(name), " ".join(_IDENTIFIER.findall(meant))))
+    names, announced, aliased = (tuple(dict.fromkeys(map(sys.intern, each))) for each in (names, announced, aliased))
+    return names, announced, aliased, tuple(dict.fromkeys(parents))
 
 
 def _list_made_classes(visible: str, tokens_text: str) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ names that somebody asks about.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from functools import lru_cache
 from itertools import chain, islice
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from typing import NamedTuple
 import msgspec
 
 from ..place import Problem
-from ..usage import compute_stamp, find_template_arguments
+from ..usage import Rows, find_template_arguments
 from .lexical import COMMENT, KEYWORDS, CppFile, decode_source, find_words
 from .schema import CppUse, FileDeclarations
 
@@ -57,56 +57,34 @@ class Mention(NamedTuple):
     names: tuple[str, ...] = ()
 
 
-class AskedWords(NamedTuple):
-    """Words to look for."""
-
-    words: tuple[str, ...]
-
-    @property
-    def stamp(self) -> str:
-        """Differs whenever other words are asked for."""
-        return compute_stamp(self.words)
-
-
-class AskedPlaces(NamedTuple):
-    """Words with their offsets in a file, to be read there."""
-
-    places: tuple[tuple[str, int], ...]
-
-    @property
-    def stamp(self) -> str:
-        """Differs whenever other places are asked for."""
-        return compute_stamp(self.places)
-
-
 class MentionedCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """mentions: of the words of AskedWords, word by word."""
+    """mentions: of the words that are asked for, word by word."""
 
     mentions: tuple[Mention, ...] = ()
     problems: tuple[Problem, ...] = ()
 
 
 class UsedCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """uses: those that stand at AskedPlaces, in their order; what is declared there is left out."""
+    """uses: those that stand at the places that are asked for, in their order; what is declared there is left out."""
 
     uses: tuple[CppUse, ...] = ()
     problems: tuple[Problem, ...] = ()
 
 
-def extract(data: bytes) -> FileDeclarations:
+def declared_cpp(data: bytes, facts: CppFile, table: None) -> FileDeclarations:
     """What a C++ file declares outside of functions."""
     return _open_code(data).declarations
 
 
-def used_cpp(data: bytes, facts: CppFile, table: AskedPlaces) -> UsedCpp:
-    """The uses that stand at places of a C++ file."""
-    return UsedCpp(tuple(_open_code(data).list_uses(table.places)))
+def used_cpp(data: bytes, facts: CppFile, table: Rows[tuple[str, int]]) -> UsedCpp:
+    """The uses that stand at places of a C++ file: words with their offsets."""
+    return UsedCpp(tuple(_open_code(data).list_uses(table.rows)))
 
 
-def mentioned_cpp(data: bytes, facts: CppFile, table: AskedWords) -> MentionedCpp:
+def mentioned_cpp(data: bytes, facts: CppFile, table: Rows[str]) -> MentionedCpp:
     """How words are mentioned in a C++ file."""
     text = decode_source(data)
-    found = (islice(_list_mentions(text, word), _MOST_MENTIONS) for word in table.words)
+    found = (islice(_list_mentions(text, word), _MOST_MENTIONS) for word in table.rows)
     return MentionedCpp(tuple(chain.from_iterable(found)))
 
 
@@ -269,8 +247,3 @@ def _parse_arguments(text: str, at: int) -> Given:
         if place < 0:
             return Given(UNREAD)
     return Given(UNREAD)
-
-
-def select_places(mentions: Iterable[Mention]) -> AskedPlaces:
-    """The places of mentions, in order and each once."""
-    return AskedPlaces(tuple(dict.fromkeys((one.word, one.offset) for one in mentions)))

@@ -16,7 +16,8 @@ from ....edges.memory import cache_method
 from ...facts.cpp.lexical import CppFile
 from ...facts.cpp.names import find_closing_angle, join_scope, split_at_commas, strip_templates
 from ...facts.cpp.schema import CodePlace, CppClass, CppUse, Declaration, Expr, FileDeclarations
-from ...facts.cpp.syntax import AskedWords, Mention, select_places
+from ...facts.cpp.syntax import Mention
+from ...facts.usage import Rows
 from ..api import Vocabulary
 from ..members import InterfaceScope, NamedInterface, find_section
 from ..members import MemberType as InterfaceType
@@ -174,12 +175,12 @@ class KnownFile:
 
     def list_mentions(self, words: Iterable[str]) -> tuple[Mention, ...]:
         """Where words stand in its text."""
-        return self._look("mentioned_cpp", AskedWords(tuple(words))).mentions
+        return self._look("mentioned_cpp", Rows(tuple(words))).mentions
 
     def list_uses(self, mentions: Iterable[Mention]) -> tuple[CppUse, ...]:
         """What the code says where words are mentioned."""
-        asked = select_places(mentions)
-        return self._look("used_cpp", asked).uses if asked.places else ()
+        places = tuple(dict.fromkeys((one.word, one.offset) for one in mentions))
+        return self._look("used_cpp", Rows(places)).uses if places else ()
 
     @cached_property
     def type_names(self) -> frozenset[str]:

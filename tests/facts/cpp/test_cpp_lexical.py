@@ -145,6 +145,19 @@ def test_types_that_are_defined_in_namespaces(text, expected):
     assert extract(text.encode()).types == expected
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("struct A { }; struct B; struct EXPORT(x) C final : n::D, public E<F> { };", [("C", "n D public E F")]),
+        ("template <class T> class A : B { }; template <> struct A<n::T> : C { };", [("A", "B"), ("A", "C")]),
+        ("class A : public B<void(int)> { };", [("A", "public B void")]),
+        ("using A = n::B; typedef std::vector<C> D; typedef void (*E)(int);", [("A", "n B"), ("D", "std vector C")]),
+    ],
+)
+def test_parents_of_classes_and_aliases(text, expected):
+    assert list(extract(text.encode()).parents) == expected
+
+
 def test_words_are_bare_identifiers_of_four_letters():
     facts = extract(b"int32_t memcpy(std::size_t count); ::close(1); for (auto abc : list) return 0x1234; // word\n")
     assert facts.words == "close count int32_t list memcpy"
