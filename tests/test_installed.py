@@ -134,15 +134,16 @@ def test_one_finding_for_each_package_and_library_counts_the_files_and_gives_the
             "anchor",
             "src/anchor/package.xml",
             "libpcl_common.so.1.12",
-            "`libpcl_common.so.1.12`, needed by `anchor/lib/anchor/one` and 1 more file, is not available: "
-            "ubuntu noble has pcl 1.14.0",
+            "`libpcl_common.so.1.12`, needed by `anchor/lib/anchor/one` and `anchor/lib/anchor/two`, "
+            "is not available on ubuntu noble, which has `pcl 1.14.0`",
             "rebuild winch, anchor in this order",
         ),
         (
             "winch",
             "src/winch/package.xml",
             "libpcl_common.so.1.12",
-            "`libpcl_common.so.1.12`, needed by `winch/lib/libwinch.so`, is not available: ubuntu noble has pcl 1.14.0",
+            "`libpcl_common.so.1.12`, needed by `winch/lib/libwinch.so`, is not available on ubuntu noble, "
+            "which has `pcl 1.14.0`",
             "rebuild winch, anchor in this order",
         ),
     ]
@@ -295,7 +296,7 @@ def test_a_program_goes_stale_when_its_library_is_replaced(tmp_path, gcc, check,
     assert (status, finding["package"], finding["targets"], finding["help"]) == (
         1, "winch", ["this machine"], "rebuild winch")  # fmt: skip
     assert finding["message"] == (
-        "`libfoo.so.1`, needed by `winch/lib/winch/run`, was removed: this machine has `libfoo.so.2`"
+        "`libfoo.so.1`, needed by `winch/lib/winch/run`, was removed from this machine, which has `libfoo.so.2`"
     )
 
 
@@ -315,7 +316,7 @@ def test_a_version_of_a_symbol_that_the_library_lost_is_reported(tmp_path, gcc, 
     monkeypatch.setenv("LD_LIBRARY_PATH", str(system))
     _, (finding,), _ = check(ws, "--install", ws / "install")
     assert finding["message"] == (
-        "`FOO_1.2` of `libfoo.so.1`, needed by `winch/lib/winch/run`, was removed: this machine has `FOO_1.1`"
+        "`FOO_1.2` of `libfoo.so.1`, needed by `winch/lib/winch/run`, was removed from this machine, which has `FOO_1.1`"
     )
 
 

@@ -35,7 +35,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from ....edges.console import format_count
 from ...model.build_order import build_order
 from ..vocabulary import At, Diagnostic, TargetView, Text, rule
 
@@ -54,21 +53,16 @@ class _Missing(NamedTuple):
     symbols: int = -1
 
 
-_HELP = "[[install `{debian}`, or ]]rebuild {rebuilt}"
+_ASKED = "`{subject}`[[ of `{library}`]][[ and {symbols} more]], needed by {files},"
+_HELP = "[[install `{debian}`, or ]]rebuild [[{rebuilt}]][[{ordered} in this order]]"
 
 
 @rule(
     scope="install_space",
     texts={
-        "symbol": Text(
-            "`{subject}`[[ of `{library}`]][[ and {symbols}]], needed by `{file}`[[ and {files}]], is not found "
-            "in any library that is loaded",
-            _HELP,
-        ),
-        "gone": Text("`{subject}`[[ of `{library}`]], needed by `{file}`[[ and {files}]], was removed: {there}", _HELP),
-        "missing": Text(
-            "`{subject}`[[ of `{library}`]], needed by `{file}`[[ and {files}]], is not available: {there}", _HELP
-        ),
+        "symbol": Text(f"{_ASKED} is not found in any library that is loaded", _HELP),
+        "gone": Text(f"{_ASKED} was removed from {{machine}}, which has `{{there}}`", _HELP),
+        "missing": Text(f"{_ASKED} is not available on {{machine}}[[, which has `{{there}}`]]", _HELP),
     },
 )
 def stale_binary(view: TargetView, installed: InstallSpace, libraries: SharedLibraries):
@@ -85,9 +79,20 @@ def stale_binary(view: TargetView, installed: InstallSpace, libraries: SharedLib
     for missing, by_package in askers.items():
         packages = [package for package in ordered if package in by_package]
         for package, binaries in by_package.items():
-            data = {**_build_data(missing, binaries, libraries), **_build_remedy(missing, packages, libraries)}
+            files = tuple(sorted(binary.path for binary in binaries))
+            rebuilt = ", ".join(packages) or files[0]
+            data = {
+                "files": files,
+                "library": missing.library if missing.library != missing.subject else "",
+                "symbols": max(missing.symbols, 0) or "",
+                "machine": libraries.name,
+                "there": missing.there,
+                "debian": libraries.find_package(missing.subject),
+                "rebuilt": rebuilt if len(packages) < 2 else "",
+                "ordered": rebuilt if len(packages) > 1 else "",
+            }
             known = view.workspace.packages.get(package)  # what is not in the workspace has no manifest there
-            at = At(known.linked.manifest_path if known is not None else f"{installed.label}/{data['file']}", 0)
+            at = At(known.linked.manifest_path if known is not None else f"{installed.label}/{files[0]}", 0)
             gone = libraries.gone and missing.there
             kind = "symbol" if missing.symbols >= 0 else "gone" if gone else "missing"
             yield Diagnostic(at, missing.subject, package, data, kind)
@@ -104,28 +109,12 @@ def _find_missing(
             view.unresolved.setdefault("shared library", set()).add(soname)
         elif not there:
             absent.add(soname)
-            yield _Missing(soname, soname, libraries.describe_others(soname))
+            yield _Missing(soname, soname, libraries.find_other(soname))
     for asked in binary.elf.asked:
         if asked.library in absent or asked.library not in needed:
             continue
         lacks = libraries.lacks(asked, binary.elf, binary.folder)
         if lacks:
-            yield _Missing(lacks[-1].version, asked.library, f"`{lacks[-1].there}`" if lacks[-1].there else "")
+            yield _Missing(lacks[-1].version, asked.library, lacks[-1].there)
     for lost in () if absent else libraries.find_lost_symbols(binary.elf, binary.folder, installed.places) or ():
         yield _Missing(lost.name, lost.library, "", lost.more)
-
-
-def _build_data(missing: _Missing, binaries: list[Binary], libraries: SharedLibraries) -> dict[str, str]:
-    more = len(binaries) - 1
-    return {
-        "file": min(binary.path for binary in binaries),
-        "files": format_count(more, "more file") if more else "",
-        "library": missing.library if missing.library != missing.subject else "",
-        "symbols": format_count(missing.symbols, "more symbol") if missing.symbols > 0 else "",
-        "there": f"{libraries.name} has {missing.there}" if missing.there else libraries.nothing,
-    }
-
-
-def _build_remedy(missing: _Missing, packages: list[str], libraries: SharedLibraries) -> dict[str, str]:
-    order = " in this order" if len(packages) > 1 else ""
-    return {"debian": libraries.find_package(missing.subject) or "", "rebuilt": f"{', '.join(packages) or 'it'}{order}"}

@@ -21,7 +21,7 @@ _LONG_ENOUGH = 3
 
 
 class MissingVersion(NamedTuple):
-    """A version of symbols that is not there, and what is, in words (empty when it is not known)."""
+    """A version of symbols that is not there, and which is (empty when it is not known)."""
 
     version: str
     there: str
@@ -41,13 +41,11 @@ class SharedLibraries:
     """The shared libraries of a machine, real or described.
 
     Attributes: target (its name), name (`this machine`, `ubuntu jammy`), gone (what is not there was there once,
-    since it was built with), nothing (says that there is no such library at all), machine (`EM_X86_64`,
-    empty where any may be), platform (`ubuntu jammy`)."""
+    since it was built with), machine (`EM_X86_64`, empty where any may be), platform (`ubuntu jammy`)."""
 
     target: str
     name: str
     gone: bool
-    nothing: str
     machine: str
     platform: str
 
@@ -55,8 +53,9 @@ class SharedLibraries:
         """Whether a library is there for a file that lies in a folder, None when it is not known."""
         raise NotImplementedError
 
-    def describe_others(self, soname: str) -> str:
-        """What is there of the library in other versions, in words; empty when nothing is."""
+    def find_other(self, soname: str) -> str:
+        """What is there of the library in another version: its file, or else its name and version; empty when nothing
+        is."""
         raise NotImplementedError
 
     def find_package(self, soname: str) -> str:
@@ -80,7 +79,7 @@ _OF_CLASSES = ("_ZN{}C", "_ZN{}D", "_ZTVN{}", "_ZTIN{}")
 class InstalledLibraries(SharedLibraries):
     """This machine."""
 
-    name, gone, nothing = "this machine", True, "this machine has no such file"
+    name, gone = "this machine", True
 
     def __init__(self, target: str, loader: Loader, machine: str, platform: str, sonames: Sonames):
         self.target, self.machine, self.platform = target, machine, platform
@@ -94,8 +93,8 @@ class InstalledLibraries(SharedLibraries):
             return None
         return None if self._loader.lies_about(soname) else False
 
-    def describe_others(self, soname: str) -> str:
-        return _format_first(self._loader.list_others(soname))
+    def find_other(self, soname: str) -> str:
+        return next(iter(self._loader.list_others(soname)), "")
 
     def find_package(self, soname: str) -> str:
         return self._sonames.find_package(soname) if self._sonames.has(self.platform, soname) else ""
@@ -144,7 +143,6 @@ class DescribedLibraries(SharedLibraries):
         """own: libraries of underlays that go with the workspace. near: libraries of prefixes on this machine, which
         tell that ROS packages bring them, and not in which version they are elsewhere."""
         self.target, self.name, self.platform = target.name, target.platform, target.platform
-        self.nothing = f"no package of {target.platform} has it"
         self._described, self._sonames, self._own, self._near = target, sonames, own, near
 
     def has(self, soname: str, asker: Elf, folder: str) -> bool | None:
@@ -165,11 +163,11 @@ class DescribedLibraries(SharedLibraries):
             return None
         return False if known is False else fits
 
-    def describe_others(self, soname: str) -> str:
-        others = _format_first(self._sonames.list_others(self._described.platform, soname))
+    def find_other(self, soname: str) -> str:
         library = self._sonames.find_family(soname)
         there = self._described.find_library(library) if library else None
-        return others or (f"{library} {there}" if there else "")
+        others = self._sonames.list_others(self._described.platform, soname)
+        return others[0] if others else f"{library} {there}" if there else ""
 
     def lacks(self, asked: AskedSymbolVersions, asker: Elf, folder: str) -> tuple[MissingVersion, ...] | None:
         found = []
@@ -212,11 +210,6 @@ class DescribedLibraries(SharedLibraries):
 
 def _normalize(name: str) -> str:
     return re.sub(r"[^a-z0-9]", "", name.lower())
-
-
-def _format_first(names: list[str]) -> str:
-    """The first name, in code quotes."""
-    return f"`{names[0]}`" if names else ""
 
 
 def _find_max(offers: frozenset[str], version: str) -> str:
