@@ -316,7 +316,8 @@ def test_a_version_of_a_symbol_that_the_library_lost_is_reported(tmp_path, gcc, 
     monkeypatch.setenv("LD_LIBRARY_PATH", str(system))
     _, (finding,), _ = check(ws, "--install", ws / "install")
     assert finding["message"] == (
-        "`FOO_1.2` of `libfoo.so.1`, needed by `winch/lib/winch/run`, was removed from this machine, which has `FOO_1.1`"
+        "`FOO_1.2` of `libfoo.so.1`, needed by `winch/lib/winch/run`, was removed from this machine, "
+        "which has `FOO_1.1`"
     )
 
 

@@ -646,7 +646,7 @@ class PackageJoin:
     def _folders(self) -> Container[str]:
         """The folders that targets are given to search for headers."""
         items = [item for item, _ in self.build.include_dirs]
-        items += [link.item for t in self.build.targets for link in t.links if link.how == "include"]
+        items += [link.item for link in self.build.target_links if link.how == "include"]
         return {posixpath.normpath(item).removeprefix(".") for item in items}
 
     def compute_roles(self) -> dict[str, tuple[str, bool, tuple[str, ...], tuple[Condition, ...]]]:

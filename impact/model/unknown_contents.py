@@ -146,7 +146,7 @@ class UnknownContents:
         folder = f"{package.path}/" if package.path else ""
         unread = {path for path in workspace.unread if path.startswith(folder)}
         downloads = [target.name for target in build.targets if target.kind in ("external", "fetched")]
-        given = (*build.links, *(link for target in build.targets for link in target.links))
+        given = (*build.links, *build.target_links)
         searched = {one for one, _ in build.include_dirs}.union(link.item for link in given)
         unread.update(one for one in searched if unread and "$" not in one and workspace.is_unread(one))
         filled = [one for one in searched if downloads and _IN_BUILD.match(one)]

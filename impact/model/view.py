@@ -205,10 +205,9 @@ class TargetView(WorkspaceOnTarget):
             return False  # it is downloaded, or made here
         return any(
             link.item.startswith(prefix)
-            and self.is_sure(conditions := (*target.conditions, *link.conditions))
-            and not any(name.lower() in condition.text.lower() for condition in conditions)
-            for target in targets
-            for link in target.links
+            and self.is_sure(link.conditions)
+            and not any(name.lower() in condition.text.lower() for condition in link.conditions)
+            for link in package.build.target_links
             if link.how == "link"
         )
 

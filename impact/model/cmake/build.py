@@ -58,7 +58,7 @@ class Link(msgspec.Struct, frozen=True, array_like=True, gc=False):
     `objects` ($<TARGET_OBJECTS:>).
     item: as written with variables expanded; an unset X_LIBRARIES, X_INCLUDE_DIRS, X_EXPORTED_TARGETS or X_TARGETS
     stays as `${X_LIBRARIES}` so that what it stands for can still be told, and so does any other variable that nothing
-    sets. visibility: PUBLIC, PRIVATE, INTERFACE or empty.
+    sets. visibility: PUBLIC, PRIVATE, INTERFACE or empty. conditions: those of the target first.
     """
 
     item: str
@@ -279,6 +279,11 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def finds_declared(self) -> bool:
         """Whether CMake looks for what package.xml declares, so that more is found and handed on than it names."""
         return any(found.how == "declared" for found in self.found)
+
+    @property
+    def target_links(self) -> tuple[Link, ...]:
+        """What is given to targets, target by target."""
+        return tuple(link for target in self.targets for link in target.links)
 
     @property
     def installed_targets(self) -> frozenset[str]:

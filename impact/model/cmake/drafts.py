@@ -1,6 +1,7 @@
 """Targets while they are being described, command by command."""
 
 import msgspec
+from msgspec import structs
 
 from ...facts.condition import Condition
 from .build import At, BuildTarget, Link
@@ -39,7 +40,7 @@ class TargetDraft(msgspec.Struct, eq=False):
             self.kind,
             self.at,
             tuple(self.sources),
-            tuple(self.links),
+            tuple(structs.replace(link, conditions=self._merge(link.conditions)) for link in self.links),
             tuple(self.definitions),
             self.standard,
             self.output_name,
@@ -57,6 +58,9 @@ class TargetDraft(msgspec.Struct, eq=False):
             self.excluded,
             self.archive,
         )
+
+    def _merge(self, conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
+        return (*self.conditions, *(c for c in conditions if c not in self.conditions))
 
     def add_source(self, path: str, conditions: tuple[Condition, ...]) -> None:
         """Adds a source; one that is added twice stands under what both times have in common."""

@@ -12,7 +12,7 @@ from ..view import TargetView
 from ..workspace import Package
 from .build import At, BuildTarget, Link, is_for_tests
 
-_OF_PACKAGE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|INCLUDE_DIRS|INCLUDE_DIR|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
+_OF_PACKAGE = re.compile(r"\$\{([^${}]+?)_(?:LIBRARIES|TARGETS|INCLUDE_DIRS?|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
 
 
 @lru_cache(maxsize=10000)
@@ -22,14 +22,18 @@ def resolve_package(item: str) -> str:
     return match.group(1) if match else item.partition("::")[0]
 
 
+def is_opaque(item: str) -> bool:
+    """Whether a link item holds a variable that stands for no package, so that it cannot be told what is linked."""
+    return "$" in item and _OF_PACKAGE.fullmatch(item) is None
+
+
 def may_hide(item: str, name: str) -> bool:
     """Whether an item with a variable that nothing sets may stand for a package: the texts around the variable have to
     allow it, and the variables that a found package sets stand for that package alone."""
     if "$" not in item:
         return False
-    match = _OF_PACKAGE.fullmatch(item)
-    if match is not None and "$" not in match.group(1):
-        return match.group(1).lower() == name.lower()
+    if not is_opaque(item):
+        return resolve_package(item).lower() == name.lower()
     plain = re.split(r"\$(?:ENV)?\{[^{}]*\}", item)
     before, after = plain[0].lower(), plain[-1].lower().partition("::")[0]
     if not name.lower().startswith(before):
@@ -116,10 +120,8 @@ def stops_at_names(view: TargetView) -> bool:
 def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, str]]:
     """Names in ament_target_dependencies and `pkg::target` links that only find_package(pkg) can define."""
     own = {t.name for t in package.build.targets}
-    for target in package.build.targets:
-        for link in target.links:
-            conditions = (*target.conditions, *link.conditions)
-            if not view.is_sure(conditions) or "$" in link.item or link.item in own or is_for_tests(conditions):
-                continue
-            if link.how == "ament":
-                yield link.at, link.item
+    for link in package.build.target_links:
+        if not view.is_sure(link.conditions) or "$" in link.item or link.item in own or is_for_tests(link.conditions):
+            continue
+        if link.how == "ament":
+            yield link.at, link.item

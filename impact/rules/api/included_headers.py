@@ -171,8 +171,8 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
         return False
     if any(t.kind in ("custom", "external", "fetched", "unknown") for t in build.targets) or view.workspace.unread:
         return False
-    searched = (*build.include_dirs, *((link.item, ()) for target in build.targets for link in target.links))
-    if any(item.startswith(("/", "~", "$ENV{")) for item, _ in searched):
+    searched = (*(item for item, _ in build.include_dirs), *(link.item for link in build.target_links))
+    if any(item.startswith(("/", "~", "$ENV{")) for item in searched):
         return False  # a folder of the machine
     if view.unknown_contents.may_hold(package, path.lstrip("./")):
         return False

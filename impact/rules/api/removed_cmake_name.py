@@ -65,11 +65,7 @@ Names = list[tuple[str, At, tuple[Condition, ...], str]]
 def removed_cmake_name(view: TargetView):
     for package in view:
         names: Names = [(use.name, use.at, use.conditions, use.kind) for use in package.build.uses]
-        names += [
-            (link.item, link.at, (*target.conditions, *link.conditions), "target")
-            for target in package.build.targets
-            for link in target.links
-        ]
+        names += [(link.item, link.at, link.conditions, "target") for link in package.build.target_links]
         owners = {(name, kind): _find_reviewed_owner(view, kind, name) for name, _, _, kind in names}
         unknown = [name for name in names if not owners[name[0], name[3]]]
         yield from rate_upcoming(_list_unexported(view, package, unknown))
@@ -145,9 +141,8 @@ def _list_emptied(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             name = link.item.removeprefix("${").removesuffix("_LIBRARIES}")
             if link.how != "link" or link.item != f"${{{name}_LIBRARIES}}" or link.item in seen:
                 continue
-            conditions = (*target.conditions, *link.conditions)
             offer = view.offers.find_package(name) if name not in view.workspace.may_have else None
-            if offer is None or not view.is_sure(conditions) or not _exports_targets_alone(offer):
+            if offer is None or not view.is_sure(link.conditions) or not _exports_targets_alone(offer):
                 continue
             items = list_linked_items(package, target.name)
             if items is None or _is_linked_otherwise(view, name, items):

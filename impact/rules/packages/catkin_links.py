@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...model.cmake.links import list_linked_items
+from ...model.cmake.links import is_opaque, list_linked_items, resolve_package
 from ..vocabulary import Package, TargetView
 
 # What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along. Kept by hand: of the
@@ -21,9 +21,6 @@ BRING_NOTHING = frozenset(
         "BULLET", "bullet", "YAML_CPP", "yaml-cpp", "BZip2", "lz4", "UUID", "CURL", "OpenSSL", "Threads", "PythonLibs",
     ]
 )  # fmt: skip
-
-PACKAGE_VARIABLE = re.compile(r"\$\{(.+?)_(?:LIBRARIES|TARGETS|LIBRARY|LIBS|EXPORTED_TARGETS)\}\Z")
-"""A variable that names what is linked of a package."""
 
 
 class CatkinExports:
@@ -80,17 +77,12 @@ def list_linked(package: Package, target: str) -> set[str] | None:
     items = list_linked_items(package, target)
     if items is None or ("${catkin_LIBRARIES}" in items and package.build.finds_declared):
         return None
-    if any("$" in item and not _VARIABLE.fullmatch(item) for item in items):
-        return None
-    return items
-
-
-_VARIABLE = re.compile(r"\$\{(\w[\w.+-]*?)_(?:LIBRARIES|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
+    return None if any(map(is_opaque, items)) else items
 
 
 def find_brought(view: TargetView, package: Package, items: Iterable[str]) -> frozenset[str] | None:
     """The packages of catkin that link items stand for, and all that they bring; None where that cannot be told."""
-    stems = (get_stem(item) for item in items if "$" in item)
+    stems = (resolve_package(item) for item in items if "$" in item)
     if not all(stem in BRING_NOTHING or view.is_package(stem) for stem in stems):
         return None
     return CatkinExports(view).list_transitive(find_linked_packages(view, package, items))
@@ -98,16 +90,10 @@ def find_brought(view: TargetView, package: Package, items: Iterable[str]) -> fr
 
 def find_linked_packages(view: TargetView, package: Package, items: Iterable[str]) -> set[str]:
     """The packages that link items stand for."""
-    names = {get_stem(item).partition("::")[0] for item in items}
+    names = {resolve_package(item) for item in items}
     if "catkin" in names:
         names.update(f.name for f in package.build.found if f.how == "catkin")
     return {name for name in names if view.is_package(name)} - {package.name, "catkin"}
-
-
-def get_stem(item: str) -> str:
-    """`tf` of `${tf_LIBRARIES}`; any other item itself."""
-    match = _VARIABLE.fullmatch(item)
-    return match.group(1) if match else item
 
 
 def normalize(name: str) -> str:

@@ -63,7 +63,7 @@ def _list_unknown_spellings(view: TargetView, package: Package):
 
 def _list_lost_spellings(view: TargetView, package: Package):
     """find_package names to which the target's version of a library answers no longer, where the build needs them."""
-    linked = {link.item for target in package.build.targets for link in target.links if link.how == "ament"}
+    linked = {link.item for link in package.build.target_links if link.how == "ament"}
     for f in package.build.found:
         if f.how != "find_package" or f.via or not (f.required or f.name in linked):
             continue

@@ -42,9 +42,8 @@ def _links(view: TargetView, package: Package, other: str, target: str) -> bool:
     return any(
         resolve_package(link.item) == other
         and (link.how == "ament" or link.item == f"{other}::{target}" or link.item.endswith("_TARGETS}"))
-        and view.is_sure((*built.conditions, *link.conditions))
-        for built in package.build.targets
-        for link in built.links
+        and view.is_sure(link.conditions)
+        for link in package.build.target_links
         if link.how in ("link", "ament")
     )
 

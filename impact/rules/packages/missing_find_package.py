@@ -95,7 +95,7 @@ def missing_find_package(view: TargetView, package: Package):
         doubts = (stops_at_names(view) or Doubt.LUCKY, not opaque or Doubt.INCOMPLETE)
         yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
     sought = {fold(f.name) for f in package.build.found if f.name in outside}
-    linked = {fold(link.item) for t in package.build.targets for link in t.links if link.how == "link"}
+    linked = {fold(link.item) for link in package.build.target_links if link.how == "link"}
     for need in view.sort_needs(package):
         tested = need.role == "test" and bool(need.targets) and view.is_built("test") and not finds_tested
         if need.how != "include" or not (need.role == "build" or tested) or not need.certain:
@@ -174,8 +174,7 @@ def _find_vendored_libraries(view: TargetView, package: Package):
         asked = found.get(vendor)
         if asked is None or library in found or not version or not is_at_least(version, since):
             continue
-        linked = {fold(link.item) for t in package.build.targets for link in t.links}
-        if fold(library) in linked:
+        if any(fold(link.item) == fold(library) for link in package.build.target_links):
             continue
         use = next((i for i in package.linked.includes if i.path.startswith(root) and i.targets), None)
         if use is None or not view.is_sure(use.conditions):

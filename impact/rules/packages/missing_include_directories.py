@@ -37,7 +37,7 @@ def missing_include_directories(view: TargetView, package: Package):
         return
     given = " ".join(
         [item for item, _ in build.include_dirs]
-        + [link.item for t in build.targets for link in t.links if link.how == "include"]
+        + [link.item for link in build.target_links if link.how == "include"]
     )
     if "catkin_INCLUDE_DIRS" in given or "/opt/ros" in given:
         return

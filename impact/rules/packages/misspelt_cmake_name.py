@@ -91,7 +91,7 @@ def _list_libraries(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     found = {name for f in package.build.found for name in (f.name, f.prefix)}
     for target in targets if libraries and not package.build.unresolved else ():
         for link in target.links if target.kind in ("executable", "library", "module", "test") else ():
-            name, conditions = link.item, (*target.conditions, *link.conditions)
+            name, conditions = link.item, link.conditions
             if link.how != "link" or name in names or name in found or not _PLAIN.fullmatch(name):
                 continue
             meant = [library for library in libraries if is_slip(name, library)]
@@ -122,10 +122,9 @@ def _list_named(view: TargetView, package: Package):
     for e in package.build.exports:
         if e.how in ("ament_export_dependencies", "catkin_depends"):
             yield e.at, e.item, False, e.conditions, e.how == "ament_export_dependencies"
-    for target in package.build.targets:
-        for link in target.links:
-            if link.how == "ament" and "$" not in link.item:
-                yield link.at, link.item, stops_at_names(view), (*target.conditions, *link.conditions), False
+    for link in package.build.target_links:
+        if link.how == "ament" and "$" not in link.item:
+            yield link.at, link.item, stops_at_names(view), link.conditions, False
 
 
 def _run_together(name: str, names) -> tuple[str, str] | None:

@@ -172,7 +172,7 @@ def _is_own(view: TargetView, package: Package, library: str) -> bool:
         or view.providers.find_pkgconfig(f"lib{library}")
     ):
         return False
-    return all(link.item != library for target in package.build.targets for link in target.links)
+    return all(link.item != library for link in package.build.target_links)
 
 
 def _sets(package: Package, stem: str) -> bool:

@@ -109,7 +109,7 @@ def _list_paths(package: Package) -> Iterator[_Path]:
             yield _Path(path, how, target.name, target.at, conditions)
         for link in target.links:
             if link.how in ("link", "include"):
-                yield _Path(link.item, link.how, target.name, link.at, (*target.conditions, *link.conditions))
+                yield _Path(link.item, link.how, target.name, link.at, link.conditions)
     for path, at in build.include_dirs:
         yield _Path(path, "include", "", at, ())
     for install in build.installs:

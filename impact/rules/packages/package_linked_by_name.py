@@ -39,7 +39,7 @@ def package_linked_by_name(view: TargetView, package: Package):
         if target.static or target.kind not in ("executable", "library", "module", "test"):
             continue
         for link in target.links:
-            name, conditions = link.item, (*target.conditions, *link.conditions)
+            name, conditions = link.item, link.conditions
             if link.how != "link" or name not in found or name in seen or not view.applies(conditions):
                 continue
             exported = _list_exported(view, name)

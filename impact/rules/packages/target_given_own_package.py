@@ -36,7 +36,7 @@ def target_given_own_package(view: TargetView, package: Package):
         (target, link)
         for target in package.build.targets
         for link in target.links
-        if link.how == "ament" and link.item == package.name and view.is_sure(target.conditions + link.conditions)
+        if link.how == "ament" and link.item == package.name and view.is_sure(link.conditions)
     )
     for target, link in given:
         yield Diagnostic(link.at, "ament_target_dependencies", package.name, {"target": target.name})

@@ -54,7 +54,7 @@ def _list_linked(view: TargetView, package: Package, tag: str):
         for target in package.build.targets
         if target.name in installed and target.kind in ("library", "interface")
         for link in target.links
-        if link.how == "link" and link.visibility != "PRIVATE" and view.applies((*target.conditions, *link.conditions))
+        if link.how == "link" and link.visibility != "PRIVATE" and view.applies(link.conditions)
     }
     exported = None
     for name, kinds in declared.items():

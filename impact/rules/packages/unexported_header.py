@@ -136,5 +136,5 @@ def _is_unlinked(package: Package, include: IncludeUse, library: str) -> bool:
 def _reaches(package: Package, header: str) -> bool:
     """Whether a package has an include folder of its own that a header of another one lies in, or may."""
     folders = [item for item, _ in package.build.include_dirs]
-    folders += [link.item for target in package.build.targets for link in target.links if link.how == "include"]
+    folders += [link.item for link in package.build.target_links if link.how == "include"]
     return any(header.startswith(f"{posixpath.normpath(folder)}/") for folder in folders)

@@ -133,7 +133,7 @@ def _list_without_library(view: TargetView, package: Package) -> Iterator[Diagno
         return  # unexported-header looks at those who include them
     public = [p for p, _ in package.linked.source_targets if p.startswith(folders)] if catkin else ()
     offered = frozenset(public or package.linked.public_headers)
-    linked = {link.item for target in package.build.targets for link in target.links}
+    linked = {link.item for link in package.build.target_links}
     headers = {name for path, names in package.linked.source_targets if path in offered for name in names} - linked
     # Those who find a package of catkin in the devel space ask for no install rule.
     made = headers if catkin else headers & package.build.installed_targets

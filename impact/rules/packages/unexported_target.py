@@ -25,7 +25,7 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...model.cmake.build import BuildTarget, Link
+from ...model.cmake.build import Link
 from ...model.cmake.links import list_exported_targets
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
@@ -44,17 +44,16 @@ def unexported_target(view: TargetView) -> Iterator[Diagnostic]:
     seen = set()
     for package in view.list_built():
         own = {target.name for target in package.build.targets}
-        for target in package.build.targets:
-            for link in target.links:
-                head, separator, name = link.item.partition("::")
-                owner = view.workspace.packages.get(head) if separator and link.how == "link" else None
-                if owner is None or owner.name == package.name or link.item in own or (owner.name, name) in seen:
-                    continue
-                exported = _list_names(view, owner)
-                if exported is None or name in exported or "$" in name or package.build.unresolved:
-                    continue
-                seen.add((owner.name, name))
-                yield from _diagnose(view, package, target, link, owner)
+        for link in package.build.target_links:
+            head, separator, name = link.item.partition("::")
+            owner = view.workspace.packages.get(head) if separator and link.how == "link" else None
+            if owner is None or owner.name == package.name or link.item in own or (owner.name, name) in seen:
+                continue
+            exported = _list_names(view, owner)
+            if exported is None or name in exported or "$" in name or package.build.unresolved:
+                continue
+            seen.add((owner.name, name))
+            yield from _diagnose(view, package, link, owner)
 
 
 def _list_names(view: TargetView, owner: Package) -> set[str] | None:
@@ -75,12 +74,9 @@ def _list_names(view: TargetView, owner: Package) -> set[str] | None:
     return {target.export_name or target.name for target in list_exported_targets(owner)}
 
 
-def _diagnose(
-    view: TargetView, package: Package, target: BuildTarget, link: Link, owner: Package
-) -> Iterator[Diagnostic]:
+def _diagnose(view: TargetView, package: Package, link: Link, owner: Package) -> Iterator[Diagnostic]:
     name = link.item.partition("::")[2]
-    certain = view.is_sure((*target.conditions, *link.conditions))
-    doubts = (certain or Doubt.CONDITIONAL,)
+    doubts = (view.is_sure(link.conditions) or Doubt.CONDITIONAL,)
     data = {"by": package.name, "owner": owner.name, "target": name}
     made = next((t for t in owner.build.targets if name in (t.name, t.export_name, t.output_name)), None)
     if made is not None and view.reports_on(owner.name):

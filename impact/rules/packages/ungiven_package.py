@@ -29,12 +29,11 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Set
 from functools import cache, partial
 
-from ...model.cmake.links import list_reached_targets, may_hide, resolve_package
+from ...model.cmake.links import is_opaque, list_reached_targets, may_hide, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .include_folders import OFF_PATH, collect_folder_doubts, shares_one_folder
 
 _FindGiven = Callable[[str], set[str] | None]
-_INCLUDE_DIRS_OF = re.compile(r"\$\{(.+?)_INCLUDE_DIRS?\}")
 
 
 @rule(
@@ -56,8 +55,8 @@ def ungiven_package(view: TargetView, package: Package):
     yield from _list_off_path(view, package, includes, find_given)
     if shares_one_folder(view):
         return
-    everywhere = {n for item, _ in package.build.include_dirs for n in _INCLUDE_DIRS_OF.findall(item)}
-    everywhere |= {resolve_package(link.item) for link in package.build.links}
+    given_all = (*(item for item, _ in package.build.include_dirs), *(link.item for link in package.build.links))
+    everywhere = {resolve_package(item) for item in given_all}
     all_found = {f.name for f in package.build.found}
     found = all_found - {package.name}
     if any("$" in name for name in found) or package.build.finds_declared:
@@ -86,7 +85,7 @@ def ungiven_package(view: TargetView, package: Package):
                 items = find_given(target)
                 if items is not None:
                     items = items | _list_of_interfaces(package, items)
-                hiding = {item for item in items or () if "$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item)}
+                hiding = set(filter(is_opaque, items or ()))
                 # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
                 # A target of the package may be called like the package, and brings none of what that declares.
                 given = {resolve_package(item) for item in items or () if item not in hiding and item not in targets}
@@ -135,7 +134,7 @@ def _list_off_path(
             if items is None or not view.is_sure(targets[target].conditions):
                 continue
             items = {item for item in (*items, *everywhere) if item not in targets}
-            if any("$" in item and not _VARIABLE_OF_PACKAGE.fullmatch(item) for item in items):
+            if any(map(is_opaque, items)):
                 continue
             given = {resolve_package(item) for item in items}
             known = {
@@ -154,7 +153,6 @@ def _list_off_path(
 
 # Includes by the name of the folder itself, as in <eigen3/Eigen/Core>.
 _NAMES_FOLDER = re.compile(r"(?:eigen3|pcl-[\d.]+|bullet|OGRE|libxml2)/")
-_VARIABLE_OF_PACKAGE = re.compile(r"\$\{[^${}]+_(?:LIBRARIES|TARGETS|INCLUDE_DIRS?|LIBRARY|LIBS)\}")
 
 
 def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:

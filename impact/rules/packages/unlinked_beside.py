@@ -17,10 +17,10 @@ Not reported
     Targets that are given something that cannot be seen; libraries.
 """
 
-from ...model.cmake.links import list_linked_items
+from ...model.cmake.links import is_opaque, list_linked_items
 from ...model.package import IncludeUse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import PACKAGE_VARIABLE, normalize
+from .catkin_links import normalize
 from .unlinked_library import COMPILED
 
 # Beside those that are always linked, libraries of which some headers can be used alone: another target has to show
@@ -64,7 +64,7 @@ def unlinked_beside(view: TargetView, package: Package):
                 c for c in target.conditions if "TESTING" not in c.text
             ):
                 continue
-            if any("$" in item and not PACKAGE_VARIABLE.match(item) for item in items):
+            if any(map(is_opaque, items)):
                 continue
             seen.add(word)
             subject = root.partition("/")[0].removesuffix(".h")

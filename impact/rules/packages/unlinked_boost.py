@@ -29,10 +29,10 @@ from collections.abc import Iterator, Mapping, Set
 from typing import NamedTuple
 
 from ...model.cmake.build import BuildTarget
-from ...model.cmake.links import list_linked_items
+from ...model.cmake.links import is_opaque, list_linked_items, resolve_package
 from ...targets.providers.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP, find_compiled_component
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import PACKAGE_VARIABLE, CatkinExports, find_brought, list_linked
+from .catkin_links import CatkinExports, find_brought, list_linked
 
 _MESSAGE = "`{target}` includes `{header}` but does not link the Boost component `{component}`"
 
@@ -67,15 +67,13 @@ def unlinked_boost(view: TargetView, package: Package):
 def _list_not_asked_for(view: TargetView, package: Package, asked: Set[str]) -> Iterator[Diagnostic]:
     """Imported targets of Boost whose component find_package() is not given."""
     seen = set(asked)
-    for target in package.build.targets:
-        for link in target.links:
-            head, _, component = link.item.partition("::")
-            if head != "Boost" or component in seen or component not in BOOST_COMPILED:
-                continue
-            if view.applies((*target.conditions, *link.conditions)):
-                seen.add(component)
-                subject, doubts = f"Boost::{component}", (Doubt.INCOMPLETE,)
-                yield Diagnostic(link.at, subject, package.name, {"component": component}, "not asked for", doubts)
+    for link in package.build.target_links:
+        head, _, component = link.item.partition("::")
+        if head != "Boost" or component in seen or component not in BOOST_COMPILED or not view.applies(link.conditions):
+            continue
+        seen.add(component)
+        doubts = (Doubt.INCOMPLETE,)
+        yield Diagnostic(link.at, link.item, package.name, {"component": component}, "not asked for", doubts)
 
 
 def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Iterator[Diagnostic]:
@@ -144,12 +142,10 @@ def _find_linked_components(
             components |= asked
         elif "boost_" in low:
             components |= {c for c in BOOST_COMPILED if f"boost_{c}" in low}
-        elif match := PACKAGE_VARIABLE.match(item):
-            packages.add(match.group(1))
-        elif "$" in item:
+        elif is_opaque(item):
             return None
         else:
-            packages.add(item.partition("::")[0])
+            packages.add(resolve_package(item))
     linked = components.union(*(BOOST_BROUGHT.get(c, ()) for c in components))
     if "catkin" in packages:
         packages |= {f.name for f in package.build.found if f.how == "catkin"}

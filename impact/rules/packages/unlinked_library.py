@@ -27,7 +27,7 @@ Not reported
 from ...model.cmake.build import BuildTarget
 from ...model.cmake.links import resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import BRING_NOTHING, CatkinExports, find_linked_packages, get_stem, list_linked, normalize
+from .catkin_links import BRING_NOTHING, CatkinExports, find_linked_packages, list_linked, normalize
 
 COMPILED = (
     ("yaml-cpp/", "yamlcpp"),
@@ -112,7 +112,7 @@ def _is_brought(view: TargetView, package: Package, target: str, header: str, wo
 def _may_bring_anything(view: TargetView, package: Package, item: str) -> bool:
     """Whether it cannot be seen what an item brings: it is of no package of ROS and of no library that is known to come
     alone. A variable that no package found can set is empty."""
-    name = get_stem(item) if "$" in item else resolve_package(item)
+    name = resolve_package(item)
     if name in BRING_NOTHING or view.is_package(name) or name.startswith(("Qt5", "Qt6")):
         return False
     if "$" not in item:

@@ -24,9 +24,9 @@ Not reported
 
 from collections.abc import Collection
 
-from ...model.cmake.links import list_linked_items
+from ...model.cmake.links import list_linked_items, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
-from .catkin_links import PACKAGE_VARIABLE, normalize
+from .catkin_links import normalize
 
 
 @rule(
@@ -64,10 +64,7 @@ def unlinked_own_library(view: TargetView, package: Package):
             if not (libraries or programs) or not view.is_sure(c for c in target.conditions if "TESTING" not in c.text):
                 continue
             items = links[name]
-            if items is None or any(
-                "$" in item and ((match := PACKAGE_VARIABLE.match(item)) is None or match[1] not in known)
-                for item in items
-            ):
+            if items is None or any("$" in item and resolve_package(item) not in known for item in items):
                 continue
             reached = {name, *items, *(targets[n].alias_of for n in items & targets.keys())}
             if not definers.isdisjoint(reached) or any(normalize(n) in normalize(i) for n in libraries for i in items):

@@ -64,7 +64,7 @@ def unused_dependency(view: TargetView, package: Package):
         if (
             name in found
             and kinds & {"build"}
-            and any(name in link.item for t in package.build.targets for link in t.links)
+            and any(name in link.item for link in package.build.target_links)
         ):
             continue
         if view.list_debs(name) & debian or (

@@ -32,6 +32,6 @@ def stands_in_cmake(package: Package, name: str) -> bool:
     build = package.build
     return (
         any(name == found.name for found in build.found)
-        or any(name in link.item for target in build.targets for link in target.links)
+        or any(name in link.item for link in build.target_links)
         or any(use.name.startswith(name) for use in build.uses)
     )
