@@ -16,7 +16,6 @@ from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, FixAction, Insert, Replace
 from ..rules.rule import Diagnostic, Finding, Rule, load_rules
-from ..targets.version import compare as compare_versions
 from ..tree import Tree
 from . import result_cache
 from .cross_target_fix import Split, add_evidence
@@ -250,13 +249,11 @@ def _has_header(view: TargetView, path: str) -> bool:
         return True
     for provider in view.find_header(path):
         version = target.find_version(provider.name) if provider.kind == "ros" else None
-        if not version:
-            continue
-        for span in view.providers.list_header_spans(provider.name, path):
-            # A span without an end goes on in the distro's releases after the newest one whose files are known.
-            here = span.distro == target.distro and compare_versions(span.first, version) <= 0
-            if here and (span.last is None or compare_versions(version, span.last) <= 0):
-                return True
+        if version and (
+            view.has_released_header(provider.name, path)
+            or view.providers.keeps_header(provider.name, path, target.distro, version)
+        ):
+            return True
     return target.platform in view.providers.list_header_platforms(path)
 
 

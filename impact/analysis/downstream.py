@@ -137,13 +137,11 @@ class _Reading:
     def before(self) -> Graph:
         return get_flow(self.base).graph
 
-    @cached_property
-    def reach(self) -> DownstreamSearch:
-        return DownstreamSearch(self.now)
-
-    @cached_property
-    def reach_before(self) -> DownstreamSearch:
-        return DownstreamSearch(self.before)
+    @cache_method
+    def get_side(self, gone: bool) -> tuple[Graph, DownstreamSearch]:
+        """The graph, and what lies downstream in it; gone: that of the base."""
+        graph = self.before if gone else self.now
+        return graph, DownstreamSearch(graph)
 
     @cached_property
     def packages(self) -> dict[str, str]:
@@ -203,7 +201,7 @@ class _Reading:
     def compare_messages(self) -> Iterator[Effect]:
         for change in list_message_changes(self.workspace, self.base):
             gone = change.change == "removed"
-            graph, reach = (self.before, self.reach_before) if gone else (self.now, self.reach)
+            graph, reach = self.get_side(gone)
             types = find_containing_types(self.base if gone else self.workspace, change.name)
             using = [one for one in graph.endpoints if one.type in types and one.topic and one.node]
             first = [
@@ -225,7 +223,7 @@ class _Reading:
     def compare_logic(self) -> Iterator[Effect]:
         for change in compare_publishing(self.workspace, self.base):
             gone = change.kind == "gone"
-            graph, reach = (self.before, self.reach_before) if gone else (self.now, self.reach)
+            graph, reach = self.get_side(gone)
             at = (change.path, change.line)
             here = [
                 one
@@ -269,7 +267,7 @@ class _Reading:
 
     def make_topic_effect(self, edge: Edge, endpoint: Endpoint, why: str) -> Effect:
         gone = edge.mark == "removed"
-        graph, reach = (self.before, self.reach_before) if gone else (self.now, self.reach)
+        graph, reach = self.get_side(gone)
         first: list[Hop] = []
         if edge.role in RECEIVING:
             sent = tuple(reach.list_sent_on(edge.node, endpoint.path, endpoint.line, True))
@@ -308,6 +306,7 @@ class _Reading:
         )
 
     def compare_callbacks(self) -> Iterator[Effect]:
+        _, reach = self.get_side(False)
         publishes: dict[tuple[str, str], list[Publish]] = {}
         for publish in self.now.publishes:
             publishes.setdefault((publish.path, publish.function), []).append(publish)
@@ -337,7 +336,7 @@ class _Reading:
                 # What is stored is sent on later; that something far away in the calls is stored is not supposed.
                 near = one.trigger.kind == "subscriber" and one.steps <= 1
                 for node in sorted(owners.get(at, ())):
-                    found = self.reach.list_sent_on(node, *at, near)
+                    found = reach.list_sent_on(node, *at, near)
                     sent.setdefault(node, {}).update(dict.fromkeys(found))
             topics = {topic for each in sent.values() for topic, _ in each} - EVERYWHERE
             if not topics:
@@ -349,7 +348,7 @@ class _Reading:
             yield Effect(
                 "callback", "changed" if function.known else "added", function.name, self.find_package(function.path),
                 function.path, function.line, nodes, tuple(sorted(topics)), _describe_trigger(led),
-                self.list_downstream(nodes, [_Out(node, tuple(each)) for node, each in sent.items()], self.reach),
+                self.list_downstream(nodes, [_Out(node, tuple(each)) for node, each in sent.items()], reach),
             )  # fmt: skip
 
     @cached_property

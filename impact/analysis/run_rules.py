@@ -13,6 +13,7 @@ from ..rules.rule import Diagnostic, Rule
 from ..targets.snapshot import SnapshotError
 from . import result_cache
 from .findings import drop_outweighed, lower_repeats
+from .result_cache import Yielded
 from .session import OpenedWorkspace
 
 # Starting processes costs about as much as running the rules on this many packages for one target.
@@ -34,8 +35,6 @@ _FLOW_TASK: _Task = (_FLOW, 0, "")
 
 # (rule, why it failed) to the targets on which it did
 Crashes = dict[tuple[str, str], list[str]]
-# (rule, what it yields)
-Yielded = tuple[str, Diagnostic]
 
 
 def run_rules(

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
-from .changes import DISTROS, ChangeRow, find_removal_version, find_version, has_reached, list_changes, load_rows
+from .changes import DISTROS, ChangeRow, find_row, find_version, has_reached, list_changes, load_rows
 from .distro.known import list_known_distros, release_day
 from .evidence import make_evidence, make_offer_evidence
 from .evidence_record import Evidence
@@ -438,7 +438,8 @@ def _get_name(change: ChangeInForce) -> str:
 def _convert_row(kind: str, change: ChangeInForce) -> Availability:
     """What a reviewed row says of its name. kind: of the symbol."""
     state: State = "changed" if change.kind in ("api-changed", "call-changed") else "removed"
-    since, earlier = find_removal_version(change), True
+    row = find_row(change)
+    since, earlier = row.removed_in if row is not None else "", True
     if change.state == "absent":
         since, earlier = change.since, False
         state = state if change.kind == "call-changed" else "not yet"

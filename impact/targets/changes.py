@@ -309,16 +309,17 @@ def _determine_state(row: ChangeRow, version: str, target: DistroTarget, table: 
     gone = has_reached(row.removed_in, version, target)
     new = None
     if row.kind.startswith("header-") and not row.library:
-        old = table.has_header(row.package, row.old, target.distro, version)
-        if old is None and target.distro != "rolling" and _is_kept(table, row.package, row.old, target.distro, version):
+        release = target.distro, version
+        old = table.has_header(row.package, row.old, *release)
+        if old is None and target.distro != "rolling" and table.keeps_header(row.package, row.old, *release):
             old = True
         if old is not None:
             gone = not old
             if gone and not _has_had_header(row, target, table):
                 return None
         if row.new:
-            new = table.has_header(row.package, row.new, target.distro, version)
-            if new is None and _is_kept(table, row.package, row.new, target.distro, version):
+            new = table.has_header(row.package, row.new, *release)
+            if new is None and table.keeps_header(row.package, row.new, *release):
                 new = True
     if gone:
         return "removed"
@@ -336,14 +337,6 @@ def behaves_differently(row: ChangeRow, target: DistroTarget) -> bool | None:
     if not version or (row.removed_in in DISTROS and not _is_same_generation(row.removed_in, target)):
         return None
     return has_reached(row.removed_in, version, target) and not has_reached(row.back_in, version, target)
-
-
-def _is_kept(table: Providers, package: str, header: str, distro: str, version: str) -> bool:
-    """Whether the distro's newest release that was read has a header: later ones of a distro rarely drop any."""
-    return any(
-        span.distro == distro and span.last is None and is_at_least(version, span.first)
-        for span in table.list_header_spans(package, header)
-    )
 
 
 def _has_had_header(row: ChangeRow, target: DistroTarget, table: Providers) -> bool:
@@ -387,14 +380,14 @@ def list_excuses(package: str, name: str) -> tuple[str, ...]:
     return _load_excuses().get((package, name), ())
 
 
-def find_removal_version(change: ChangeInForce) -> str:
-    """The version from which on an old name is gone; empty when it is not known."""
-    return _load_bounds().get((change.kind, change.package, change.old), "")
+def find_row(change: ChangeInForce) -> ChangeRow | None:
+    """The row of a change. An absent name is known by its new spelling too, and the change keeps the old one."""
+    return _index_rows().get((change.kind, change.package, change.old))
 
 
 @cache
-def _load_bounds() -> dict[tuple[str, str, str], str]:
-    return {(row.kind, row.package, row.old): row.removed_in for row in load_rows()}
+def _index_rows() -> dict[tuple[str, str, str], ChangeRow]:
+    return {(row.kind, row.package, row.old): row for row in (*load_rows(), *load_uses().values())}
 
 
 @cache

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cache, cmp_to_key
 
-from .changes import DISTROS, ChangeRow, find_version, has_reached, load_rows, load_uses
+from .changes import DISTROS, ChangeRow, find_row, find_version, has_reached
 from .distro.distro import DistroTarget
 from .distro.known import list_releases, release_day
 from .evidence_record import Evidence, OnTarget
@@ -23,7 +23,7 @@ from .version import compare, is_at_least, parse
 
 def make_evidence(change: ChangeInForce) -> Evidence:
     """The evidence for a known change of changes.py."""
-    row = _load_rows().get((change.kind, change.package, change.old))
+    row = find_row(change)
     if row is None:
         what = _WHAT.get(change.state, "removed")
         return Evidence(change.package, what, library=change.library, source=change.source)
@@ -78,12 +78,6 @@ def find_release_before(package: str, version: str) -> str:
     generations = {ros for ros, other in released if other == version}
     older = (other for ros, other in released if generations == {ros} and not is_at_least(other, version))
     return max(older, key=cmp_to_key(compare), default="")
-
-
-@cache
-def _load_rows() -> dict[tuple[str, str, str], ChangeRow]:
-    # An absent name is known by its new spelling too, and the change keeps the old one.
-    return {(row.kind, row.package, row.old): row for row in (*load_rows(), *load_uses().values())}
 
 
 def make_offer_evidence(offered: Offered) -> Evidence:

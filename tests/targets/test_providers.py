@@ -148,7 +148,7 @@ def test_header_history(providers, package, header, distro, version, has):
 
 
 def test_every_reviewed_fact_names_something(providers):
-    for kind, name, entries in providers._query("SELECT kind, name, entries FROM fact"):
+    for kind, name, entries in providers.fetch("SELECT kind, name, entries FROM fact"):
         assert kind in ("cmake", "pkgconfig", "module", "program", "header", "vendor", "folder"), name
         assert all(entry == entry.strip() for entry in entries.split("\n")), name
 

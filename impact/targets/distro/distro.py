@@ -496,21 +496,26 @@ class DistroTarget:
     def resolve(self, key: str) -> Resolution | None:
         """The rosdep rule for a key on this platform, None when there is none."""
         os_name, release = split_platform(self.platform)
-        found = self._resolve(key, os_name, release, self._rule_ts)
-        if found is None and self.end_of_life and self.end_of_life < self.date:
-            # rosdistro drops the rules of old releases; machines of an ended distro were set up when they stood.
-            found = self._resolve(key, os_name, release, compute_end_of_day(self.end_of_life))
-        return found
-
-    def _resolve(self, key: str, os_name: str, release: str, ts: int) -> Resolution | None:
+        own = self._rules.get(key, {})
         for system in (os_name, "*"):
-            if system in self._rules.get(key, ()):
-                return resolve_rule(self._rules[key][system], os_name, release)
+            if system in own:
+                return resolve_rule(own[system], os_name, release)
+        found = (resolve_rule(decode_rule(rules.get(key)), os_name, release) for rules in self._public_rules)
+        return next(filter(None, found), None)
+
+    @cached_property
+    def _public_rules(self) -> list[dict[str, str]]:
+        """The public rules for the platform's system by key, as they are stored: those of the target's day, then those
+        of the day on which its distro ended. rosdistro drops the rules of old releases; machines of an ended distro
+        were set up when they stood."""
+        moments = [self._rule_ts]
+        if self.end_of_life and self.end_of_life < self.date:
+            moments.append(compute_end_of_day(self.end_of_life))
         # Some keys stand for every operating system under the name `*`.
-        asked = "SELECT os, rule FROM rule WHERE key = ? AND os IN (?, '*') AND ts <= ? ORDER BY ts"
-        newest = dict(self._data.fetch(asked, (key, os_name, ts)))
-        rule = next((newest[one] for one in (os_name, "*") if newest.get(one) is not None), None)
-        return resolve_rule(decode_rule(rule), os_name, release) if rule is not None else None
+        asked = "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key"
+        tables = [[self._data.fetch(asked, (system, ts)) for system in ("*", split_platform(self.platform)[0])]
+                  for ts in moments]  # fmt: skip
+        return [{key: rule for rows in table for key, rule, _ in rows if rule is not None} for table in tables]
 
     def knows_key(self, key: str) -> bool:
         """True when rosdep has, or had, a key of this name for any platform."""
@@ -568,25 +573,9 @@ class DistroTarget:
 
     @cache_method
     def _resolve_keys(self) -> dict[str, Resolution]:
-        """Every key that resolves here with its resolution, read at once."""
-        os_name, release = split_platform(self.platform)
-        moments = [self._rule_ts]
-        if self.end_of_life and self.end_of_life < self.date:
-            moments.append(compute_end_of_day(self.end_of_life))
-        found: dict[str, Resolution] = {}
-        for ts in moments:
-            seen: set[str] = set()
-            for system in (os_name, "*"):
-                for key, rule, _ in self._data.fetch(
-                    "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key", (system, ts)
-                ):
-                    if rule is None or key in seen:
-                        continue
-                    seen.add(key)
-                    resolution = resolve_rule(decode_rule(rule), os_name, release)
-                    if resolution and key not in found:
-                        found[key] = resolution
-        return found
+        """Every key that resolves here with its resolution."""
+        keys = dict.fromkeys((*self._rules, *(key for rules in self._public_rules for key in rules)))
+        return {key: found for key in keys if (found := self.resolve(key)) is not None}
 
     @cache_method
     def _load_libraries(self) -> dict[str, Library]:

@@ -83,10 +83,10 @@ class Providers(ShippedDatabase):
         system = self._find_system("header", path)
         released = [
             Provider("ros", name)
-            for (name,) in self._query(
+            for (name,) in self.fetch(
                 "SELECT h.package FROM ros_header h JOIN pattern p ON p.id = h.pattern WHERE h.path = ?"
                 " ORDER BY length(p.spans) DESC, h.package",
-                path,
+                (path,),
             )
         ]
         if system:
@@ -183,18 +183,18 @@ class Providers(ShippedDatabase):
 
     @cached_property
     def _system_names(self) -> frozenset[str]:
-        return frozenset(name for (entries,) in self._query("SELECT entries FROM provider") for name in entries.split())
+        return frozenset(name for (entries,) in self.fetch("SELECT entries FROM provider") for name in entries.split())
 
     def list_provider_groups(self) -> list[tuple[str, ...]]:
         """For every header and pkg-config file of the system the packages that bring it, best first."""
         entries = {
             number: tuple(dict.fromkeys(p.package for p in _decode(text) if p.package))
-            for number, text in self._query("SELECT id, entries FROM provider")
+            for number, text in self.fetch("SELECT id, entries FROM provider")
         }
         return [
             packages
             for table in ("header", "pkgconfig")
-            for (number,) in self._query(f"SELECT provider FROM {table} ORDER BY name")
+            for (number,) in self.fetch(f"SELECT provider FROM {table} ORDER BY name")
             if (packages := entries[number])
         ]
 
@@ -205,7 +205,7 @@ class Providers(ShippedDatabase):
     @cached_property
     def platforms(self) -> tuple[str, ...]:
         """Platforms whose system packages are in the table."""
-        return tuple(name for (name,) in self._query("SELECT name FROM platform ORDER BY bit"))
+        return tuple(name for (name,) in self.fetch("SELECT name FROM platform ORDER BY bit"))
 
     def list_header_spans(self, package: str, header: str) -> tuple[HeaderSpan, ...]:
         """Releases of a ROS package that have a header (include path), by distro; empty when none is known to.
@@ -218,7 +218,7 @@ class Providers(ShippedDatabase):
     @cache_method
     def list_known_releases(self, package: str) -> tuple[HeaderSpan, ...]:
         """Releases of a ROS package whose source trees were read, as spans by distro."""
-        rows = self._query("SELECT pattern FROM ros_package WHERE name = ?", package)
+        rows = self.fetch("SELECT pattern FROM ros_package WHERE name = ?", (package,))
         return self._load_pattern(rows[0][0]) if rows else ()
 
     def has_header(self, package: str, header: str, distro: str, version: str) -> bool | None:
@@ -226,6 +226,13 @@ class Providers(ShippedDatabase):
         if not _contains_version(self.list_known_releases(package), distro, version):
             return None
         return _contains_version(self.list_header_spans(package, header), distro, version)
+
+    def keeps_header(self, package: str, header: str, distro: str, version: str) -> bool:
+        """Whether the distro's newest release that was read, before a version or this one, has a header: later ones of
+        a distro rarely drop any."""
+        wanted = parse(version)
+        spans = self.list_header_spans(package, header)
+        return any(one.distro == distro and one.last is None and parse(one.first) <= wanted for one in spans)
 
     def has_headers(self, package: str, distro: str, version: str) -> bool | None:
         """Whether a package's release in a distro has any header; None when that release's tree is not known."""
@@ -237,7 +244,7 @@ class Providers(ShippedDatabase):
     @cache_method
     def _list_headers(self, package: str) -> dict[str, int]:
         """The headers that a ROS package ever had, with their patterns."""
-        return dict(self._query("SELECT path, pattern FROM ros_header WHERE package = ?", package))
+        return dict(self.fetch("SELECT path, pattern FROM ros_header WHERE package = ?", (package,)))
 
     def _find_by_prefix(self, path: str) -> list[Provider]:
         """Reviewed owners of whole folders (`gz/math`), longest first; not seen in a file list, so sure is False."""
@@ -259,7 +266,7 @@ class Providers(ShippedDatabase):
     @cached_property
     def _reviewed(self) -> dict[tuple[str, str], str]:
         """The facts of data/providers.yaml, a few hundred, by kind and name."""
-        return {(kind, name): entries for kind, name, entries in self._query("SELECT kind, name, entries FROM fact")}
+        return {(kind, name): entries for kind, name, entries in self.fetch("SELECT kind, name, entries FROM fact")}
 
     def _find_system(self, table: str, name: str) -> list[Provider]:
         row = self._find_row(table, name)
@@ -271,17 +278,17 @@ class Providers(ShippedDatabase):
 
     @cache_method
     def _load_set(self, number: int) -> tuple[Provider, ...]:
-        ((entries,),) = self._query("SELECT entries FROM provider WHERE id = ?", number)
+        ((entries,),) = self.fetch("SELECT entries FROM provider WHERE id = ?", (number,))
         return tuple(_decode(entries))
 
     @cache_method
     def _find_row(self, table: str, name: str) -> tuple[int, int] | None:
         """(provider, platforms) of a name in one of the tables of the system's packages, None when it is not there."""
-        rows = self._query(f"SELECT provider, platforms FROM {table} WHERE name = ?", name)
+        rows = self.fetch(f"SELECT provider, platforms FROM {table} WHERE name = ?", (name,))
         return rows[0] if rows else None
 
     def _find_ros(self, table: str, name: str) -> list[Provider]:
-        for (packages,) in self._query(f"SELECT packages FROM {table} WHERE name = ?", name):
+        for (packages,) in self.fetch(f"SELECT packages FROM {table} WHERE name = ?", (name,)):
             return [Provider("ros", package) for package in packages.split(" ")]
         return []
 
@@ -293,14 +300,14 @@ class Providers(ShippedDatabase):
 
     @cache_method
     def _load_pattern(self, number: int) -> tuple[HeaderSpan, ...]:
-        ((text,),) = self._query("SELECT spans FROM pattern WHERE id = ?", number)
+        ((text,),) = self.fetch("SELECT spans FROM pattern WHERE id = ?", (number,))
         spans = (line.split(" ") for line in text.split("\n") if line)
         return tuple(HeaderSpan(distro, first, None if last == "-" else last) for distro, first, last in spans)
 
     @cached_property
     def _folded_cmake(self) -> dict[str, list[str]]:
         found: dict[str, list[str]] = {}
-        for (name,) in self._query(
+        for (name,) in self.fetch(
             "SELECT name FROM cmake UNION SELECT name FROM ros_cmake UNION SELECT name FROM fact WHERE kind = 'cmake'"
         ):
             found.setdefault(name.lower(), []).append(name)
@@ -308,9 +315,6 @@ class Providers(ShippedDatabase):
             if name.lower() not in found:
                 found[name.lower()] = [name]
         return found
-
-    def _query(self, sql: str, *arguments: object) -> list[tuple]:
-        return self.fetch(sql, arguments)
 
 
 def _deduplicate(providers: list[Provider]) -> list[Provider]:
