@@ -40,7 +40,7 @@ from ..impact.targets.distro.known import list_known_distros
 from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.changes import Line
 from ..impact.targets.surface.fields import Definition, covers, load_fields
-from ..impact.targets.surface.offers import is_there_at
+from ..impact.targets.surface.offers import find_standing
 from ..impact.targets.surface.store import load_shipped
 from ..impact.targets.symbol import Symbol
 from ..impact.targets.version import is_at_least
@@ -185,7 +185,7 @@ def _is_there(line: Line, side: str, name: str, place: int) -> bool:
     """Whether a version has a name, and all that it stands in: what goes with its class has no event of its own."""
     events, separator = line.events.get(side, {}), _SEPARATOR.get(side, "\0")
     scopes = accumulate(name.split(separator), lambda scope, part: f"{scope}{separator}{part}")
-    return all(is_there_at(side, events[scope], place) for scope in scopes if scope in events)
+    return all(find_standing(side, events[scope], place).there for scope in scopes if scope in events)
 
 
 def _list_bare_presence(line: Line, package: str, ros: int, name: str) -> Iterator[tuple[str, bool]]:

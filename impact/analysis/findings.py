@@ -44,22 +44,17 @@ def drop_outweighed(
 ) -> list[tuple[str, Diagnostic]]:
     """What rules yield on one target, in order, without what another rule tells of the same place with more weight, see
     `yields_to` of rule(), and without what a rule yields twice."""
-    places = {(name, *_locate(diagnostic)) for name, diagnostic in yielded}
+    places = {(name, *diagnostic.place) for name, diagnostic in yielded}
     seen: set[tuple] = set()
     result = []
     for name, diagnostic in yielded:
-        place = _locate(diagnostic)
+        place = diagnostic.place
         known = name, place[:2], diagnostic.subject, repr(diagnostic.fact), diagnostic.doubts
         if known in seen or any((other, *place) in places for other in rules[name].yields_to):
             continue
         seen.add(known)
         result.append((name, diagnostic))
     return result
-
-
-def _locate(diagnostic: Diagnostic) -> tuple[str, int, int]:
-    at = diagnostic.at
-    return getattr(at, "path", ""), getattr(at, "line", 0), getattr(at, "column", 0)
 
 
 def lower_repeats(yielded: Sequence[tuple[str, Diagnostic]], rules: Mapping[str, Rule]) -> list[tuple[str, Diagnostic]]:
@@ -109,9 +104,7 @@ def merge_diagnostics(
     groups: dict[tuple, list[dict[str, Diagnostic]]] = {}
     for rule_name, target, diagnostic in diagnostics:
         severity = rules[rule_name].compute_severity(diagnostic)
-        at = diagnostic.at
-        place = getattr(at, "path", ""), getattr(at, "line", 0)
-        key = (rule_name, severity, *place, diagnostic.subject, diagnostic.ahead)
+        key = (rule_name, severity, *diagnostic.place[:2], diagnostic.subject, diagnostic.ahead)
         names = (target,) if target else tuple(targets) or ("",)
         _add_to_group(groups.setdefault(key, []), names, diagnostic)
     findings = [
@@ -161,7 +154,7 @@ def _make_finding(
         package=first.package,
         path=path,
         line=line,
-        column=getattr(first.at, "column", 0),
+        column=first.place[2],
         subject=first.subject,
         targets=tuple(target for target in targets if target),
         message=message,

@@ -108,7 +108,7 @@ def store_yielded(
     store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
 ) -> None:
     """Keeps what rules yielded, and names that were not resolved by their kind, for later runs."""
-    stored = tuple(_Stored(rule, _make_place(one.at), one._replace(at=None)) for rule, one in diagnostics)
+    stored = tuple(_Stored(rule, At(*one.place), one._replace(at=None)) for rule, one in diagnostics)
     store.remember("judgement", encode_rows([(key, _Judgement(stored, unresolved))]))
 
 
@@ -132,7 +132,3 @@ def load_changes(store: Store, target: DistroTarget) -> None:
             name = hashlib.sha1(one.compute_identity().encode()).digest()
             find = partial(changes_in_force, one)
             one.set_changes(recall(store, "changes", name, tuple[ChangeInForce, ...], find))
-
-
-def _make_place(at: object) -> At:
-    return At(getattr(at, "path", ""), getattr(at, "line", 0), getattr(at, "column", 0))

@@ -77,6 +77,11 @@ class Diagnostic(NamedTuple):
     also: tuple[str, ...] = ()
 
     @property
+    def place(self) -> tuple[str, int, int]:
+        """Path, line and column of where it stands."""
+        return getattr(self.at, "path", ""), getattr(self.at, "line", 0), getattr(self.at, "column", 0)
+
+    @property
     def fact(self) -> object:
         """What is said of a target: two diagnostics with equal facts are one."""
         return self.kind, self.data

@@ -15,7 +15,7 @@ from .distro.known import list_releases, release_day
 from .evidence_record import Evidence, OnTarget
 from .providers.providers import Providers
 from .surface.changes import ChangeEvent, Line
-from .surface.offers import Offered, classify_event, is_there_at, list_declared
+from .surface.offers import Offered, classify_event, find_standing, list_declared
 from .surface.store import load_shipped
 from .target import ChangeInForce
 from .version import compare, is_at_least, parse
@@ -211,7 +211,7 @@ def _holds_by(line: Line, evidence: Evidence, version: str) -> bool | None:
 def _holds_at(evidence: Evidence, events: tuple[ChangeEvent, ...], line: Line, place: int) -> bool:
     if evidence.change in ("changed", "deprecated"):
         return is_at_least(line.versions[place], evidence.first)
-    return is_there_at(evidence.side, events, place) == (evidence.change == "added")
+    return find_standing(evidence.side, events, place).there == (evidence.change == "added")
 
 
 def _find_first_day(evidence: Evidence, target: DistroTarget, holds: bool, providers: Providers) -> str:

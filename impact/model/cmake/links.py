@@ -41,14 +41,18 @@ def may_hide(item: str, name: str) -> bool:
     return ("::" in plain[-1] and not after) or name.lower().endswith(after)
 
 
-def list_linked_items(package: Package, target: str) -> set[str] | None:
-    """All that a target is linked to, itself and through targets of its package; None where that cannot be told."""
+_LINKING = ("link", "ament", "objects")
+
+
+def list_linked_items(package: Package, target: str, hows: Container[str] | None = _LINKING) -> set[str] | None:
+    """All that a target is linked to, itself and through targets of its package; None where that cannot be told. hows:
+    what counts, with None all that it is given."""
     targets = {one.name: one for one in package.build.targets}
     items = {link.item for link in package.build.links}
-    for own in list_reached_targets(targets, (target, *items), ("link", "ament", "objects")):
+    for own in list_reached_targets(targets, (target, *items), hows):
         if own.kind in ("unknown", "external", "fetched", "imported"):
             return None
-        items.update(link.item for link in own.links if link.how in ("link", "ament", "objects"))
+        items.update(link.item for link in own.links if hows is None or link.how in hows)
     return items
 
 

@@ -101,8 +101,7 @@ def diagnose(
     )  # fmt: skip
     if found.state != "upcoming" or found.horizon is None:
         return diagnostic
-    place = getattr(at, "path", ""), getattr(at, "line", 0), getattr(at, "column", 0)
-    return Upcoming(diagnostic, found.package, found.horizon, order or place)
+    return Upcoming(diagnostic, found.package, found.horizon, order or diagnostic.place)
 
 
 def find_gone_package(

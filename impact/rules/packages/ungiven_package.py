@@ -29,7 +29,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Set
 from functools import cache, partial
 
-from ...model.cmake.links import is_opaque, list_reached_targets, may_hide, resolve_package
+from ...model.cmake.links import is_opaque, list_linked_items, may_hide, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .include_folders import OFF_PATH, collect_folder_doubts, shares_one_folder
 
@@ -51,12 +51,11 @@ def ungiven_package(view: TargetView, package: Package):
         for i in package.linked.includes
         if i.targets and view.is_sure(i.conditions)
     )
-    find_given = cache(partial(_find_given, targets))
+    find_given = cache(partial(list_linked_items, package, hows=None))
     yield from _list_off_path(view, package, includes, find_given)
     if shares_one_folder(view):
         return
-    given_all = (*(item for item, _ in package.build.include_dirs), *(link.item for link in package.build.links))
-    everywhere = {resolve_package(item) for item in given_all}
+    everywhere = {resolve_package(item) for item, _ in package.build.include_dirs}
     all_found = {f.name for f in package.build.found}
     found = all_found - {package.name}
     if any("$" in name for name in found) or package.build.finds_declared:
@@ -119,7 +118,7 @@ def _list_off_path(
     that are given nothing that may bring its folder. includes: path, targets and role."""
     build = package.build
     targets = {t.name: t for t in build.targets}
-    everywhere = [item for item, _ in build.include_dirs] + [link.item for link in build.links]
+    everywhere = [item for item, _ in build.include_dirs]
     seen = set()
     for path, including, role in includes:
         providers = view.find_header(path)[:1]
@@ -163,13 +162,3 @@ def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:
         if any(item == made.target or item.startswith(f"{made.target}__rosidl_") for item in items)
         for name, _ in made.dependencies
     }
-
-
-def _find_given(targets, name: str) -> set[str] | None:
-    """All that a target is given, itself or through targets of its package; None when that cannot be seen."""
-    items: set[str] = set()
-    for target in list_reached_targets(targets, [name]):
-        if target.kind in ("unknown", "external", "fetched"):
-            return None
-        items.update(link.item for link in target.links)
-    return items

@@ -297,11 +297,6 @@ def _load_names(history: SurfaceHistory, version: str) -> SurfaceNames | None:
     return SurfaceNames(python) if python is not None else None
 
 
-def is_there_at(side: str, events: Sequence[ChangeEvent], place: int) -> bool:
-    """Whether a name of which these are all events is there in the version at a place of its line."""
-    return find_standing(side, events, place).there
-
-
 class Standing(NamedTuple):
     """How one version stands to the changes of a name. there: it has the name; deprecated: and warns of it. here,
     before, after: the form of the name in it, before the last change up to it, and after the next one; None where the
