@@ -139,7 +139,7 @@ def write_file(path: Path, data: bytes, *, beneath: Path | None = None, instead_
     target = os.fspath(path)
     if beneath is None and (stream := _find_descriptor(target)) is not None:
         if stream != _NOWHERE:
-            _write_all(stream, data)
+            write_all(stream, data)
         return
     with _open_folder(target, beneath, make=instead_of is None) as (folder, name):
         mode = _read_mode(folder, name, target)
@@ -219,7 +219,7 @@ def append_file(path: Path, data: bytes) -> None:
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
             raise _make_not_regular_error(path)
-        _write_all(descriptor, data)
+        write_all(descriptor, data)
     finally:
         os.close(descriptor)
 
@@ -366,7 +366,8 @@ def _open_temporary(folder: int, name: str, mode: int | None) -> Iterator[IO[byt
         raise
 
 
-def _write_all(descriptor: int, data: bytes) -> None:
+def write_all(descriptor: int, data: bytes) -> None:
+    """Writes bytes, however few of them are taken at once."""
     view = memoryview(data)
     while view:
         view = view[os.write(descriptor, view) :]

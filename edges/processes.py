@@ -25,6 +25,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 from .console import DEBUG
+from .files import write_all
 from .limits import format_size, get_limits
 
 _Result = TypeVar("_Result")
@@ -322,8 +323,8 @@ def _serve(
                 answer = _pickle_error(error)
             signal.setitimer(signal.ITIMER_PROF, 0)
             shared[:] = _PLACE.pack(_NOWHERE)
-            _write(results, _LENGTH.pack(len(answer)))
-            _write(results, answer)
+            write_all(results, _LENGTH.pack(len(answer)))
+            write_all(results, answer)
         os._exit(0)
     except MemoryError:
         os._exit(_OUT_OF_MEMORY)
@@ -369,14 +370,8 @@ def _limit_memory() -> None:
 
 def _send(descriptor: int, thing: Any) -> None:
     packed = pickle.dumps(thing)
-    _write(descriptor, _LENGTH.pack(len(packed)))
-    _write(descriptor, packed)
-
-
-def _write(descriptor: int, data: bytes) -> None:
-    view = memoryview(data)
-    while view:
-        view = view[os.write(descriptor, view) :]
+    write_all(descriptor, _LENGTH.pack(len(packed)))
+    write_all(descriptor, packed)
 
 
 def _receive(descriptor: int) -> bytes | bytearray | None:

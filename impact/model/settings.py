@@ -74,7 +74,7 @@ def _list_settings(
     named: Callable[[str, Collection[str]], NamedNode | None],
 ) -> Iterator[Setting]:
     plugins = {tuple(key[:-1]): entry.value for key, entry in entries if key[-1] == "plugin" and _is_class(entry.value)}
-    others = tuple(sorted({_get_package(name) for name in plugins.values()}))
+    others = tuple(sorted({get_plugin_package(name) for name in plugins.values()}))
     for key, entry in entries:
         losers = changing.get(key[-1])
         if losers is None or key[-1] == "plugin":
@@ -82,8 +82,8 @@ def _list_settings(
         owner = next((tuple(key[:end]) for end in range(len(key) - 1, -1, -1) if tuple(key[:end]) in plugins), None)
         class_, name = (plugins[owner], key[len(owner) :]) if owner is not None else (controllers.get(node, ""), key)
         if class_:
-            if _get_package(class_) in losers:
-                yield Setting(".".join(name), _get_package(class_), class_, node, entry.line, others, entry.value)
+            if get_plugin_package(class_) in losers:
+                yield Setting(".".join(name), get_plugin_package(class_), class_, node, entry.line, others, entry.value)
         elif node and "*" not in node:
             known = named(node, losers)
             if known is not None and known.package not in losers:
@@ -96,7 +96,7 @@ def _is_class(value: object) -> bool:
     return isinstance(value, str) and CLASS.match(value) is not None
 
 
-def _get_package(class_: str) -> str:
+def get_plugin_package(class_: str) -> str:
     """The package that a class of a plugin is called after."""
     return re.split(r"/|::", class_)[0]
 

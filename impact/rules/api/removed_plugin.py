@@ -30,6 +30,7 @@ import re
 from ....edges.memory import cache_in_derived
 from ...model.package import ReferenceUse
 from ...model.python.programs import has_unknown_commands
+from ...model.settings import get_plugin_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 from .diagnosis import (
     GONE_PACKAGE,
@@ -60,7 +61,7 @@ def removed_plugin(view: TargetView, package: Package):
         if is_of_another_distro(view, use.at.path, files):
             continue
         loaded = bool(use.reference.package) and not use.reference.conditional
-        head = use.reference.package or _find_package_part(name)
+        head = use.reference.package or get_plugin_package(name)
         known = declared.get(head, set())
         if known:
             owner = view.workspace.packages[head]
@@ -111,14 +112,9 @@ def _list_declared(view: TargetView) -> dict[str, set[str]]:
 
 def _list_candidates(view: TargetView, package: Package, use: ReferenceUse) -> list[str]:
     """Packages that may have a plugin: the one that is named, the one it is called after, else any that comes along."""
-    heads = (use.reference.package, _find_package_part(use.reference.name))
+    heads = (use.reference.package, get_plugin_package(use.reference.name))
     named = [name for name in heads if name and view.is_package(name) and view.is_available(name)]
     return named or sorted(name for name in view.build_environment(package) if name not in view.workspace.packages)
-
-
-def _find_package_part(name: str) -> str:
-    """The package in the name of a plugin."""
-    return re.split(r"/|::", name)[0]
 
 
 def _find_respelling(view: TargetView, package: str, name: str) -> str:

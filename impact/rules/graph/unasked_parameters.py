@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from ...model.flow.launches import LaunchedNode
 from ...model.flow.misspelling import is_slip_of_name
+from ...targets.parameters import find_last_part
 from ..vocabulary import At, Diagnostic, Workspace
 from .launch_settings import group_by_line
 
@@ -23,7 +24,8 @@ def find_unasked(workspace: Workspace) -> Iterator[Diagnostic]:
         if any(_asks(start, name) for start, _ in rows):
             continue
         start, _ = rows[0]
-        similar = next((known for known in start.parameters if is_slip_of_name(_get_last(known), _get_last(name))), "")
+        last = find_last_part(name)
+        similar = next((known for known in start.parameters if is_slip_of_name(find_last_part(known), last)), "")
         data = {"program": start.program.partition("/")[2], "replacement": similar}
         yield Diagnostic(At(path, line), name, start.package, data)
 
@@ -33,9 +35,5 @@ def _asks(start: LaunchedNode, name: str) -> bool:
     parts = name.replace("/", ".").split(".")
     if start.hidden_parameters or parts[-1] in _COMMON or parts[0] in _COMMON_HEADS:
         return True
-    known = {_get_last(one) for one in start.parameters}
+    known = {find_last_part(one) for one in start.parameters}
     return any(part in known for part in parts)
-
-
-def _get_last(name: str) -> str:
-    return name.replace("/", ".").rpartition(".")[2].lstrip("~")

@@ -79,15 +79,29 @@ def misplaced_install(view: TargetView, package: Package):
         yield from find(view, package, installs)
 
 
-def _list_doubled(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
-    """Folders called include that are installed into one of that name, so that headers end up in include/include."""
+def _list_headers(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
+    """Folders called include that are installed into one of that name, so that headers end up in include/include, and
+    folders of headers whose name is lost: include/a/ installed into include/b while sources include <a/...>."""
     for install in installs:
-        if install.kind != "directory" or install.destination.rstrip("/").rpartition("/")[2] != "include":
-            continue
-        for item in install.items:
-            if item.rpartition("/")[2] == "include" and not item.endswith("/"):
-                doubts = (_is_lost(view, package, install, item) or Doubt.DISTURBS,)
-                yield Diagnostic(install.at, "include", package.name, kind="doubled", doubts=doubts)
+        root, include, tail = install.destination.rstrip("/").rpartition("include")
+        for item in install.items if install.kind == "directory" and include else ():
+            # How others include what lies outside of the workspace is not known.
+            folder = _FOLDER.search(item) if "$" not in item else None
+            if tail == "" and root[-1:] in ("", "/") and item.rpartition("/")[2] == "include":
+                kind, subject, lost, data = "doubled", "include", item, {}
+            elif folder is not None and not root and tail.count("/") == 1 and tail != f"/{folder[1]}":
+                kind, subject, lost = "renamed", install.destination, item.rstrip("/").removesuffix(folder[1])
+                data = {"name": folder[1], "destination": subject, "place": f"include/{folder[1]}"}
+                if tail == f"/{package.name}" and package.build_type == "catkin":
+                    subject = "CATKIN_PACKAGE_INCLUDE_DESTINATION"
+                    data["place"] = f"${{CATKIN_GLOBAL_INCLUDE_DESTINATION}}/{folder[1]}"
+            else:
+                continue
+            doubts = (_is_lost(view, package, install, lost) or Doubt.DISTURBS,)
+            yield Diagnostic(install.at, subject, package.name, data, kind, doubts)
+
+
+_FOLDER = re.compile(r"(?:^|/)include/([\w-]+)/\Z")
 
 
 def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
@@ -146,27 +160,6 @@ _ONE_LINE = (Together("interpreter"),)
 _OF_PROGRAMS = re.compile(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION")
 # Scripts that other programs run, as data.
 _RUN_BY = (".launch.py", "setup.py", "conftest.py")
-
-
-def _list_renamed(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
-    """Folders of headers whose name is lost: include/a/ installed into include/b while sources include <a/...>."""
-    for install in installs:
-        if install.kind != "directory":
-            continue
-        root, _, tail = install.destination.rstrip("/").rpartition("include")
-        for item in install.items:
-            folder = re.search(r"(?:^|/)include/([\w-]+)/\Z", item)
-            if "$" in item:
-                continue  # how others include what lies outside of the workspace is not known
-            if folder is None or root or tail in ("", "/" + folder.group(1)) or tail.count("/") != 1:
-                continue
-            name = folder.group(1)
-            doubts = (_is_lost(view, package, install, item.rstrip("/").removesuffix(name)) or Doubt.DISTURBS,)
-            catkin = tail == "/" + package.name and package.build_type == "catkin"
-            subject = "CATKIN_PACKAGE_INCLUDE_DESTINATION" if catkin else install.destination
-            place = f"${{CATKIN_GLOBAL_INCLUDE_DESTINATION}}/{name}" if catkin else f"include/{name}"
-            data = {"name": name, "destination": install.destination, "place": place}
-            yield Diagnostic(install.at, subject, package.name, data, "renamed", doubts)
 
 
 def _list_components(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
@@ -237,7 +230,4 @@ def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagno
                 yield Diagnostic(install.at, name, package.name, data, kind, doubts, together=_ONE_LINE)
 
 
-_FAULTS = (
-    *(_list_doubled, _list_not_executable, _list_renamed, _list_components, _list_programs, _list_other_python),
-    _list_plain,
-)
+_FAULTS = (_list_headers, _list_not_executable, _list_components, _list_programs, _list_other_python, _list_plain)
