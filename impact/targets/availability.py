@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
-from .changes import DISTROS, ChangeRow, find_row, find_version, has_reached, list_changes, load_rows
+from .changes import DISTROS, ChangeRow, find_row, find_version, has_had_header, has_reached, list_changes, load_rows
 from .distro.known import list_known_distros, release_day
 from .evidence import make_evidence, make_offer_evidence
 from .evidence_record import Evidence
@@ -292,13 +292,9 @@ class Availabilities:
             return Availability(symbol, "present", package, version)
         if by_surface.state != "unknown":
             return by_surface if by_surface.is_missing else Availability(symbol, "unknown", package, version)
-        spans = self.providers.list_header_spans(package, symbol.name)
-        place = DISTROS.get(self.target.distro, len(DISTROS))
-        mine = [span for span in spans if span.distro in DISTROS
-                and (DISTROS[span.distro] >= DISTROS["ardent"]) == (self.target.ros == 2)]  # fmt: skip
-        if not mine:
+        early = has_had_header(package, symbol.name, self.target, self.providers)
+        if early is None:
             return Availability(symbol, "unknown", package, version)
-        early = any(DISTROS[span.distro] <= place for span in mine)
         evidence = Evidence(package, "removed" if early else "added", symbol.name, side="header", header=symbol.name)
         return Availability(symbol, "removed" if early else "not yet", package, version, evidence=evidence)
 

@@ -315,7 +315,7 @@ def _determine_state(row: ChangeRow, version: str, target: DistroTarget, table: 
             old = True
         if old is not None:
             gone = not old
-            if gone and not _has_had_header(row, target, table):
+            if gone and not has_had_header(row.package, row.old, target, table):
                 return None
         if row.new:
             new = table.has_header(row.package, row.new, *release)
@@ -339,13 +339,13 @@ def behaves_differently(row: ChangeRow, target: DistroTarget) -> bool | None:
     return has_reached(row.removed_in, version, target) and not has_reached(row.back_in, version, target)
 
 
-def _has_had_header(row: ChangeRow, target: DistroTarget, table: Providers) -> bool:
-    """Whether an earlier release of this ROS generation had the header: then it is gone rather than not there yet."""
+def has_had_header(package: str, header: str, target: DistroTarget, table: Providers) -> bool | None:
+    """Whether a release for a target's distro, or an earlier one of this ROS generation, had a header: then it is gone
+    rather than not there yet. None where no release of the generation is known to have it."""
     here = DISTROS.get(target.distro, len(DISTROS))
-    return any(
-        span.distro in DISTROS and DISTROS[span.distro] <= here and _is_same_generation(span.distro, target)
-        for span in table.list_header_spans(row.package, row.old)
-    )
+    spans = (span for span in table.list_header_spans(package, header) if span.distro in DISTROS)
+    places = [DISTROS[span.distro] for span in spans if _is_same_generation(span.distro, target)]
+    return min(places) <= here if places else None
 
 
 def _is_same_generation(distro: str, target: DistroTarget) -> bool:
