@@ -251,7 +251,7 @@ def _has_header(view: TargetView, path: str) -> bool:
         version = target.find_version(provider.name) if provider.kind == "ros" else None
         if version and (
             view.has_released_header(provider.name, path)
-            or view.providers.keeps_header(provider.name, path, target.distro, version)
+            or view.providers.has_kept_header(provider.name, path, target.distro, version)
         ):
             return True
     return target.platform in view.providers.list_header_platforms(path)

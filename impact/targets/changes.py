@@ -311,7 +311,7 @@ def _determine_state(row: ChangeRow, version: str, target: DistroTarget, table: 
     if row.kind.startswith("header-") and not row.library:
         release = target.distro, version
         old = table.has_header(row.package, row.old, *release)
-        if old is None and target.distro != "rolling" and table.keeps_header(row.package, row.old, *release):
+        if old is None and target.distro != "rolling" and table.has_kept_header(row.package, row.old, *release):
             old = True
         if old is not None:
             gone = not old
@@ -319,7 +319,7 @@ def _determine_state(row: ChangeRow, version: str, target: DistroTarget, table: 
                 return None
         if row.new:
             new = table.has_header(row.package, row.new, *release)
-            if new is None and table.keeps_header(row.package, row.new, *release):
+            if new is None and table.has_kept_header(row.package, row.new, *release):
                 new = True
     if gone:
         return "removed"

@@ -26,14 +26,12 @@ Not reported
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator, Set
 from functools import cache, partial
 
 from ...model.cmake.links import is_opaque, list_linked_items, may_hide, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .include_folders import OFF_PATH, collect_folder_doubts, shares_one_folder
-
-_FindGiven = Callable[[str], set[str] | None]
 
 
 @rule(
@@ -51,17 +49,14 @@ def ungiven_package(view: TargetView, package: Package):
         for i in package.linked.includes
         if i.targets and view.is_sure(i.conditions)
     )
-    find_given = cache(partial(list_linked_items, package, hows=None))
-    yield from _list_off_path(view, package, includes, find_given)
+    yield from _list_off_path(view, package, includes)
     if shares_one_folder(view):
         return
-    everywhere = {resolve_package(item) for item, _ in package.build.include_dirs}
-    all_found = {f.name for f in package.build.found}
-    found = all_found - {package.name}
+    found = {f.name for f in package.build.found} - {package.name}
     if any("$" in name for name in found) or package.build.finds_declared:
         return
     seen = set()
-    reach: dict[str, tuple[frozenset[str], set[str]] | None] = {}
+    find_brought = cache(partial(_find_brought, view, package))
     for path, including, role in includes:
         providers = view.find_header(path)
         owners = {p.name for p in providers}
@@ -80,27 +75,7 @@ def ungiven_package(view: TargetView, package: Package):
         if of_folder is None or (len(providers) > 1 and Doubt.INCOMPLETE in of_folder):
             continue
         for target in including:
-            if target not in reach:
-                items = find_given(target)
-                if items is not None:
-                    items = items | _list_of_interfaces(package, items)
-                hiding = set(filter(is_opaque, items or ()))
-                # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
-                # A target of the package may be called like the package, and brings none of what that declares.
-                given = {resolve_package(item) for item in items or () if item not in hiding and item not in targets}
-                given = (given | everywhere) - {package.name}
-                if view.unknown_contents.list_unknown(
-                    frozenset(given & (view.collect_declared(package).keys() | all_found))
-                ):
-                    items = None  # what one of them brings is not known
-                if any(item in targets and targets[item].kind == "generated" for item in items or ()):
-                    given.update(name for made in package.build.generated for name, _ in made.dependencies)
-                reach[target] = (
-                    None
-                    if items is None
-                    else (view.list_transitive(s for n in given if n for s in (n, n.lower())), hiding)
-                )
-            brought = reach[target]
+            brought = find_brought(target)
             if brought is None or not owners.isdisjoint(brought[0]) or any(may_hide(item, name) for item in brought[1]):
                 continue
             seen.add(name)
@@ -111,8 +86,29 @@ def ungiven_package(view: TargetView, package: Package):
             break
 
 
+def _find_brought(view: TargetView, package: Package, target: str) -> tuple[frozenset[str], set[str]] | None:
+    """What comes along with all that a target is given, and the items that may stand for something else; None where
+    that cannot be told."""
+    build = package.build
+    items = list_linked_items(package, target, None)
+    if items is None:
+        return None
+    items |= _list_of_interfaces(package, items)
+    hiding, kinds = set(filter(is_opaque, items)), {t.name: t.kind for t in build.targets}
+    # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
+    # A target of the package may be called like the package, and brings none of what that declares.
+    given = {resolve_package(item) for item in (*(items - hiding - kinds.keys()), *(i for i, _ in build.include_dirs))}
+    given -= {"", package.name}
+    known = view.collect_declared(package).keys() | {f.name for f in build.found}
+    if view.unknown_contents.list_unknown(frozenset(given & known)):
+        return None  # what one of them brings is not known
+    if any(kinds.get(item) == "generated" for item in items):
+        given.update(name for made in build.generated for name, _ in made.dependencies)
+    return view.list_transitive(s for n in given for s in (n, n.lower())), hiding
+
+
 def _list_off_path(
-    view: TargetView, package: Package, includes: Iterable[tuple[str, tuple[str, ...], str]], find_given: _FindGiven
+    view: TargetView, package: Package, includes: Iterable[tuple[str, tuple[str, ...], str]]
 ) -> Iterator[Diagnostic]:
     """Targets that include headers of a system library outside of the compiler's default path, which CMake finds, and
     that are given nothing that may bring its folder. includes: path, targets and role."""
@@ -129,7 +125,7 @@ def _list_off_path(
         if not name or name in seen:
             continue
         for target in including:
-            items = find_given(target)
+            items = list_linked_items(package, target, None)
             if items is None or not view.is_sure(targets[target].conditions):
                 continue
             items = {item for item in (*items, *everywhere) if item not in targets}

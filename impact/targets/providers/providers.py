@@ -227,7 +227,7 @@ class Providers(ShippedDatabase):
             return None
         return _contains_version(self.list_header_spans(package, header), distro, version)
 
-    def keeps_header(self, package: str, header: str, distro: str, version: str) -> bool:
+    def has_kept_header(self, package: str, header: str, distro: str, version: str) -> bool:
         """Whether the distro's newest release that was read, before a version or this one, has a header: later ones of
         a distro rarely drop any."""
         wanted = parse(version)
