@@ -53,8 +53,8 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rosdistro, meta_ros: clones. clones: a folder of clones called `OWNER+NAME`, with their tags. distros: those whose
     packages' surfaces are read; empty for those of the shipped ones. lists: the folder of lists of an apt, with its
     Contents indices, by platform (`debian bookworm`). apt: an apt configuration with folders of its own, by release
-    of Debian. gcc: a folder of unpacked packages, by version. commands: folders of packages that define CMake
-    commands."""
+    of Debian. gcc: a folder of unpacked packages, by version. stubs: folders `stdlib` of typeshed, oldest first.
+    commands: folders of packages that define CMake commands."""
 
     rosdistro: str = ""
     meta_ros: str = ""
@@ -63,6 +63,7 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lists: dict[str, str] = {}
     apt: dict[str, str] = {}
     gcc: dict[str, str] = {}
+    stubs: tuple[str, ...] = ()
     commands: tuple[str, ...] = ()
     cmake: CMakeSources = CMakeSources()
     includes: IncludeSources = IncludeSources()
@@ -168,6 +169,8 @@ STEPS = (
     BuildStep("snapshot", ("distros.sqlite.zst", "snapshot.json"), (), _build_snapshot),
     BuildStep("manifests", (), ("snapshot",), _read_clones("databuild.manifest_tags")),
     BuildStep("surfaces", ("surfaces.sqlite",), ("manifests",), _build_surfaces),
+    BuildStep("python-std", (), ("surfaces",),
+         lambda sources, data, own: _call("databuild.python_std", *sources.stubs) if sources.stubs else None),
     BuildStep("providers", ("providers.sqlite.zst", "providers.json"), ("manifests",), _build_providers),
     BuildStep("apt", ("apt.json.zst",), ("providers",), _read_debian_lists("databuild.apt")),
     BuildStep("sonames", ("sonames.json.zst",), (), _read_debian_lists("databuild.sonames")),
@@ -185,7 +188,7 @@ STEPS = (
     BuildStep("libraries", ("libraries.sqlite", "changes_debian.json", "uses_debian.json", "changes_library_tags.json"),
          ("surfaces", "providers"), _build_libraries),
     BuildStep("includes", ("includes.json.zst",), ("surfaces",), _build_includes),
-    BuildStep("superseded", (), ("surfaces", "libraries"),
+    BuildStep("superseded", (), ("python-std", "libraries"),
          lambda sources, data, own: _call("databuild.superseded", "--write") if sources.clones else None),
 )  # fmt: skip
 """Every builder, each behind those whose files it reads."""
@@ -221,6 +224,7 @@ def read_sources(file: Path) -> Sources:
         lists=locate_all(named.lists),
         apt=locate_all(named.apt),
         gcc=locate_all(named.gcc),
+        stubs=tuple(map(locate, named.stubs)),
         commands=tuple(map(locate, named.commands)),
         cmake=CMakeSources(locate(named.cmake.manual), tuple(map(locate, named.cmake.modules))),
         includes=IncludeSources(

@@ -8,7 +8,6 @@ callback it is handed to, and in what is a field of another. Nothing outside of 
 
 import ast
 import re
-import sys
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -329,7 +328,7 @@ class ObjectUses(PythonValues):
         name = self.resolve_callee(call.func)
         if name[:1] == OWN and name[1:] in self.classes:
             self.note(name, "__init__", self.make_call_arguments(call), call.func)
-        elif name and name[0] != OWN and not _is_stdlib(name):
+        elif name and name[0] != OWN:
             self.note(name, "", self.make_call_arguments(call), call.func)
             if _INTERFACE.fullmatch(name):
                 for keyword in call.keywords:
@@ -349,7 +348,7 @@ class ObjectUses(PythonValues):
         self.raw_fields[type_, name] = min(place, self.raw_fields.get((type_, name), place))
 
     def note(self, type_: str, member: str, given: CallArguments | None, node) -> None:
-        if not type_ or (type_[0] != OWN and _is_stdlib(type_)) or _is_field(type_):
+        if not type_ or _is_field(type_):
             return
         conditions = self.use_conditions if given is None else (*self.use_conditions, *self.call_conditions)
         lazy = self.may_not_run
@@ -409,7 +408,7 @@ class ObjectUses(PythonValues):
                 elif known is None or (known.lazy and not raw.lazy):
                     found[key] = use
         for key, one in self.classes.items():
-            bases = [] if key.isdigit() else [base for base, _ in self.list_bases(one) if base and not _is_stdlib(base)]
+            bases = [] if key.isdigit() else [base for base, _ in self.list_bases(one) if base]
             for base in bases:
                 for method, (line, offset, parameters) in one.methods.items():
                     name, at = f"{base}.{method}", column(line, offset)
@@ -451,7 +450,7 @@ class ObjectUses(PythonValues):
         """The types of other modules that a use may be of, and whether it is the only one."""
         type_ = self.resolve(raw.type)
         if type_[:1] != OWN:
-            if type_ and (type_ == raw.type or not _is_stdlib(type_)):
+            if type_:
                 yield type_, True
             return
         one = self.classes.get(type_[1:])
@@ -462,7 +461,7 @@ class ObjectUses(PythonValues):
         if not members.isdisjoint(CONSTRUCTORS if raw.member == "__init__" else (raw.member, "__getattr__")):
             return
         outside = [base for base, own in bases if not own]
-        yield from ((base, len(outside) == 1) for base in outside if base and not _is_stdlib(base))
+        yield from ((base, len(outside) == 1) for base in outside if base)
 
     def find_member_type(self, one: _Class, attribute: str) -> str:
         bases = list(self.list_bases(one))
@@ -549,10 +548,6 @@ def make_field_type(type_: str, name: str) -> str:
     """The type of a field of an object, empty where it has none that anybody asks for."""
     return f"{type_}.{name}" if type_ and _has_fields(type_) and type_.count(".") < _DEEPEST else ""
 
-
-def _is_stdlib(name: str) -> bool:
-    """Whether a dotted name is one of Python's own library, in which no package of ROS has anything."""
-    return name.partition(".")[0] in sys.stdlib_module_names
 
 
 def _format_parameters(arguments: ast.arguments) -> str:

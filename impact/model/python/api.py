@@ -10,6 +10,7 @@ import msgspec
 from ....edges.memory import cache_method
 from ...facts.python.source import PythonFile
 from ...facts.python.uses import PythonUse
+from ...targets.providers.stdlib import is_in_any_stdlib
 from .own_types import OwnTypes
 
 if TYPE_CHECKING:
@@ -26,13 +27,17 @@ class Changing:
     @cache_method
     def list_words(self, module: str) -> frozenset[str]:
         """Last parts of the changing names of a top-level module."""
-        return frozenset(self._list_words(list_packages(module)))
+        return frozenset(self._list_words(module))
 
-    def _list_words(self, packages: Iterable[str]) -> Iterator[str]:
-        for package in packages:
+    def _list_words(self, module: str) -> Iterator[str]:
+        for package in list_packages(module):
+            # A library has many top-level modules, whose C halves are called after them.
+            heads = (module, f"_{module}") if self._surfaces.is_library(package) else ()
             for line in self._surfaces.find_lines(package).values():
                 for name in line.events.get("python", ()):
                     parts = name.split(".")
+                    if heads and parts[0] not in heads:
+                        continue
                     if parts[-1] in ("__init__", "__new__"):
                         yield parts[-2] if len(parts) > 1 else parts[0]
                     elif not parts[-1].startswith("__"):
@@ -50,9 +55,9 @@ class Changing:
 
 
 def list_packages(module: str) -> tuple[str, ...]:
-    """Packages that a top-level module may come from. In ROS 2 the Python half of a package that has both is often one
-    of its own, after which the module is not called."""
-    return (module, f"{module}_py")
+    """Packages that a top-level module may come from, or the library that it is part of. In ROS 2 the Python half of a
+    package that has both is often one of its own, after which the module is not called."""
+    return ("python",) if is_in_any_stdlib(module) else (module, f"{module}_py")
 
 
 def find_python_packages(files: Iterable[str]) -> set[str]:

@@ -48,6 +48,11 @@ def is_in_stdlib(module: str, minor: int, major: int = 3) -> bool:
     return name in _ALWAYS_3 or (name.startswith("_") and name in _PRIVATE)
 
 
+def is_in_any_stdlib(module: str) -> bool:
+    """Whether a top-level module is, or was, in the standard library of some version of Python 3 from 3.4 on."""
+    return module in _ALWAYS_3 or module in _ADDED or module in _REMOVED_IN
+
+
 def find_successor(module: str) -> str:
     """What serves instead of a module that Python 3 lacks; empty where nothing does."""
     return _SUCCESSORS.get(module.partition(".")[0], "")

@@ -71,10 +71,19 @@ class Offers:
     @cache_method
     def find_package(self, name: str) -> PackageOffer | None:
         """What a package offers there; None when it is not there, or nothing comparable is stored."""
-        version = self.target.find_version(name)
+        version = self._find_version(name)
         line = self.surfaces.find_line(name, self.target.ros) if version else None
         place = line.find_place(version) if line is not None and version else None
         return None if line is None or place is None or not version else PackageOffer(self, name, version, line, place)
+
+    def _find_version(self, name: str) -> str | None:
+        """The target's version of a package; of a library as far as its surfaces tell versions apart."""
+        if not self.surfaces.is_library(name):
+            return self.target.find_version(name)
+        version, line = self.target.find_library(name), self.surfaces.find_line(name, self.target.ros)
+        if version is None or line is None:
+            return None
+        return ".".join(version.split(".")[: line.versions[-1].count(".") + 1])
 
     def find_history(self, package: str) -> SurfaceHistory | None:
         """All stored versions of a package that the target's ROS generation has; None when there is none."""

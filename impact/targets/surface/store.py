@@ -338,12 +338,17 @@ class Surfaces(StoredRows):
         self.packages = frozenset(self._generations)
 
     def list_ros(self, package: str) -> tuple[int, ...]:
-        """The ROS generations of which versions of a package are stored."""
+        """The ROS generations of which versions of a package are stored; 0 alone for a library of the platform."""
         return self._generations.get(package, ())
 
+    def is_library(self, package: str) -> bool:
+        """Whether a package is a library of the platform, which is of no ROS generation."""
+        return self.list_ros(package) == (0,)
+
     def find_history(self, package: str, ros: int) -> SurfaceHistory | None:
-        """All versions of a package that a ROS generation has, None when there is none."""
+        """All versions of a package that a ROS generation, or any, has, None when there is none."""
         # Most packages that are asked for are not stored, and must not displace those that are.
+        ros = 0 if self.is_library(package) else ros
         return self._load_history(package, ros) if ros in self.list_ros(package) else None
 
     @lru_cache(maxsize=256)  # noqa: B019  (one of them lives as long as the program)
@@ -353,8 +358,9 @@ class Surfaces(StoredRows):
 
     @lru_cache(maxsize=1024)  # noqa: B019
     def find_line(self, package: str, ros: int) -> Line | None:
-        """What changed in a package of a ROS generation from version to version, None when it is not there."""
-        row = self._query_row("changes", package, ros)
+        """What changed in a package of a ROS generation, or of any, from version to version, None when it is not
+        there."""
+        row = self._query_row("changes", package, 0 if self.is_library(package) else ros)
         return read_packed(row[0], Line) if row else None
 
     def find_lines(self, package: str) -> dict[int, Line]:
