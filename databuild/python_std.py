@@ -117,15 +117,25 @@ def _get_asked_minor(node: ast.Compare) -> int | None:
 
 class _Resolver(ast.NodeTransformer):
     """Makes of a stub a module of one minor version on Linux: conditions decided, names bound that stubs only announce,
-    overloads without their parameters, and no types."""
+    overloads without their parameters, and no types. What is deprecated without a condition was so at some time, and
+    nobody knows since when."""
 
     def __init__(self, minor: int):
         self._minor = minor
+        self._conditions = 0
 
     def visit_If(self, node: ast.If) -> list[ast.stmt]:
         holds = self._decide(node.test)
         chosen = [*(node.body if holds is not False else ()), *(node.orelse if holds is not True else ())]
-        return [one for statement in chosen for one in self._visit_each(statement)]
+        self._conditions += 1
+        made = [one for statement in chosen for one in self._visit_each(statement)]
+        self._conditions -= 1
+        return made
+
+    def _drop_deprecations(self, node: ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) -> None:
+        if not self._conditions:
+            kept = (one for one in node.decorator_list if not ast.unparse(one).startswith("deprecated"))
+            node.decorator_list = list(kept)
 
     def _visit_each(self, statement: ast.stmt) -> list[ast.stmt]:
         made = self.visit(statement)
@@ -161,10 +171,12 @@ class _Resolver(ast.NodeTransformer):
         return node
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef:
+        self._drop_deprecations(node)
         node.body = [one for statement in node.body for one in self._visit_each(statement)] or [ast.Pass()]
         return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef | ast.AsyncFunctionDef):
+        self._drop_deprecations(node)
         if any(ast.unparse(one).rpartition(".")[2] == "overload" for one in node.decorator_list):
             first = node.args.args[:1] if node.args.args and node.args.args[0].arg in ("self", "cls") else []
             node.args = ast.arguments([], first, ast.arg("args"), [], [], ast.arg("kwargs"), [])

@@ -37,6 +37,7 @@ NEW = {
     "VERSIONS": "drum: 3.0-\n_drum: 3.0-\nflute: 3.0-3.8\nband.stage: 3.7-\nband: 3.0-\nharp: 3.9-\ncello: 3.0-\n",
     "drum.pyi": """import sys
 from typing import overload
+from typing_extensions import deprecated
 from _drum import beat as beat
 class Kit:
     size: int
@@ -51,6 +52,12 @@ def tune(to: int) -> int: ...
 def tune(to: str, by: int) -> str: ...
 if sys.version_info >= (3, 11):
     def muffle() -> None: ...
+    @deprecated("Mute yourself.")
+    def mute() -> None: ...
+else:
+    def mute() -> None: ...
+@deprecated("Long ago.")
+def thump() -> None: ...
 """,
     "_drum.pyi": "def beat(): ...\n",
     "flute.pyi": "def play(): ...\n",
@@ -105,9 +112,21 @@ def test_what_changed_is_told_of_each_version(history):
     told = {name: [stored.versions[event.place] for event in events] for name, events in line.events["python"].items()}
     assert told == {
         "band.stage": ["3.7"], "band.stage.LIGHTS": ["3.7"], "band.tour": ["3.9"], "drum.Kit.isLoud": ["3.9"],
-        "drum.muffle": ["3.11"], "drum.roll": ["3.7", "3.8"], "flute": ["3.9"],
+        "drum.muffle": ["3.11"], "drum.mute": ["3.11"], "drum.roll": ["3.7", "3.8"], "flute": ["3.9"],
         "harp": ["3.9"], "harp.pluck": ["3.9"],
     }  # fmt: skip
+
+
+def test_since_when_something_is_deprecated_is_known_by_a_condition(history):
+    stored, _ = history
+
+    def find_message(name: str, version: str) -> str:
+        entry = SurfaceNames(stored.load_python(version)).find(name)
+        assert entry is not None and entry.bound is not None
+        return entry.bound.deprecated
+
+    assert [find_message("drum.mute", version) for version in ("3.10", "3.11")] == ["", "Mute yourself."]
+    assert find_message("drum.thump", "3.11") == ""
 
 
 def test_parameters(history):
