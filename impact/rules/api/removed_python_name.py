@@ -1,10 +1,10 @@
 """removed-python-name: a Python module, class, function or method of another package is gone, or not there yet.
 
 What it does
-    Reports imports and uses of names that the target's version of the providing package does not have, and an earlier
-    or later version of it has: modules, what is imported from them, attributes, and members of objects whose class
+    Reports imports and uses of names that the target's version of the providing package, or of Python itself, does not
+    have, and an earlier or later version of it has: modules, what is imported from them, attributes, and members of objects whose class
     shows; and imports of names, and constants of classes, that no version of the package has anywhere. What each
-    version has was read from its sources.
+    version has was read from its sources, and of Python's standard library from typeshed's stubs.
 
 Why it breaks
     Python raises ImportError or AttributeError when the line is reached; where it is an import, when the program or
@@ -31,7 +31,7 @@ from .diagnosis import build_availability_texts, diagnose
 from .uses import UnservedUse, list_python_uses
 
 
-@rule(texts=build_availability_texts())
+@rule(texts=build_availability_texts(), yields_to=("removed-python-module", "removed-symbol"))
 def removed_python_name(view: TargetView, package: Package):
     # Of each name the worst place in a file: what follows a failed import is not reached.
     worst: dict[tuple[str, str, bool], UnservedUse] = {}

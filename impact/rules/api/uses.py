@@ -47,7 +47,7 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
             continue
         if _is_of_another(use.name.partition("::")[0], use.package, near):
             continue  # a name of that package, which this one took over for a while
-        if use.name.rpartition("::")[2] in calls or _is_reviewed(view, "c++", _list_tails(use.name)):
+        if use.name.rpartition("::")[2] in calls or _find_reviewed(view, "c++", _list_tails(use.name)) is not None:
             continue
         form = CppUseForm(use.how, use.arguments, use.given, use.templated)
         found = view.find_availability(Symbol("c++", use.name, (use.package,), form), use.conditions)
@@ -94,18 +94,23 @@ def list_python_uses(view: TargetView, package: Package) -> Iterable[UnservedUse
     patterns = {
         (use.at.path, use.at.line)
         for use in package.linked.uses
-        if use.language == "python" and _is_reviewed(view, "use", (use.text,))
+        if use.language == "python" and _find_reviewed(view, "use", (use.text,)) is not None
     }
+    # Where a name is written in full, removed-symbol tells what is known of it.
+    written = {(use.at.path, use.at.line, use.text) for use in package.linked.names if use.language == "python"}
     for one in package.linked.python_api:
         use = one.use
         head = use.name.partition(".")[0]
         if head in view.own_modules or not use.alone or not view.is_sure(use.conditions):
             continue
-        if _is_reviewed(view, "python", _list_heads(use.name)):
+        reviewed = _find_reviewed(view, "python", _list_heads(use.name))
+        if reviewed is not None and (one.at.path, one.at.line, reviewed.symbol.name) in written:
             continue
         found = view.find_availability(Symbol("python", use.name, tuple(list_packages(head)), use), use.conditions)
         if found.state == "present":
             continue
+        if reviewed is not None and found.symbol.name == reviewed.symbol.name and not found.replacement:
+            found = found._replace(replacement=reviewed.replacement)
         keywords = use.given.keywords if use.given is not None else ()
         doubts = _collect_python_doubts(view, one, found)
         for at in (one.at, *(At(one.at.path, *place) for place in use.more)):
@@ -113,9 +118,10 @@ def list_python_uses(view: TargetView, package: Package) -> Iterable[UnservedUse
                 yield UnservedUse(at, found.symbol.name, found, doubts, keywords=keywords)
 
 
-def _is_reviewed(view: TargetView, kind: str, names: Iterable[str]) -> bool:
-    """Whether reviewed rows in force speak of one of these names."""
-    return any(row.state != "upcoming" for name in names for row in view.find_reviewed(kind, name))
+def _find_reviewed(view: TargetView, kind: str, names: Iterable[str]) -> Availability | None:
+    """What reviewed rows in force say of the first of these names that they speak of."""
+    rows = (row for name in names for row in view.find_reviewed(kind, name))
+    return next((row for row in rows if row.state != "upcoming"), None)
 
 
 def _collect_python_doubts(view: TargetView, one: PythonApiUse, found: Availability) -> tuple[Doubt, ...]:
