@@ -82,9 +82,12 @@ def told(source: str) -> set[tuple[str, str]]:
             "from a import C\nclass D:\n  def f(self): self.c = C()\n  def g(self): self.c.m(2)",
             {("a.C", "call"), ("a.C.m", "method")},
         ),
-        # setting a member is no use of one, and the standard library is nobody's package
+        # setting a member is no use of one
         ("from a import C\nx = C()\nx.y = 1", {("a.C", "call")}),
-        ("import threading\nclass D(threading.Thread):\n  def f(self): self.start()", set()),
+        (
+            "import threading\nclass D(threading.Thread):\n  def f(self): self.start()",
+            {("threading.Thread.start", "method"), ("threading.Thread.f", "override")},
+        ),
     ],
 )
 def test_uses_are_told_by_what_names_are_bound_to(source, expected):
