@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from ...edges import processes
@@ -10,7 +10,7 @@ from ..rules.rule import Finding, import_rules
 from ..tree import Tree, WorkingTree
 from . import report_cache
 from .report import Checked, Report
-from .session import DEFAULTS, CheckError, Options, Progress, Read, link_workspace, read_workspace
+from .session import DEFAULTS, CheckError, Options, Progress, link_workspace, read_workspace
 
 
 def check(
@@ -51,22 +51,11 @@ def run(
             return known
         from .check_opened import check_opened
 
-        with processes.run_meanwhile(_load_changes(read)):
-            opened = link_workspace(read, path, options)
+        opened = link_workspace(read, path, options)
         checked = check_opened(path, options, opened, base_tree=base_tree, started=started)
         if key is not None and opened.workspace.whole and not checked.report.failure:
             report_cache.store_report(read, key, checked)
         return checked
-
-
-def _load_changes(read: Read) -> Iterator[None]:
-    """Has the targets know their changes, which most rules ask for, target by target."""
-    from .result_cache import load_changes
-
-    for chosen in read.targets:
-        load_changes(read.store, chosen.target)
-        read.store.close()  # no process that is forked now may go on with a connection of this one
-        yield
 
 
 def check_workspace(

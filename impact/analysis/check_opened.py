@@ -17,7 +17,6 @@ from ..model.workspace import Workspace
 from ..rules.fix_actions import Declare, FixAction, Insert, Replace
 from ..rules.rule import Diagnostic, Finding, Rule, load_rules
 from ..tree import Tree
-from . import result_cache
 from .cross_target_fix import Split, add_evidence
 from .findings import (
     SettingsError,
@@ -82,8 +81,6 @@ def check_opened(
         now = run_and_merge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
         found = now.kept
     if any(finding.evidence for finding in found):
-        for view in views:
-            result_cache.load_changes(store, view.target)
         found, parted = add_evidence(found, views)
         if parted and "unguarded-split" in chosen:
             found = sort_findings([*found, *_find_splits(parted, opened, chosen, settings, sources)])

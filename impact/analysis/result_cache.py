@@ -6,12 +6,12 @@ A second run on unchanged files then judges nothing anew. Time plays no part: th
 import contextlib
 import hashlib
 from collections.abc import Iterable, Sequence
-from functools import lru_cache, partial
+from functools import lru_cache
 
 import msgspec
 from msgspec import structs
 
-from ..facts.store import Store, encode_rows, recall
+from ..facts.store import Store, encode_rows
 from ..model import tracked_names as watch
 from ..model.cmake.build import At
 from ..model.flow.file_selection import compute_stamp
@@ -20,13 +20,10 @@ from ..model.view import TargetView
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
 from ..source_keys import compute_code_stamp
-from ..targets.availability import list_horizons
-from ..targets.changes import changes_in_force, index_uses
-from ..targets.distro.distro import DistroTarget
+from ..targets.changes import index_uses
 from ..targets.snapshot import compute_data_stamp
 from ..targets.surface.fields import load_fields
 from ..targets.surface.store import load_shipped
-from ..targets.target import ChangeInForce
 
 # (rule, what it yields)
 Yielded = tuple[str, Diagnostic]
@@ -123,12 +120,3 @@ def load_yielded(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tup
         return found, judgement.unresolved
     except (msgspec.MsgspecError, UnicodeDecodeError):
         return None
-
-
-def load_changes(store: Store, target: DistroTarget) -> None:
-    """Gives a target, and what it is going to be, the changes an earlier run worked out."""
-    for one in (target, *(ahead.target for ahead in list_horizons(target))):
-        if one.known_changes is None:
-            name = hashlib.sha1(one.compute_identity().encode()).digest()
-            find = partial(changes_in_force, one)
-            one.set_changes(recall(store, "changes", name, tuple[ChangeInForce, ...], find))

@@ -99,7 +99,6 @@ def _run_remembered(
         known = result_cache.load_results(opened.store, view, names)
         if known is None:
             fresh.append(place)
-            result_cache.load_changes(opened.store, view.target)
         else:
             found[view.target.name] = known
     key, on_flow = b"", None if flow_rules else []

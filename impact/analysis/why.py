@@ -10,7 +10,7 @@ from typing import NamedTuple
 from ...edges.console import escape, format_count
 from ..model.view import TargetView
 from ..rules.rule import Finding
-from ..targets.changes import list_changes
+from ..targets.changes import iterate_in_force
 from ..tree import JoinedTree
 from .check_opened import check_opened
 from .session import Options, open_workspace
@@ -109,11 +109,11 @@ def _find_answers(view: TargetView, name: str, findings: Sequence[Finding]) -> l
         found.insert(0, (kind, (_offer(view, name, ""),) if view.is_available(name) else ()))
     used, undeclared = _find_uses(view, name)
     changes = tuple(
-        f"{c.kind}: `{c.old}`"
-        + (f" → `{c.new}`" if c.new else "")
-        + f" ({c.state}{', since ' + c.since if c.since else ''})"
-        for c in list_changes(view.target)
-        if name in (c.old, c.new, c.package) or name == c.old.rsplit("::", 1)[-1]
+        f"{row.kind}: `{row.old}`"
+        + (f" → `{row.new}`" if row.new else "")
+        + f" ({state}{', since ' + row.new_since if row.new_since else ''})"
+        for row, state in iterate_in_force(view.target)
+        if name in (row.old, row.new, row.package) or name == row.old.rsplit("::", 1)[-1]
     )
     lost = view.find_lost_header(name)
     if lost is not None:

@@ -18,7 +18,7 @@ from ..config import Config
 from ..facts.condition import Condition
 from ..facts.manifest import Dependency
 from ..targets.availability import Availabilities, Availability, Horizon, Symbol, list_horizons
-from ..targets.changes import DISTROS, list_changes
+from ..targets.changes import DISTROS
 from ..targets.distro.distro import DistroTarget, ReleasedDependency
 from ..targets.evidence_record import Evidence
 from ..targets.providers import message_headers
@@ -160,11 +160,10 @@ class WorkspaceOnTarget:
 
     def _is_gone(self, kind: str, name: str, target: DistroTarget) -> bool:
         """Whether known changes tell that a target has a package, or a command of CMake, no longer."""
-        kinds = ("cmake-removed", "cmake-renamed") if kind == "command" else ("package-removed", "package-renamed")
         if kind == "package" and (self._has_package(name, target) or target.resolve(name) is not None):
             return False
-        by_name, name = list_changes(target).by_name, name.lower() if kind == "command" else name
-        return any(change.state == "removed" for each in kinds for change in by_name.get((each, name), ()))
+        reviewed = Availabilities(target, ahead=()).find_reviewed(kind, name)
+        return any(found.state == "removed" for found in reviewed)
 
     def _has_header(self, path: str) -> bool | None:
         """Whether the compiler finds a header on the target, for __has_include; None when that is not known."""
@@ -173,8 +172,8 @@ class WorkspaceOnTarget:
         states = {found.state for found in self.find_reviewed("header", path)}
         if not states.isdisjoint(("removed", "deprecated")):
             return "deprecated" in states
-        if path in self.availabilities.replacing_headers:
-            return self.availabilities.replacing_headers[path]
+        if (replacing := self.availabilities.has_replacing_header(path)) is not None:
+            return replacing
         known = {*self._find_releases_having(path, self.find_header(path)).values()}
         if True in known or known == {False}:
             return True in known

@@ -11,12 +11,23 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterable, Iterator
-from functools import cache, cached_property
+from functools import cached_property
+from itertools import islice
 from typing import TYPE_CHECKING
 
-from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
-from .changes import DISTROS, ChangeRow, find_row, find_version, has_had_header, has_reached, list_changes, load_rows
+from .changes import (
+    DISTROS,
+    ChangeRow,
+    behaves_differently,
+    find_row_version,
+    find_state,
+    find_version,
+    has_had_header,
+    has_reached,
+    index_rows,
+    load_uses,
+)
 from .distro.known import list_known_distros, release_day
 from .evidence import make_evidence, make_offer_evidence
 from .evidence_record import Evidence
@@ -30,7 +41,6 @@ from .surface.offers_cpp import check_use
 from .surface.offers_python import PythonOffers
 from .surface.surface import BuildSurface
 from .symbol import Availability, CppUseForm, Horizon, State, Symbol
-from .target import ChangeInForce
 
 if TYPE_CHECKING:
     from .distro.distro import DistroTarget
@@ -58,10 +68,6 @@ _STATES: dict[str, State] = {
     "deprecated": "deprecated",
     "changed": "present",
 }
-_SUBJECTS = {"api": "c++", "call": "use", "msg": "field"}
-"""What reviewed rows are about by how their kinds begin, where it is not called so."""
-_LESS_TELLING = frozenset(("api-renamed", "api-changed"))
-"""Kinds of reviewed rows that come after others on the same name."""
 _CMAKE = frozenset(("command", "target", "variable"))
 _REFUSED_FORMS = frozenset(("arguments", "types", "override", "call"))
 """Forms whose change by an update breaks a use."""
@@ -90,26 +96,17 @@ def _count_newer_lts(target: DistroTarget) -> int:
     return sum(one.lts and one.ros == target.ros and one.released > here for one in list_known_distros())
 
 
-def find_coming_changes(target: DistroTarget, ahead: Horizon) -> tuple[ChangeInForce, ...]:
-    """Reviewed changes that remove something on a horizon which a target has: of packages and libraries that are
-    there in another version, and packages themselves."""
-
-    here, there = list_changes(target).removed, list_changes(ahead.target).removed
-    new = there.keys() - here.keys()
-
-    @cache
-    def moves(package: str, library: bool) -> bool:
-        if ahead.platform and not library:
-            return False
-        return find_version(package, library, target) != find_version(package, library, ahead.target)
-
-    return tuple(
-        change
-        for key in filter(new.__contains__, there)
-        for change in there[key]
-        if moves(change.package, change.library)
-        or (change.kind.startswith("package") and ahead.target.find_version(change.old or change.package) is None)
-    )
+def _is_coming(row: ChangeRow, target: DistroTarget, ahead: Horizon) -> bool:
+    """Whether a row removes something on a horizon which a target has: of packages and libraries that are there in
+    another version, and packages themselves."""
+    then = ahead.target
+    if find_state(row, then) != "removed" or find_state(row, target) == "removed":
+        return False
+    if row.kind.startswith("package") and then.find_version(row.old or row.package) is None:
+        return True
+    if ahead.platform and not row.library:
+        return False
+    return find_version(row.package, row.library, target) != find_version(row.package, row.library, then)
 
 
 class Availabilities:
@@ -139,6 +136,8 @@ class Availabilities:
             return self._find_component(symbol)
         if symbol.kind in ("field", "interface"):
             return self._find_interface(symbol)
+        if symbol.kind == "behaviour":
+            return self._find_behaviour(symbol)
         missing = None
         for package in symbol.packages:
             found = self._find_header(symbol, package) if symbol.kind == "header" else self._find_other(symbol, package)
@@ -166,6 +165,18 @@ class Availabilities:
             return Availability(symbol, "removed", package, gone.version, library=True, detail=gone.help)
         known = knows_components(self.target, package)
         return Availability(symbol, "present" if known else "unknown", package, library=True)
+
+    def _find_behaviour(self, symbol: Symbol) -> Availability:
+        """What compiles on all versions, by its label in the table of what some treat otherwise."""
+        row = load_uses("behaviour").get(symbol.name)
+        differs = behaves_differently(row, self.target) if row is not None else None
+        if row is None or row.pattern is None or differs is None:
+            return Availability(symbol, "unknown")
+        state: State = "changed" if differs else "present"
+        evidence = Evidence(row.package, "changed", row.old, first=row.removed_in,
+                            library=row.library, source=row.source)  # fmt: skip
+        return Availability(symbol, state, row.package, find_row_version(row, self.target), row.removed_in, row.new,
+                            library=row.library, evidence=evidence, detail=row.pattern.clause)  # fmt: skip
 
     def _find_library(self, symbol: Symbol) -> Availability | None:
         """What Debian's releases of a system library tell of a target that some of them export."""
@@ -203,42 +214,27 @@ class Availabilities:
     def find_reviewed(self, kind: str, name: str) -> tuple[Availability, ...]:
         """What reviewed rows say of a name that is not as it was: what is in force on the target, then what is upcoming
         on the nearest horizon. kind: as of symbols, and `use`."""
-        subject, exact = ("cmake", kind != "command") if kind in _CMAKE else (kind, True)
-        rows = self._rows.get((subject, name.lower() if subject == "cmake" and "::" not in name else name), ())
-        return tuple(
-            found if ahead is None else found.apply_horizon(ahead)
-            for change, ahead in rows
-            if (found := _convert_row(kind, change)).symbol.name == name or not exact
-        )
+        old, new = (rows.get(_make_key(kind, name), ()) for rows in index_rows())
+        here = [(row, state) for row in old if (state := find_state(row, self.target))]
+        here = [(row, state) for row, state in here if state != "absent" or row.pattern is not None]
+        here += [(row, "absent") for row in new if find_state(row, self.target) == "absent"]
+        found = [_convert_row(kind, row, state, self.target) for row, state in here]
+        coming = ((row, ahead) for ahead, _ in self.ahead for row in old if _is_coming(row, self.target, ahead))
+        for row, ahead in islice(coming, 1):
+            found.append(_convert_row(kind, row, "removed", ahead.target).apply_horizon(ahead))
+        return tuple(one for one in found if one.symbol.name == name or kind == "command")
 
-    def iterate_reviewed(self, kind: str) -> Iterator[Availability]:
-        """The same of all names."""
-        for subject, name in self._rows:
-            if subject == kind:
-                yield from self.find_reviewed(kind, name)
+    def iterate_reviewed_uses(self) -> Iterator[Availability]:
+        """The same of all uses."""
+        for label in load_uses():
+            yield from self.find_reviewed("use", label)
 
-    @cached_property
-    def _rows(self) -> dict[tuple[str, str], list[tuple[ChangeInForce, Horizon | None]]]:
-        """Reviewed rows by what they are about and its name, each with the horizon where it will be in force."""
-        found: dict[tuple[str, str], list[tuple[ChangeInForce, Horizon | None]]] = {}
-        here = sorted(list_changes(self.target), key=lambda one: one.kind in _LESS_TELLING)
-        rows = ((change, None) for change in here)
-        coming: dict[str, tuple[ChangeInForce, Horizon]] = {}
-        for ahead, _ in self.ahead:
-            for change in find_coming_changes(self.target, ahead):
-                coming.setdefault(change.old or change.package, (change, ahead))
-        for change, ahead in (*rows, *coming.values()):
-            subject = _get_subject(change.kind)
-            name = _get_name(change)
-            name = name.lower() if subject == "cmake" and "::" not in name else name
-            found.setdefault((subject, name), []).append((change, ahead))
-        return found
-
-    @cached_property
-    def replacing_headers(self) -> dict[str, bool]:
-        """Headers that reviewed rows name for others that are not as they were, and whether they are there."""
-        rows = (change for change in list_changes(self.target) if change.kind.startswith("header") and change.new)
-        return {change.new: change.state != "absent" for change in rows}
+    def has_replacing_header(self, path: str) -> bool | None:
+        """Whether a header is there that reviewed rows name for others that are not as they were; None where they name
+        it for none."""
+        rows = index_rows()[1].get(("header", path), ())
+        states = [state for row in rows if (state := find_state(row, self.target))]
+        return states[-1] != "absent" if states else None
 
     def _is_deprecated(self, here: Availability) -> bool:
         """Whether the target warns of something, by what its version says or by a reviewed row."""
@@ -402,51 +398,36 @@ class Availabilities:
         for row in self.find_reviewed(symbol.kind, symbol.name):
             if row.state != "upcoming" and (not symbol.packages or row.library or row.package in symbol.packages):
                 return row._replace(symbol=symbol)
-        name = symbol.name.lower() if symbol.kind == "command" else symbol.name
-        for change in _load_removals().get(name, ()):
-            if not change.library or _get_subject(change.kind) != ("cmake" if symbol.kind in _CMAKE else symbol.kind):
+        for row in index_rows()[0].get(_make_key(symbol.kind, symbol.name), ()):
+            if not row.library or not row.removed_in or row.new_since or row.back_in:
                 continue
-            version = find_version(change.package, True, self.target)
-            if version and not has_reached(change.removed_in, version, self.target):
-                return Availability(symbol, "present", change.package, version, library=True)
+            version = find_version(row.package, True, self.target)
+            if version and not has_reached(row.removed_in, version, self.target):
+                return Availability(symbol, "present", row.package, version, library=True)
         return None
 
 
-@cache
-def _load_removals() -> dict[str, list[ChangeRow]]:
-    """Reviewed rows by the name that they say is removed."""
-    return group_pairs(
-        (row.old, row) for row in load_rows() if row.removed_in and not row.new_since and not row.back_in
-    )
+def _make_key(kind: str, name: str) -> tuple[str, str]:
+    """What index_rows() has rows on a symbol by."""
+    return ("cmake", name.lower() if "::" not in name else name) if kind in _CMAKE else (kind, name)
 
 
-def _get_subject(kind: str) -> str:
-    """The kind of symbol that rows of a kind are about; `cmake` for all of CMake."""
-    head = kind.partition("-")[0]
-    return _SUBJECTS.get(head, head)
-
-
-def _get_name(change: ChangeInForce) -> str:
-    """The name that the target lacks, or warns of."""
-    return change.new if change.state == "absent" and change.kind != "call-changed" else change.old or change.package
-
-
-def _convert_row(kind: str, change: ChangeInForce) -> Availability:
-    """What a reviewed row says of its name. kind: of the symbol."""
-    state: State = "changed" if change.kind in ("api-changed", "call-changed") else "removed"
-    row = find_row(change)
-    since, earlier = row.removed_in if row is not None else "", True
-    if change.state == "absent":
-        since, earlier = change.since, False
-        state = state if change.kind == "call-changed" else "not yet"
-    elif change.state == "deprecated":
+def _convert_row(kind: str, row: ChangeRow, in_force: str, target: DistroTarget) -> Availability:
+    """What a reviewed row says of its name. kind: of the symbol. in_force: as find_state() has it."""
+    state: State = "changed" if row.kind in ("api-changed", "call-changed") else "removed"
+    name, other = row.old or row.package, row.new
+    since, earlier = "" if row.pattern is not None else row.removed_in, True
+    if in_force == "absent":
+        since, earlier = row.new_since, False
+        if row.pattern is None:
+            state, name, other = "not yet", row.new, row.old
+    elif in_force == "deprecated":
         state, since = "deprecated", ""
-    other = change.old if state == "not yet" else change.new
-    form = "renamed" if change.kind.endswith(("-renamed", "-moved")) else ""
-    return Availability(Symbol(kind, _get_name(change)), state, change.package, change.version, since, other,
-                        library=change.library, evidence=make_evidence(change),
-                        replacement_since=change.since if earlier else "",
-                        form="meaning" if change.kind == "api-changed" else form, earlier=earlier)  # fmt: skip
+    form = "renamed" if row.kind.endswith(("-renamed", "-moved")) else ""
+    return Availability(Symbol(kind, name), state, row.package, find_row_version(row, target), since, other,
+                        library=row.library, evidence=make_evidence(row, in_force),
+                        replacement_since=row.new_since if earlier else "",
+                        form="meaning" if row.kind == "api-changed" else form, earlier=earlier)  # fmt: skip
 
 
 _SEVERAL = 3

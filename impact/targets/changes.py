@@ -11,17 +11,18 @@ what the very release has.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import msgspec
 
+from ...edges.groups import group_pairs
 from ..facts.usage import Pattern
 from .distro.known import release_day
 from .providers.libraries import load_libraries
 from .providers.providers import Providers, load_providers
 from .snapshot import DATA, SnapshotError, read_table
-from .target import ChangeInForce, ChangeTable
 from .version import is_at_least
 
 if TYPE_CHECKING:
@@ -179,6 +180,28 @@ _USES = {"call-changed": "uses*.json", "behaviour": "behaviour.json"}
 
 
 @cache
+def index_rows() -> tuple[dict[tuple[str, str], list[ChangeRow]], dict[tuple[str, str], list[ChangeRow]]]:
+    """The rows by the kind of symbol and the name that some versions lack: the old one, then the new one. `cmake` is
+    the kind of all of CMake, whose commands are in lower case."""
+    rows = sorted((*load_rows(), *load_uses().values()), key=lambda row: row.kind in _LESS_TELLING)
+    return (
+        group_pairs((_make_subject(row.kind, row.old or row.package), row) for row in rows),
+        group_pairs((_make_subject(row.kind, row.new), row) for row in rows if row.new and row.pattern is None),
+    )
+
+
+def _make_subject(kind: str, name: str) -> tuple[str, str]:
+    head = kind.partition("-")[0]
+    return _SUBJECTS.get(head, head), name.lower() if head == "cmake" and "::" not in name else name
+
+
+_SUBJECTS = {"api": "c++", "call": "use", "msg": "field"}
+"""What rows are about by how their kinds begin, where it is not called so."""
+_LESS_TELLING = frozenset(("api-renamed", "api-changed"))
+"""Kinds of rows that come after others on the same name."""
+
+
+@cache
 def compute_uses_stamp() -> str:
     """Differs whenever a table of uses does."""
     paths = (path for pattern in _USES.values() for path in sorted(DATA.glob(pattern)))
@@ -201,9 +224,9 @@ def find_standards(label: str) -> tuple[int, int]:
     return (row.refused_from, row.needs) if row is not None else (0, 0)
 
 
-def find_function(label: str, language: str) -> str:
-    """The function that a use in a language calls, by its label; empty for other uses."""
-    row = load_uses().get(label)
+def find_function(label: str, language: str, kind: str = "call-changed") -> str:
+    """The function that a use in a language calls, by its label; empty for other uses. kind: as of load_uses()."""
+    row = load_uses(kind).get(label)
     pattern = row.pattern if row is not None else None
     return pattern.word if pattern is not None and pattern.calls and pattern.language == language else ""
 
@@ -240,42 +263,29 @@ DISTROS: dict[str, int] = {
 State = Literal["removed", "deprecated", "absent"]
 
 
-def changes_in_force(target: DistroTarget, providers: Providers | None = None) -> tuple[ChangeInForce, ...]:
-    """Known changes that hold on a target, deprecations and not yet existing new names included.
+def find_state(row: ChangeRow, target: DistroTarget, providers: Providers | None = None) -> State | None:
+    """How a row is in force on a target: `removed`, gone there; `deprecated`, still there; `absent`, the new name is
+    not there yet. None where it is not in force, or the version of the package or library is not known, except for
+    packages that are themselves gone."""
+    if row.ros and row.ros != target.ros:
+        return None
+    version = find_row_version(row, target)
+    if not version:
+        gone = row.kind in ("package-removed", "package-renamed") and has_reached(row.removed_in, "", target)
+        return "removed" if gone else None
+    return _determine_state(row, version, target, providers or load_providers())
 
-    A row whose package or library the target does not have, or has in an unknown version, is left out, except for
-    packages that are themselves gone.
-    """
-    table = providers or load_providers()
-    found = []
-    versions: dict[tuple[str, bool, bool], str | None] = {}
+
+def iterate_in_force(target: DistroTarget, providers: Providers | None = None) -> Iterator[tuple[ChangeRow, State]]:
+    """The rows on names and uses that are in force on a target, and how."""
     for row in (*load_rows(), *load_uses().values()):
-        if row.ros and row.ros != target.ros:
-            continue
-        owner = row.package, row.library, bool(row.last_in)
-        if owner not in versions:
-            versions[owner] = find_version(row.package, row.library, target, bool(row.last_in))
-        version = versions[owner]
-        if not version:
-            if row.kind in ("package-removed", "package-renamed") and has_reached(row.removed_in, "", target):
-                found.append(_make_change(row, "removed", ""))
-            continue
-        state = _determine_state(row, version, target, table)
-        if state:
-            found.append(_make_change(row, state, version))
-    return tuple(found)
+        if state := find_state(row, target, providers):
+            yield row, state
 
 
-def list_changes(target: DistroTarget) -> ChangeTable:
-    """Known upstream changes that are in force on a target, deprecations included, worked out once."""
-    known = target.known_changes
-    return target.set_changes(changes_in_force(target)) if known is None else known
-
-
-def _make_change(row: ChangeRow, state: str, version: str) -> ChangeInForce:
-    return ChangeInForce(
-        row.kind, row.package, row.old, row.new, state, version, row.new_since, row.source, row.library
-    )
+def find_row_version(row: ChangeRow, target: DistroTarget) -> str:
+    """Version of what a row is about on a target; empty when it is not there or not known."""
+    return find_version(row.package, row.library, target, bool(row.last_in)) or ""
 
 
 def find_version(package: str, library: bool, target: DistroTarget, derived: bool = False) -> str | None:
@@ -378,16 +388,6 @@ def has_reached(bound: str, version: str, target: DistroTarget) -> bool:
 def list_excuses(package: str, name: str) -> tuple[str, ...]:
     """Endings of include paths that bring a removed name back (`_c.h` for OpenCV's C constants); empty for most."""
     return _load_excuses().get((package, name), ())
-
-
-def find_row(change: ChangeInForce) -> ChangeRow | None:
-    """The row of a change. An absent name is known by its new spelling too, and the change keeps the old one."""
-    return _index_rows().get((change.kind, change.package, change.old))
-
-
-@cache
-def _index_rows() -> dict[tuple[str, str, str], ChangeRow]:
-    return {(row.kind, row.package, row.old): row for row in (*load_rows(), *load_uses().values())}
 
 
 @cache

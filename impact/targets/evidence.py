@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cache, cmp_to_key
 
-from .changes import DISTROS, ChangeRow, find_row, find_version, has_reached
+from .changes import DISTROS, ChangeRow, find_version, has_reached
 from .distro.distro import DistroTarget
 from .distro.known import list_releases, release_day
 from .evidence_record import Evidence, OnTarget
@@ -17,25 +17,20 @@ from .providers.providers import Providers
 from .surface.changes import ChangeEvent, Line
 from .surface.offers import Offered, classify_event, find_standing, list_declared
 from .surface.store import load_shipped
-from .target import ChangeInForce
 from .version import compare, is_at_least, parse
 
 
-def make_evidence(change: ChangeInForce) -> Evidence:
-    """The evidence for a known change of changes.py."""
-    row = find_row(change)
-    if row is None:
-        what = _WHAT.get(change.state, "removed")
-        return Evidence(change.package, what, library=change.library, source=change.source)
+def make_evidence(row: ChangeRow, state: str) -> Evidence:
+    """The evidence for a known change of changes.py that is in force in this way, as find_state() has it."""
     if row.pattern is not None:
-        first = row.new_since if change.state == "absent" else row.removed_in
+        first = row.new_since if state == "absent" else row.removed_in
         side = "python" if row.pattern.language == "python" else "c++"
-        return Evidence(row.package, _WHAT.get(change.state, "removed"), row.old, side=side,
+        return Evidence(row.package, _WHAT.get(state, "removed"), row.old, side=side,
                         last=row.last_in or _find_before(first, row.library, row.source, row.package), first=first,
                         library=row.library, source=row.source)  # fmt: skip
-    if change.state == "deprecated":
+    if state == "deprecated":
         return _make_gone(row)._replace(change="deprecated", last="", first=row.deprecated_in, header="")
-    here, other = (_make_new(row), _make_gone(row)) if change.state == "absent" else (_make_gone(row), _make_new(row))
+    here, other = (_make_new(row), _make_gone(row)) if state == "absent" else (_make_gone(row), _make_new(row))
     known = other.name and not row.back_in and (other.first or other.new_in or other.header)
     return here._replace(other=other) if known else here
 

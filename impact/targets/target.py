@@ -1,11 +1,8 @@
-"""What a target answers with: providers, resolved keys, dependencies, and the changes that are in force on it."""
+"""What a target answers with: providers, resolved keys and dependencies."""
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import NamedTuple
-
-from ...edges.groups import group_pairs
 
 
 class Provider(NamedTuple):
@@ -35,46 +32,3 @@ class ReleasedDependency(NamedTuple):
     name: str
     kind: str
     bounds: tuple[tuple[str, str], ...]
-
-
-class ChangeInForce(NamedTuple):
-    """One known upstream change that is in force on a target.
-
-    kind: header-removed, header-renamed, package-removed, package-renamed, api-removed, api-renamed, api-changed,
-    cmake-removed, msg-field, msg-removed, python-removed, ... or, for uses (uses.py), call-changed,
-    where old is the label of the use and new what to write instead.
-    state: `removed` (gone on this target), `deprecated` (still there), `absent` (the new spelling is not there yet).
-    version: version of the package on the target, empty when unknown. since: first distro or version with `new`.
-    library: package is a platform library.
-    """
-
-    kind: str
-    package: str
-    old: str
-    new: str
-    state: str
-    version: str
-    since: str
-    source: str
-    library: bool = False
-
-
-class ChangeTable(tuple[ChangeInForce, ...]):
-    """The changes that are in force on a target, in order, and by what they are asked for."""
-
-    @cached_property
-    def by_name(self) -> dict[tuple[str, str], list[ChangeInForce]]:
-        """The changes by kind and the name that the target does not have, or warns of; CMake commands in lower case."""
-        found: dict[tuple[str, str], list[ChangeInForce]] = {}
-        for change in self:
-            name = change.new if change.state == "absent" else change.old
-            name = name.lower() if change.kind.startswith("cmake") and "::" not in name else name
-            found.setdefault((change.kind, name), []).append(change)
-        return found
-
-    @cached_property
-    def removed(self) -> dict[tuple[str, str, str], list[ChangeInForce]]:
-        """What is removed, by kind, package and old name."""
-        return group_pairs(
-            ((change.kind, change.package, change.old), change) for change in self if change.state == "removed"
-        )

@@ -3,32 +3,50 @@
 from types import SimpleNamespace
 from typing import cast
 
+import msgspec
 import pytest
 from rosimpact.impact.model.cmake.build import At
 from rosimpact.impact.model.package import NameUse
 from rosimpact.impact.model.view import TargetView
 from rosimpact.impact.rules.api.reviewed_names import ReviewedNames
+from rosimpact.impact.targets import availability
 from rosimpact.impact.targets.availability import Availabilities
+from rosimpact.impact.targets.changes import ChangeRow
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.surface.offers import Offers
-from rosimpact.impact.targets.target import ChangeInForce, ChangeTable
 
 
-def row(kind: str, package: str, old: str, new: str, state: str) -> ChangeInForce:
-    return ChangeInForce(kind, package, old, new, state, "2.0.0", "2.0.0", "the change log")
+def row(package: str, old: str, new: str = "", **bounds: str) -> ChangeRow:
+    return ChangeRow(kind="api-renamed" if new else "api-removed", package=package, old=old, new=new,
+                     source="the change log", **(bounds or {"removed_in": "2.0.0"}))  # fmt: skip
 
 
-ROWS = ChangeTable((
-    row("api-removed", "arm", "lift", "", "removed"),
-    row("api-renamed", "arm", "drop", "put", "removed"),
-    row("api-removed", "arm", "shake", "", "deprecated"),
-    row("api-renamed", "arm", "spin", "turn", "absent"),
-    row("api-removed", "dock", "moor", "", "removed"),
-    row("api-removed", "opencv", "CV_OLD", "", "removed"),
-    row("python-removed", "arm", "arm.lift", "", "removed"),
-    row("api-removed", "eigen3", "EIGEN_OLD", "", "removed")._replace(library=True),
-))  # fmt: skip
+ROWS = (
+    row("arm", "lift"),
+    row("arm", "drop", "put"),
+    row("arm", "shake", deprecated_in="2.0.0"),
+    row("arm", "spin", "turn", new_since="3.0.0"),
+    row("dock", "moor"),
+    row("opencv", "CV_OLD"),
+)
+OLD = {
+    **{("c++", one.old): [one] for one in ROWS},
+    ("python", "arm.lift"): [msgspec.structs.replace(ROWS[0], kind="python-removed", old="arm.lift")],
+    ("c++", "EIGEN_OLD"): [msgspec.structs.replace(row("eigen3", "EIGEN_OLD"), library=True)],
+}
+NEW = {("c++", one.new): [one] for one in ROWS if one.new}
 
+
+class Target(DistroTarget):
+    """Has everything in version 2.0.0."""
+
+    def __init__(self):
+        self.distro, self.ros = "jazzy", 2
+
+    def find_version(self, package):
+        return "2.0.0"
+
+    find_library = find_version
 
 class Workspace(SimpleNamespace):
     """A workspace of the package dock."""
@@ -40,13 +58,18 @@ class Workspace(SimpleNamespace):
 
 
 MACHINE = SimpleNamespace(is_from_library=lambda header: header == "Eigen/src/Core/Dot.h")
-REVIEWED = Availabilities(cast(DistroTarget, SimpleNamespace(known_changes=ROWS)), cast(Offers, object()), ahead=())
+REVIEWED = Availabilities(Target(), cast(Offers, object()), ahead=())
 NAMES = ReviewedNames(
     cast(
         TargetView,
         SimpleNamespace(find_reviewed=REVIEWED.find_reviewed, workspace=Workspace(), machine=MACHINE),
     )
 )
+
+
+@pytest.fixture(autouse=True)
+def own_rows(monkeypatch):
+    monkeypatch.setattr(availability, "index_rows", lambda: (OLD, NEW))
 
 
 @pytest.mark.parametrize(

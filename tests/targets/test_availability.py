@@ -1,8 +1,7 @@
 """Is it there, on this target? One answer for all kinds of names, from what is shipped."""
 
 import pytest
-from rosimpact.impact.targets.availability import Availabilities, find_coming_changes, list_horizons
-from rosimpact.impact.targets.changes import list_changes
+from rosimpact.impact.targets.availability import Availabilities, list_horizons
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.symbol import CppUseForm, Symbol
 
@@ -122,11 +121,10 @@ def test_a_date_has_a_next_sync_and_an_update():
 
 def test_what_the_next_sync_removes_is_asked_of_the_packages_that_wait_for_it():
     target = DistroTarget("rolling", "2023-04-05")
-    assert "SHARED_PTR_DEFINITIONS" not in {change.old for change in list_changes(target)}
     (soon,) = (ahead for ahead in list_horizons(target) if "next sync" in ahead.name)
-    coming = find_coming_changes(target, soon)
-    assert "SHARED_PTR_DEFINITIONS" in {change.old for change in coming}
+    (coming,) = Availabilities(target).find_reviewed("c++", "SHARED_PTR_DEFINITIONS")
+    assert (coming.state, coming.horizon and coming.horizon.name) == ("upcoming", soon.name)
     # What is gone already does not go again.
-    assert not {(change.kind, change.package, change.old) for change in coming} & list_changes(target).removed.keys()
-    assert list_changes(target).removed
+    (gone,) = Availabilities(soon.target).find_reviewed("c++", "SHARED_PTR_DEFINITIONS")
+    assert gone.state == "removed"
     assert soon.target.compute_identity() != target.compute_identity()

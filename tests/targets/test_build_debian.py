@@ -8,13 +8,12 @@ import tarfile
 import pytest
 from rosimpact.databuild import debian
 from rosimpact.databuild.libraries import Packaged, Run, read_packages
-from rosimpact.impact.targets.changes import changes_in_force, load_rows, load_uses
+from rosimpact.impact.targets.changes import find_row_version, iterate_in_force, load_rows, load_uses
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.evidence import holds_on, make_evidence
 from rosimpact.impact.targets.providers.libraries import load_libraries
 from rosimpact.impact.targets.providers.providers import load_providers
 from rosimpact.impact.targets.snapshot import DATA
-from rosimpact.impact.targets.target import ChangeInForce
 from rosimpact.impact.targets.version import is_at_least, parse
 
 OLD = """#pragma once
@@ -212,9 +211,7 @@ def test_what_people_reviewed_comes_before_what_was_derived():
 
 def test_the_evidence_gives_the_interval():
     row = next(row for row in load_rows() if row.last_in and row.kind == "api-removed")
-    evidence = make_evidence(
-        ChangeInForce(row.kind, row.package, row.old, row.new, "removed", row.removed_in, "", row.source, True)
-    )
+    evidence = make_evidence(row, "removed")
     assert (evidence.last, evidence.first) == (row.last_in, row.removed_in)
 
 
@@ -225,8 +222,7 @@ def test_the_evidence_gives_the_interval():
 )
 def test_of_a_version_between_two_packaged_ones_nothing_is_said(distro, expected):
     use = load_uses()["cv::aruco::detectMarkers with 8 arguments"]
-    change = ChangeInForce(use.kind, use.package, use.old, "", "removed", "4.6.0", "", use.source, True)
-    assert holds_on(make_evidence(change), DistroTarget(distro), load_providers()) is expected
+    assert holds_on(make_evidence(use, "removed"), DistroTarget(distro), load_providers()) is expected
 
 
 @pytest.mark.parametrize(
@@ -242,5 +238,6 @@ def test_of_a_version_between_two_packaged_ones_nothing_is_said(distro, expected
     ],
 )
 def test_the_version_that_a_target_builds_with_decides(distro, name, gone_in):
-    found = [change for change in changes_in_force(DistroTarget(distro)) if change.old == name]
-    assert [change.version for change in found if change.state == "removed"] == ([gone_in] if gone_in else [])
+    target = DistroTarget(distro)
+    found = [row for row, state in iterate_in_force(target) if row.old == name and state == "removed"]
+    assert [find_row_version(row, target) for row in found] == ([gone_in] if gone_in else [])

@@ -6,7 +6,8 @@ import re
 import pytest
 from rosimpact.impact.targets.changes import (
     DISTROS,
-    changes_in_force,
+    find_row_version,
+    iterate_in_force,
     list_excuses,
     load_rows,
     load_transitive,
@@ -17,7 +18,7 @@ from rosimpact.impact.targets.version import parse
 
 
 def states(target, old):
-    return {change.state for change in changes_in_force(target) if change.old == old}
+    return {state for row, state in iterate_in_force(target) if row.old == old}
 
 
 @pytest.mark.parametrize(
@@ -81,10 +82,12 @@ def test_state_on_a_day(distro, date, old, expected):
 
 
 def test_a_change_says_what_instead_and_where_from():
-    (change,) = (c for c in changes_in_force(DistroTarget("noetic", versions={"opencv": "4.2"})) if c.old == "CV_AA")
-    assert (change.kind, change.package, change.new, change.version) == ("api-removed", "opencv", "cv::LINE_AA", "4.2")
-    assert "OpenCV 4.0" in change.source
-    assert "imgproc/imgproc_c.h" in list_excuses(change.package, change.old)
+    target = DistroTarget("noetic", versions={"opencv": "4.2"})
+    (row,) = (row for row, _ in iterate_in_force(target) if row.old == "CV_AA")
+    assert (row.kind, row.package, row.new) == ("api-removed", "opencv", "cv::LINE_AA")
+    assert find_row_version(row, target) == "4.2"
+    assert "OpenCV 4.0" in row.source
+    assert "imgproc/imgproc_c.h" in list_excuses(row.package, row.old)
 
 
 def reviewed_rows():

@@ -2,7 +2,7 @@
 
 import msgspec
 import pytest
-from rosimpact.impact.targets.changes import changes_in_force, load_rows, load_transitive
+from rosimpact.impact.targets.changes import iterate_in_force, load_rows, load_transitive
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.snapshot import DATA
 from rosimpact.impact.targets.version import is_at_least, parse
@@ -33,9 +33,9 @@ class Nothing:
 def state_of(machine: Machine, kind: str, name: str) -> str:
     """The state of a change whose old or new spelling is name, empty where it is in order."""
     found = {
-        change.state
-        for change in changes_in_force(machine, Nothing())
-        if change.kind.startswith(kind) and name == (change.new if change.state == "absent" else change.old)
+        state
+        for row, state in iterate_in_force(machine, Nothing())
+        if row.kind.startswith(kind) and name == (row.new if state == "absent" else row.old)
     }
     return found.pop() if len(found) == 1 else "/".join(sorted(found))
 

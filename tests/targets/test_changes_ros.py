@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from rosimpact.impact.targets import changes
-from rosimpact.impact.targets.changes import DISTROS, list_changes
+from rosimpact.impact.targets.changes import DISTROS, iterate_in_force
 from rosimpact.impact.targets.distro.distro import DistroTarget
 
 DATA = Path(changes.__file__).parent / "data"
@@ -85,17 +85,17 @@ SEEN = [
 @pytest.mark.parametrize(("kind", "package", "old", "new", "gone", "there"), SEEN)
 def test_gone_where_it_is_gone(kind, package, old, new, gone, there):
     for distro in (*gone.split(), *there.split()):
-        found = [c for c in list_changes(DistroTarget(distro)) if (c.kind, c.package, c.old) == (kind, package, old)]
-        removed = [c for c in found if c.state == "removed"]
-        assert bool(removed) == (distro in gone.split()), distro
-        assert all(c.new == new for c in removed)
+        removed = [row for row, state in iterate_in_force(DistroTarget(distro)) if state == "removed"]
+        found = [row for row in removed if (row.kind, row.package, row.old) == (kind, package, old)]
+        assert bool(found) == (distro in gone.split()), distro
+        assert all(row.new == new for row in found)
 
 
 def test_numbers_of_ros2_are_not_those_of_ros1():
     # ROS 2's sensor_msgs deprecated it in 0.9.0; ROS 1's, which is 1.13, never did.
     def told(distro):
-        changes = list_changes(DistroTarget(distro))
-        return {c.old for c in changes if c.package == "sensor_msgs" and c.state == "deprecated"}
+        rows = iterate_in_force(DistroTarget(distro))
+        return {row.old for row, state in rows if row.package == "sensor_msgs" and state == "deprecated"}
 
     assert "sensor_msgs::convertPointCloudToPointCloud2" in told("humble")
     assert "sensor_msgs::convertPointCloudToPointCloud2" not in told("noetic")

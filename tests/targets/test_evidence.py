@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.targets import evidence as module
-from rosimpact.impact.targets.changes import changes_in_force
+from rosimpact.impact.targets.changes import iterate_in_force
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.distro.known import list_releases
 from rosimpact.impact.targets.evidence import (
@@ -20,7 +20,8 @@ from rosimpact.impact.targets.version import is_at_least
 
 
 def change(target, kind, package, old):
-    return next(c for c in changes_in_force(target) if (c.kind, c.package, c.old) == (kind, package, old))
+    known = iterate_in_force(target)
+    return next(one for one in known if (one[0].kind, one[0].package, one[0].old) == (kind, package, old))
 
 
 def seen(evidence, *targets, spoken_of):
@@ -32,7 +33,7 @@ def seen(evidence, *targets, spoken_of):
 def test_a_name_of_the_table_tells_between_which_versions_it_went_and_since_when_on_each_target():
     humble, jazzy = DistroTarget("humble"), DistroTarget("jazzy")
     found, on = seen(
-        make_evidence(change(jazzy, "api-removed", "rclcpp", "RCLCPP_SCOPE_EXIT")), humble, jazzy, spoken_of=["jazzy"]
+        make_evidence(*change(jazzy, "api-removed", "rclcpp", "RCLCPP_SCOPE_EXIT")), humble, jazzy, spoken_of=["jazzy"]
     )
     assert (found.change, found.package, found.name, found.instead) == (
         "removed", "rclcpp", "RCLCPP_SCOPE_EXIT", "RCPPUTILS_SCOPE_EXIT")  # fmt: skip
@@ -43,8 +44,9 @@ def test_a_name_of_the_table_tells_between_which_versions_it_went_and_since_when
 def test_a_day_before_the_change_says_when_it_comes():
     """message_filters/subscriber.hpp came to jazzy within its life."""
     early, late = DistroTarget("jazzy", "2024-08-01"), DistroTarget("jazzy")
-    row = next(c for c in changes_in_force(early) if c.new == "message_filters/subscriber.hpp" and c.state == "absent")
-    _, on = seen(make_evidence(row), early, late, spoken_of=["jazzy@2024-08-01"])
+    rows = (row for row, state in iterate_in_force(early) if state == "absent")
+    row = next(row for row in rows if row.new == "message_filters/subscriber.hpp")
+    _, on = seen(make_evidence(row, "absent"), early, late, spoken_of=["jazzy@2024-08-01"])
     (name, before, coming), (_, after, since) = on
     assert (name, before, after) == ("jazzy@2024-08-01", False, True)
     assert coming == since > "2024-08-01"
@@ -74,11 +76,12 @@ def test_of_what_is_to_come_the_targets_do_not_have_it_yet():
 
 def test_libraries_come_with_the_distro():
     noetic = DistroTarget("noetic")
-    row = next(c for c in changes_in_force(noetic) if c.package == "opencv" and c.library and c.old == "CV_BGR2GRAY")
-    _, on = seen(make_evidence(row), noetic, spoken_of=["noetic"])
+    rows = (row for row, _ in iterate_in_force(noetic) if row.package == "opencv" and row.library)
+    row = next(row for row in rows if row.old == "CV_BGR2GRAY")
+    _, on = seen(make_evidence(row, "removed"), noetic, spoken_of=["noetic"])
     assert on == [("noetic", True, "2020-05-23")]
     robot = DistroTarget("noetic", versions={"opencv": "4.9"}, name="robot")
-    assert seen(make_evidence(row), robot, spoken_of=["robot"])[1] == [("robot", True, "")]
+    assert seen(make_evidence(row, "removed"), robot, spoken_of=["robot"])[1] == [("robot", True, "")]
 
 
 def test_a_version_that_was_given_has_no_day():
@@ -89,9 +92,9 @@ def test_a_version_that_was_given_has_no_day():
 
 def test_a_use_has_its_label_and_bound():
     rolling = DistroTarget("rolling")
-    known = [c for c in changes_in_force(rolling) if c.kind == "call-changed"]
-    use = next(c for c in known if c.package == "message_filters" and c.state == "removed")
-    found = make_evidence(use)
+    known = (row for row, state in iterate_in_force(rolling) if row.kind == "call-changed" and state == "removed")
+    use = next(row for row in known if row.package == "message_filters")
+    found = make_evidence(use, "removed")
     assert (found.change, found.name, found.first[:1].isdigit()) == ("removed", use.old, True)
 
 

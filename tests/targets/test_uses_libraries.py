@@ -4,7 +4,7 @@ import re
 
 import pytest
 from rosimpact.impact.facts.usage import find_use_places
-from rosimpact.impact.targets.changes import changes_in_force, find_standards, load_uses
+from rosimpact.impact.targets.changes import find_standards, iterate_in_force, load_uses
 from rosimpact.impact.targets.distro.distro import DistroTarget
 
 
@@ -35,7 +35,7 @@ class Machine(DistroTarget):
 
 def refused(code: str, **versions: str) -> set[str]:
     """Labels of the uses in code that a machine does not take, whatever the C++ standard."""
-    states = {change.old: change.state for change in changes_in_force(Machine(**versions), Nothing())}
+    states = {row.old: state for row, state in iterate_in_force(Machine(**versions), Nothing())}
     return {
         label
         for label, use in load_uses().items()

@@ -23,8 +23,9 @@ Not reported
 from collections.abc import Iterator, Sequence
 
 from ...model.package import NameUse
-from ...targets.changes import ChangeRow, behaves_differently, load_uses
-from ...targets.evidence_record import Evidence
+from ...targets.availability import Availabilities
+from ...targets.changes import find_function
+from ...targets.symbol import Availability, Symbol
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
 from .changed_default import find_previous_lts
 from .diagnosis import is_of_another_distro
@@ -38,45 +39,40 @@ from .diagnosis import is_of_another_distro
 def changed_behaviour(views: Sequence[TargetView]) -> Iterator[tuple[TargetView, Diagnostic]]:
     if not views:
         return
-    table = load_uses("behaviour")
     workspace = views[0].workspace
-    own = {function for package in workspace for function in package.linked.functions}
-    before = find_previous_lts(views[0].target.distro) if len(views) == 1 else None
-    fresh: dict[str, bool] = {}
+    own = {function for package in workspace for function in package.linked.functions if function}
+    previous = find_previous_lts(views[0].target.distro) if len(views) == 1 else None
+    before = Availabilities(previous, ahead=()) if previous is not None else None
     for package in workspace:
         seen: set[tuple[str, str]] = set()
         for use in package.linked.uses:
-            row = table.get(use.text)
-            if row is None or row.pattern is None or use.role not in ("build", "run"):
+            if use.role not in ("build", "run"):
                 continue
-            if (row.pattern.clause, row.package) in seen:
+            symbol = Symbol("behaviour", use.text)
+            answers = [(view, view.availabilities.find_availability(symbol)) for view in views]
+            changed = next((found for _, found in answers if found.state == "changed"), None)
+            if changed is None or (changed.detail, changed.package) in seen or changed.package in workspace.packages:
                 continue
-            if row.package in workspace.packages or (row.pattern.calls and row.pattern.word in own):
+            if find_function(use.text, use.language, "behaviour") in own:
                 continue
-            if row.old not in fresh:
-                fresh[row.old] = before is not None and behaves_differently(row, before) is False
-            holding = [view for view in views if behaves_differently(row, view.target)]
-            if not holding or (len(holding) == len(views) and not fresh[row.old]):
+            fresh = before is not None and before.find_availability(symbol).state == "present"
+            if not fresh and all(found.state == "changed" for _, found in answers):
                 continue  # known before it is asked what the use is of, which is dear
-            asked = [view for view in views if _is_relevant(view, package, use, row)]
-            with_it = [view for view in asked if view in holding]
-            if not with_it or (len(with_it) == len(asked) and not fresh[row.old]):
+            asked = [(view, found) for view, found in answers if _is_relevant(view, package, use, found)]
+            with_it = [(view, found) for view, found in asked if found.state == "changed"]
+            if not with_it or (len(with_it) == len(asked) and not fresh):
                 continue
-            seen.add((row.pattern.clause, row.package))
-            shown = use.shown or use.text
-            data = {"since": f"{row.package} {row.removed_in}" if row.removed_in[0].isdigit() else row.removed_in}
-            data |= {"clause": row.pattern.clause, "advice": row.new}
-            evidence = Evidence(
-                row.package, "changed", row.old, first=row.removed_in, library=row.library, source=row.source
-            )
-            for view in with_it:
-                yield view, Diagnostic(use.at, shown, package.name, data, evidence=evidence)
+            seen.add((changed.detail, changed.package))
+            data = {"since": f"{changed.package} {changed.since}" if changed.since[0].isdigit() else changed.since}
+            data |= {"clause": changed.detail, "advice": changed.replacement}
+            for view, found in with_it:
+                yield view, Diagnostic(use.at, use.shown or use.text, package.name, data, evidence=found.evidence)
 
 
-def _is_relevant(view: TargetView, package: Package, use: NameUse, row: ChangeRow) -> bool:
+def _is_relevant(view: TargetView, package: Package, use: NameUse, found: Availability) -> bool:
     """Whether a use is compiled or run on a target that has the package in some version."""
-    if not view.builds(package) or behaves_differently(row, view.target) is None or not view.applies(use.conditions):
+    if not view.builds(package) or found.state == "unknown" or not view.applies(use.conditions):
         return False
     if use.language == "yaml" and is_of_another_distro(view, use.at.path, package.linked.files):
         return False
-    return view.may_concern(package, row.package, use.at.path)
+    return view.may_concern(package, found.package, use.at.path)

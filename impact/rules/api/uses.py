@@ -33,7 +33,7 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
         return
     calls = {
         find_function(row.symbol.name, "cpp")
-        for row in view.availabilities.iterate_reviewed("use")
+        for row in view.availabilities.iterate_reviewed_uses()
         if row.state != "upcoming" and view.offers.find_package(row.package) is None  # else its surfaces know more
     }
     near = view.build_environment(package)

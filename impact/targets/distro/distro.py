@@ -24,7 +24,7 @@ from ...conditions.manifest import evaluate
 from .. import snapshot as snapshots
 from ..platform import normalize_library_name, normalize_platform, parse_python_minor
 from ..snapshot import KINDS, Snapshot
-from ..target import ChangeInForce, ChangeTable, ReleasedDependency, Resolution
+from ..target import ReleasedDependency, Resolution
 from ..version import parse_number
 from .conda import CHANNELS, find_libraries
 from .known import (
@@ -76,11 +76,6 @@ def make_version_key(version: str) -> list[int]:
 
 # Letters of KINDS for what is installed along with a package.
 _COMES_ALONG = frozenset("eox")
-
-
-_MOST_TABLES = 32
-_tables: dict[str, ChangeTable] = {}
-"""The changes in force on targets of this process, by the identity of the target."""
 
 
 @functools.lru_cache(maxsize=16)
@@ -157,7 +152,6 @@ class DistroTarget:
         self.platform = self._choose_platform(platform, notes)
         self._notes = tuple(notes)
         self.name = name or (distro if date is None else f"{distro}@{date}")
-        self._changes: ChangeTable | None = None
 
     @cached_property
     def notes(self) -> tuple[str, ...]:
@@ -632,22 +626,6 @@ class DistroTarget:
         """Platform libraries whose version is known here."""
         own = {name for name, value in self._own_libraries.items() if value} & self._data.list_values("library")
         return frozenset(self._load_libraries()) | own | (self._facts.libraries.keys() if self._facts else frozenset())
-
-    @property
-    def known_changes(self) -> ChangeTable | None:
-        """The upstream changes in force here, once they are worked out; see changes.list_changes()."""
-        if self._changes is None and self._data is snapshots.load_snapshot():
-            self._changes = _tables.get(self.compute_identity())
-        return self._changes
-
-    def set_changes(self, changes: tuple[ChangeInForce, ...]) -> ChangeTable:
-        """Notes the upstream changes in force here, worked out now or by an earlier run on the same data."""
-        self._changes = ChangeTable(changes)
-        if self._data is snapshots.load_snapshot():
-            _tables[self.compute_identity()] = self._changes
-            if len(_tables) > _MOST_TABLES:
-                del _tables[next(iter(_tables))]
-        return self._changes
 
 
 def _parse_companions(entries: str) -> frozenset[str]:
