@@ -3,20 +3,21 @@
 A row says that a name of a ROS package is gone from some version, or distro, on. Where surfaces of the package are
 stored, each stored version tells whether the name is there. A row is
 
-    answered        stored versions have the name and later ones lack it, as the row says; what a version before the
-                    first that has it lacks is not gone
+    answered        stored versions have the name and later ones lack it, as the row says; what a later version has
+                    (again) is not gone
     contradicted    some stored version says otherwise, so that the row is wrong there or its bound is inexact
+    wrong           contradicted, and the newest stored version has the name
     more            answered, but the row names a replacement, or a deprecation, that nothing stored names; or a target
                     that lacks the name is not told so without the row
     bare            it is a bare name of a function or method, which does not tell whose: it may be anybody's
     unknown         no version is stored, or none on one side of the bound, or the name is of no kind that is stored
 
 Of rows that were derived from release tags, which are what surfaces are made from too, only the unknown ones and those
-that say more stay, and of reviewed rows all but the answered and bare ones. A contradicted bound is first replaced by
-the version that the stored ones tell (see derive_bound). Platform libraries have no stored surfaces, and their rows
-stay. Of fields and interfaces the table of interfaces alone is asked, so that a row only lends a replacement. Rows of
-uses stay too: a pattern that is only a qualified name is answered by the surfaces, and still finds places that the
-resolver does not see, such as template arguments and braced initialisers.
+that say more stay, and of reviewed rows all but the answered, wrong and bare ones. A contradicted bound is first
+replaced by the versions that the stored ones tell, of each generation of ROS (see derive_bounds). Platform libraries
+have no stored surfaces, and their rows stay. Of fields and interfaces the table of interfaces alone is asked, so that
+a row only lends a replacement. Rows of uses stay too: a pattern that is only a qualified name is answered by the
+surfaces, and still finds places that the resolver does not see, such as template arguments and braced initialisers.
 
     python -P -m rosimpact.databuild.superseded [--write]
 """
@@ -28,7 +29,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
-from itertools import accumulate, dropwhile
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,7 @@ from ..impact.targets.version import is_at_least
 _SIDES = {"api": ("c++",), "python": ("python",), "header": ("header",), "cmake": ("command", "target", "variable")}
 _SEPARATOR = {"c++": "::", "python": ".", "header": "\0"}
 _DERIVED = frozenset(("changes_ros_tags.json",))
-_GOES = {True: ("answered", "contradicted", "bare"), False: ("answered", "bare")}
+_GOES = {True: ("answered", "contradicted", "wrong", "bare"), False: ("answered", "wrong", "bare")}
 """Verdicts on rows that go: of derived files, and of reviewed ones."""
 
 
@@ -78,16 +79,16 @@ def judge_row(kind: str, package: str, old: str, new: str, removed_in: str, ros:
     return "unknown"
 
 
-def derive_bound(kind: str, package: str, old: str, ros: int) -> tuple[str, int]:
-    """The first stored version without a name that earlier ones have, and none from then on has, and its generation of
-    ROS; empty where there is none, or one in each generation."""
+def derive_bounds(kind: str, package: str, old: str, ros: int) -> dict[int, str]:
+    """By generation of ROS, the first stored version without a name that earlier ones have, and none from then on
+    has."""
     side = kind.partition("-")[0]
-    found = []
+    found = {}
     for generation in (ros,) if ros else (1, 2):
         reported = list(_list_presence(side, package, old, generation))
-        last = max((place for place, (_, has) in enumerate(reported) if has), default=len(reported))
-        found += [(version, generation) for version, _ in reported[last + 1 : last + 2]]
-    return found[0] if len(found) == 1 else ("", 0)
+        if without := reported[_find_loss(reported) :]:
+            found[generation] = without[0][0]
+    return found
 
 
 def is_told(kind: str, package: str, old: str, gone: Callable[[str], bool | None], ros: int) -> bool:
@@ -118,13 +119,19 @@ def _is_bare(package: str, name: str) -> bool:
 
 def _compare(reported: list[tuple[str, bool]], gone: Callable[[str], bool | None]) -> str:
     """What versions that have, or lack, a name make of the bound. gone: what the bound says of a version."""
-    came = dropwhile(lambda one: not one[1], reported)
-    sides = {(gone(version), has) for version, has in came if gone(version) is not None}
+    lost = _find_loss(reported)
+    told = (one for place, one in enumerate(reported) if one[1] or place >= lost)
+    sides = {(gone(version), has) for version, has in told if gone(version) is not None}
     if not any(has for _, has in sides):
         return "unknown"
     if (True, True) in sides or (False, False) in sides:
         return "contradicted"
     return "answered" if len(sides) == 2 else "unknown"
+
+
+def _find_loss(reported: list[tuple[str, bool]]) -> int:
+    """The place after the last version that has a name; that of the end, where none has."""
+    return max((place + 1 for place, (_, has) in enumerate(reported) if has), default=len(reported))
 
 
 def _make_gone_test(bound: str, package: str, ros: int) -> Callable[[str], bool | None]:
@@ -133,7 +140,7 @@ def _make_gone_test(bound: str, package: str, ros: int) -> Callable[[str], bool 
         return lambda version: ros == 2
     if bound not in DISTROS:
         return lambda version: is_at_least(version, bound)
-    if (DISTROS[bound] >= DISTROS["ardent"]) != (ros == 2):
+    if not _concerns(bound, ros):
         return lambda version: None
 
     def is_gone(version: str) -> bool | None:
@@ -141,6 +148,11 @@ def _make_gone_test(bound: str, package: str, ros: int) -> Callable[[str], bool 
         return sides.pop() if len(sides) == 1 else None
 
     return is_gone
+
+
+def _concerns(bound: str, ros: int) -> bool:
+    """Whether a bound may hold in a generation of ROS: that of the distro, where it is one."""
+    return bound not in DISTROS or (DISTROS[bound] >= DISTROS["ardent"]) == (ros == 2)
 
 
 @lru_cache(maxsize=16)
@@ -256,33 +268,60 @@ def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]
     kept = []
     for group in content["changes"]:
         # Of platform libraries nothing is stored; a name that comes back, or is only deprecated, says more.
-        plain = not group.get("library") and not group.get("back_in") and not group["kind"].startswith("package")
+        asked = not group.get("library") and not group["kind"].startswith("package")
+        ros = _find_generation(group) if asked else None
         by_bound: dict[tuple[tuple[str, str | int], ...], dict[str, str]] = {}
         for old, new in group["names"].items():
-            found, bounds = _judge(group, old, new) if plain else ("unknown", {})
+            found, rows = _judge(group, ros, old, new) if ros is not None else ("unknown", [{}])
             count[group["kind"], found] += 1
             if found not in _GOES[file.name in _DERIVED]:
-                by_bound.setdefault(tuple(bounds.items()), {})[old] = new
+                for bounds in rows:
+                    by_bound.setdefault(tuple(bounds.items()), {})[old] = new
         kept += [{**group, **dict(bounds), "names": names} for bounds, names in by_bound.items()]
     return {**content, "changes": kept}, count
 
 
-def _judge(group: dict[str, Any], old: str, new: str) -> tuple[str, dict[str, str | int]]:
-    """The verdict on a row of a group, and the bound of the stored versions where they contradict its own: with the
-    generation of ROS, which a distro names and a version does not."""
-    kind, package, ros, given = group["kind"], group["package"], group.get("ros", 0), group.get("removed_in", "")
-    deprecated = bool(group.get("deprecated_in"))
-    found, bounds = judge_row(kind, package, old, new, given, ros, deprecated), {}
+def _find_generation(group: dict[str, Any]) -> int | None:
+    """The generation of ROS whose versions rows mean, 0: either; None where their names come back within one. Where ROS
+    2 goes on with higher numbers, names that are back with the first of these are gone in ROS 1."""
+    package, back = group["package"], group.get("back_in")
+    if not back:
+        return group.get("ros", 0)
+    lines = {ros: line for ros in (1, 2) if (line := load_shipped().find_line(package, ros)) is not None}
+    later = {(ros, is_at_least(version, back)) for ros, line in lines.items() for version in line.versions}
+    return 1 if 1 in lines and later <= {(1, False), (2, True)} else None
+
+
+def _judge(group: dict[str, Any], ros: int, old: str, new: str) -> tuple[str, list[dict[str, str | int]]]:
+    """The verdict on a row of a group, and what the rows have instead that stand for it where the stored versions
+    contradict its bound: one for each generation of ROS that lost the name, unless all of that is told without it."""
+    kind, package, given = group["kind"], group["package"], group.get("removed_in", "")
+    deprecated = group.get("deprecated_in", "")
+    found, rows = judge_row(kind, package, old, new, given, ros, bool(deprecated)), [{}]
+    bounds = dict.fromkeys((ros,) if ros else (1, 2), given)
     if found == "contradicted":
-        bound, generation = derive_bound(kind, package, old, ros)
-        better = judge_row(kind, package, old, new, bound, generation, deprecated) if bound else found
-        if better in ("answered", "more"):
-            found, bounds = better, {"removed_in": bound, **({"ros": generation} if given in DISTROS else {})}
-            given, ros = bound, generation
+        derived = derive_bounds(kind, package, old, ros)
+        if not derived:
+            return "wrong", rows
+        verdicts = {
+            one: judge_row(kind, package, old, new, bound, one, bool(deprecated) and _concerns(deprecated, one))
+            for one, bound in derived.items()
+        }
+        if set(verdicts.values()) <= {"answered", "more"}:
+            found, bounds = max(verdicts.values()), derived
+            rows = [
+                {
+                    "removed_in": bound,
+                    # The new name came with the version that lost the old one.
+                    **({"new_since": bound} if group.get("new_since") == given else {}),
+                    **({"ros": one} if given in DISTROS or len(derived) > 1 else {}),
+                }
+                for one, bound in derived.items()
+            ]
     if found == "answered" and kind.partition("-")[0] in _SIDES:
-        tests = [(_make_gone_test(given, package, one), one) for one in ((ros,) if ros else (1, 2))]
+        tests = ((_make_gone_test(bound, package, one), one) for one, bound in bounds.items())
         found = found if all(is_told(kind, package, old, *test) for test in tests) else "more"
-    return found, bounds
+    return found, rows
 
 
 def format_content(content: dict[str, Any]) -> str:
@@ -301,11 +340,12 @@ def main(arguments: list[str]) -> None:
     for file in sorted(DATA.glob("changes*.json")):
         content, count = drop_superseded(file)
         before = sum(count.values())
+        changed = content != json.loads(file.read_bytes())
         after = sum(len(group["names"]) for group in content["changes"])
         print(f"{file.name}: {before} rows, {after} left")
         for (kind, found), number in sorted(count.items()):
             print(f"  {kind:16} {found:13} {number}")
-        if "--write" in arguments and after < before:
+        if "--write" in arguments and changed:
             write_file(file, format_content(content).encode())
 
 

@@ -69,6 +69,7 @@ _STATES: dict[str, State] = {
     "changed": "present",
 }
 _CMAKE = frozenset(("command", "target", "variable"))
+_STORED = frozenset(("c++", "python", "header"))
 _REFUSED_FORMS = frozenset(("arguments", "types", "override", "call"))
 """Forms whose change by an update breaks a use."""
 
@@ -222,7 +223,19 @@ class Availabilities:
         coming = ((row, ahead) for ahead, _ in self.ahead for row in old if _is_coming(row, self.target, ahead))
         for row, ahead in islice(coming, 1):
             found.append(_convert_row(kind, row, "removed", ahead.target).apply_horizon(ahead))
-        return tuple(one for one in found if one.symbol.name == name or kind == "command")
+        return tuple(
+            one for one in found if (one.symbol.name == name or kind == "command") and not self._is_contradicted(one)
+        )
+
+    def _is_contradicted(self, row: Availability) -> bool:
+        """Whether what is stored of the very release has a name that a reviewed row denies."""
+        if row.library or not row.is_missing or (row.symbol.kind not in _STORED and row.symbol.kind not in _CMAKE):
+            return False
+        if row.symbol.kind == "header":
+            found = self._find_header_in(row.symbol, row.package, row.version)
+        else:
+            found = self._find_other(row.symbol, row.package)
+        return found.state in ("present", "deprecated")
 
     def iterate_reviewed_uses(self) -> Iterator[Availability]:
         """The same of all uses."""

@@ -147,16 +147,17 @@ def _get_shared_fields(group: _Group) -> dict:
 @cache
 def load_rows() -> tuple[ChangeRow, ...]:
     """Every known change of names. Raises SnapshotError when the data file cannot be read."""
-    known: dict[tuple[str, str, str], ChangeRow] = {}
+    known: dict[tuple[str, str, str, int], ChangeRow] = {}
     for group in (group for file in _load_files() for group in file.changes):
         shared = _get_shared_fields(group)
         for old, new in group.names.items():
             row = ChangeRow(old=old, new=new, **shared)
-            first = known.setdefault((row.kind, row.package, old), row)
+            first = known.setdefault((row.kind, row.package, old, row.ros), row)
             if first is not row:
                 both = tuple(dict.fromkeys(first.unless + row.unless))
                 since = first.new_since or (row.new_since if new == first.new else "")
-                known[row.kind, row.package, old] = msgspec.structs.replace(first, unless=both, new_since=since)
+                merged = msgspec.structs.replace(first, unless=both, new_since=since)
+                known[row.kind, row.package, old, row.ros] = merged
     return tuple(known.values())
 
 

@@ -1,9 +1,10 @@
 """What the stored surfaces make of rows of known changes."""
 
+import json
 from collections import Counter
 
 import pytest
-from rosimpact.databuild.superseded import derive_bound, drop_superseded, judge_row
+from rosimpact.databuild.superseded import derive_bounds, drop_superseded, judge_row
 from rosimpact.impact.targets.changes import load_rows
 from rosimpact.impact.targets.snapshot import DATA
 
@@ -14,6 +15,9 @@ from rosimpact.impact.targets.snapshot import DATA
         # Versions before the first that has a header lack it, and it is not gone there.
         ("header-removed", "mavros", "mavros/gps_conversions.h", "", "0.20.0", "answered"),
         ("header-removed", "mavros", "mavros/gps_conversions.h", "", "kinetic", "contradicted"),
+        # Versions of a release branch lack it, and later ones of another have it: it was gone at last with Noetic.
+        ("header-removed", "roscpp", "ros/internal/condition_variable.h", "", "noetic", "answered"),
+        ("header-removed", "roscpp", "ros/internal/condition_variable.h", "", "melodic", "contradicted"),
         # A member goes with its class.
         ("api-removed", "moveit_ros_planning_interface", "moveit::planning_interface::MoveGroup::Plan", "", "0.10.6",
          "answered"),
@@ -27,23 +31,46 @@ def test_what_becomes_of_a_row(kind, package, old, new, removed_in, verdict):
 
 
 @pytest.mark.parametrize(
-    ("kind", "package", "old", "bound"),
+    ("kind", "package", "old", "bounds"),
     [
-        ("api-removed", "rclcpp", "rclcpp::GenericRate", ("28.3.2", 2)),
-        ("header-removed", "mavros", "mavros/gps_conversions.h", ("0.20.0", 1)),
+        ("api-removed", "rclcpp", "rclcpp::GenericRate", {2: "28.3.2"}),
+        ("header-removed", "mavros", "mavros/gps_conversions.h", {1: "0.20.0"}),
         # Each generation lost it in a version of its own.
-        ("header-removed", "moveit_core", "moveit/macros/deprecation.h", ("", 0)),
-        ("api-removed", "rclcpp", "rclcpp::Node", ("", 0)),
+        ("header-removed", "moveit_core", "moveit/macros/deprecation.h", {1: "1.1.6", 2: "2.12.0"}),
+        ("api-removed", "rclcpp", "rclcpp::Node", {}),
     ],
 )
-def test_a_bound_is_the_first_stored_version_without_the_name(kind, package, old, bound):
-    assert derive_bound(kind, package, old, 0) == bound
+def test_a_bound_is_the_first_stored_version_without_the_name(kind, package, old, bounds):
+    assert derive_bounds(kind, package, old, 0) == bounds
+
+
+@pytest.mark.parametrize(
+    ("group", "verdicts", "left"),
+    [
+        # Every stored version has it.
+        ({"kind": "header-renamed", "package": "tf2", "removed_in": "lyrical",
+          "names": {"tf2/visibility_control.h": "tf2/visibility_control.hpp"}}, ["wrong"], []),
+        # 2.0.0 is where ROS 2 begins.
+        ({"kind": "api-removed", "package": "slam_toolbox", "removed_in": "1.5.7", "back_in": "2.0.0",
+          "names": {"vis_utils::toMarker": ""}}, ["answered"], []),
+        # Each generation lost it in a version of its own, and only a row tells what for.
+        ({"kind": "msg-field", "package": "moveit_msgs", "removed_in": "2.3.0",
+          "names": {"moveit_msgs/MotionPlanRequest.cartesian_speed_end_effector_link": "moveit_msgs/A.b"}},
+         ["more"], [("0.11.3", 1), ("2.3.0", 2)]),
+    ],
+)  # fmt: skip
+def test_what_becomes_of_a_group(group, verdicts, left, tmp_path):
+    file = tmp_path / "changes.json"
+    file.write_text(json.dumps({"changes": [group]}))
+    content, count = drop_superseded(file)
+    assert [verdict for _, verdict in count] == verdicts
+    assert [(one["removed_in"], one["ros"]) for one in content["changes"]] == left
 
 
 @pytest.mark.parametrize("file", sorted(DATA.glob("changes*.json")), ids=lambda path: path.name)
 def test_no_shipped_row_is_answered_by_the_surfaces(file):
     _, count = drop_superseded(file)
-    assert not [(kind, verdict) for kind, verdict in count if verdict in ("answered", "bare")]
+    assert not [(kind, verdict) for kind, verdict in count if verdict in ("answered", "contradicted", "wrong", "bare")]
 
 
 def test_no_name_has_two_rows_that_say_the_same():

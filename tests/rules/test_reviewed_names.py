@@ -51,14 +51,15 @@ class Target(DistroTarget):
 class Workspace(SimpleNamespace):
     """A workspace of the package dock."""
 
-    packages = ("dock",)
+    may_have = frozenset(("dock",))
 
     def __iter__(self):
         return iter(())
 
 
 MACHINE = SimpleNamespace(is_from_library=lambda header: header == "Eigen/src/Core/Dot.h")
-REVIEWED = Availabilities(Target(), cast(Offers, object()), ahead=())
+OFFERS = SimpleNamespace(find_package=lambda package: None)
+REVIEWED = Availabilities(Target(), cast(Offers, OFFERS), ahead=())
 NAMES = ReviewedNames(
     cast(
         TargetView,

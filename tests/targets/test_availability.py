@@ -1,7 +1,9 @@
 """Is it there, on this target? One answer for all kinds of names, from what is shipped."""
 
 import pytest
+from rosimpact.impact.targets import availability
 from rosimpact.impact.targets.availability import Availabilities, list_horizons
+from rosimpact.impact.targets.changes import ChangeRow
 from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.symbol import CppUseForm, Symbol
 
@@ -128,3 +130,14 @@ def test_what_the_next_sync_removes_is_asked_of_the_packages_that_wait_for_it():
     (gone,) = Availabilities(soon.target).find_reviewed("c++", "SHARED_PTR_DEFINITIONS")
     assert gone.state == "removed"
     assert soon.target.compute_identity() != target.compute_identity()
+
+
+def test_no_row_denies_what_the_stored_version_has(monkeypatch):
+    rows = {
+        ("header", name): [ChangeRow(kind="header-removed", package="tf2", old=name, source="x", removed_in="lyrical")]
+        for name in ("tf2/visibility_control.h", "tf2/time.h")
+    }
+    monkeypatch.setattr(availability, "index_rows", lambda: (rows, {}))
+    lyrical = Availabilities(DistroTarget("lyrical"), ahead=())
+    assert [one.state for one in lyrical.find_reviewed("header", "tf2/time.h")] == ["removed"]
+    assert lyrical.find_reviewed("header", "tf2/visibility_control.h") == ()

@@ -127,7 +127,7 @@ def test_old_names_are_what_a_scanner_finds(kind, shape):
 
 
 def test_no_name_twice_for_one_package():
-    seen = [(row.package, row.old, row.kind.partition("-")[0]) for row in reviewed_rows()]
+    seen = [(row.package, row.old, row.kind.partition("-")[0], row.ros) for row in reviewed_rows()]
     assert sorted({name for name in seen if seen.count(name) > 1}) == []
 
 

@@ -41,7 +41,7 @@ from ...targets.symbol import Availability
 from ...targets.version import parse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
 from .diagnosis import UPSTREAM, build_availability_texts, diagnose
-from .reviewed_names import ReviewedNames, is_contradicted
+from .reviewed_names import ReviewedNames
 from .uses import list_cpp_uses
 
 # What stands in a `try` whose except catches a missing name, or in that except, is for both versions.
@@ -97,7 +97,6 @@ def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> I
             or (use.language == "python" and _TRIED.intersection(use.conditions))
             or not view.applies(use.conditions)
             or (row.horizon is not None and not view.is_active_on(row.horizon, use.conditions))
-            or is_contradicted(view, row)
         ):
             continue
         excuses = list_excuses(row.package, row.symbol.name)

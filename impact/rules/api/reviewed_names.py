@@ -13,7 +13,6 @@ class ReviewedNames:
 
     def __init__(self, view: TargetView):
         self._view = view
-        self._packages = view.workspace.packages
         # A method that a header of the workspace has may be meant wherever its name stands.
         self.own = {
             use.text
@@ -42,12 +41,4 @@ class ReviewedNames:
         """The rows on a name that say that it is in one of these states."""
         # What the workspace itself brings is as it brings it, whatever a release did.
         rows = self._view.find_reviewed(kind, name)
-        return [row for row in rows if row.state in states and row.package not in self._packages]
-
-
-def is_contradicted(view: TargetView, row: Availability) -> bool:
-    """Whether what is stored of the very release contradicts a reviewed row."""
-    if row.library or row.state != "removed":
-        return False
-    found = view.find_availability(row.symbol._replace(packages=(row.package,)))
-    return found.state in ("present", "deprecated", "upcoming")
+        return [row for row in rows if row.state in states and row.package not in self._view.workspace.may_have]
