@@ -15,9 +15,10 @@ stored, each stored version tells whether the name is there. A row is
 Of rows that were derived from release tags, which are what surfaces are made from too, only the unknown ones and those
 that say more stay, and of reviewed rows all but the answered, wrong and bare ones. A contradicted bound is first
 replaced by the versions that the stored ones tell, of each generation of ROS (see derive_bounds). Platform libraries
-have no stored surfaces, and their rows stay. Of fields and interfaces the table of interfaces alone is asked, so that
-a row only lends a replacement. Rows of uses stay too: a pattern that is only a qualified name is answered by the
-surfaces, and still finds places that the resolver does not see, such as template arguments and braced initialisers.
+have no stored surfaces, and their rows stay. Of interfaces, their fields and constants, and of what is generated from
+them, the table of interfaces alone is asked, so that a row only lends a replacement. Rows of uses stay too: a pattern
+that is only a qualified name is answered by the surfaces, and still finds places that the resolver does not see, such
+as template arguments and braced initialisers.
 
     python -P -m rosimpact.databuild.superseded [--write]
 """
@@ -25,6 +26,7 @@ surfaces, and still finds places that the resolver does not see, such as templat
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -40,7 +42,7 @@ from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.distro.known import list_known_distros
 from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.changes import Line
-from ..impact.targets.surface.fields import Definition, covers, load_fields
+from ..impact.targets.surface.fields import covers, load_fields
 from ..impact.targets.surface.offers import find_standing
 from ..impact.targets.surface.store import load_shipped
 from ..impact.targets.symbol import Symbol
@@ -98,7 +100,8 @@ def is_told(kind: str, package: str, old: str, gone: Callable[[str], bool | None
         version = _get_target(known.name).find_version(package) if known.ros == ros else None
         if version is None or not gone(version):
             continue
-        symbols = (Symbol(which, old, (package,)) for which in _SIDES[side])
+        interface = _find_interface(side, package, old, ros)
+        symbols = [interface] if interface else [Symbol(which, old, (package,)) for which in _SIDES[side]]
         found = [_get_availabilities(known.name).find_availability(symbol) for symbol in symbols]
         if not any(one.is_missing and one.sure and not (one.evidence and one.evidence.source) for one in found):
             return False
@@ -175,13 +178,13 @@ def _get_target(distro: str) -> DistroTarget:
 
 def _list_presence(side: str, package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
     """The stored versions, and whether each has the name."""
-    if side == "msg":
-        yield from _list_field_presence(package, old, ros)
+    if (interface := _find_interface(side, package, old, ros)) is not None:
+        yield from _list_interface_presence(interface, ros)
         return
     line = load_shipped().find_line(package, ros)
     if line is None:
         return
-    for which in _SIDES[side]:
+    for which in _SIDES.get(side, ()):
         name = old.lower() if which == "command" else old
         events = line.events.get(which, {})
         if which == "c++" and "::" not in name:
@@ -237,27 +240,50 @@ def _find_replacements(side: str, package: str, old: str, ros: int) -> tuple[set
     return instead, warns
 
 
-def _list_field_presence(package: str, old: str, ros: int) -> Iterator[tuple[str, bool]]:
-    """The same for `package/Name.field` or `package/Name`."""
+def _find_interface(side: str, package: str, old: str, ros: int) -> Symbol | None:
+    """The interface that a generated header, or a name of C++ or Python, is made from, or its field or constant; None
+    where the table of interfaces has none."""
     history = load_fields().find_history(package, ros)
     if history is None:
-        return
-    name, _, member = old.partition("/")[2].partition(".")
-    name, _, part = name.rpartition("_") if name.endswith(("_Request", "_Response", "_Goal")) else (name, "", "")
-    for kind in ("msg", "srv", "action"):
-        definition = history.find_definition(f"{kind}/{name}")
-        if definition is None:
+        return None
+    if side == "header":
+        head, _, stem = old.rpartition(".")[0].partition("/")
+        name = history.by_header.get(stem) if head == package else None
+        return Symbol("interface", name, (package,)) if name else None
+    head, *parts = re.split(r"::|\.|/", old)
+    kinds = (parts.pop(0),) if parts and parts[0] in _KINDS else _KINDS if side == "msg" or ros == 1 else ()
+    name, *rest = parts or [""]
+    base, _, part = name.rpartition("_")
+    if part in _SECTIONS:
+        name, rest = base, [part, *rest]
+    section = rest.pop(0).lower() if rest and rest[0] in _SECTIONS else ""
+    for kind in kinds:
+        definition = history.find_definition(f"{kind}/{name}") if head == package else None
+        if definition is not None and not rest:
+            return Symbol("interface", f"{kind}/{name}", (package,))
+        if definition is None or len(rest) != 1:
             continue
-        for state, version in enumerate(history.starts):
-            if covers(definition.spans, state):
-                yield version, not member or _has(definition, part.lower(), member, state)
-            elif not member:
-                yield version, False
+        for one in definition.sections:
+            if section in ("", one) and definition.list_members(one, rest[0]):
+                return Symbol("field", f"{kind}/{name}.{one}.{rest[0]}", (package,))
+    return None
 
 
-def _has(definition: Definition, section: str, member: str, state: int) -> bool:
-    sections = [section] if section else list(definition.sections)
-    return any(covers(row.spans, state) for one in sections for row in definition.list_members(one, member))
+_KINDS = ("msg", "srv", "action")
+_SECTIONS = frozenset(("Request", "Response", "Goal", "Result", "Feedback"))
+
+
+def _list_interface_presence(interface: Symbol, ros: int) -> Iterator[tuple[str, bool]]:
+    """The versions in which anything of its package changed, and whether each has an interface, field or constant."""
+    history = load_fields().find_history(interface.packages[0], ros)
+    name, *member = interface.name.split(".")
+    definition = history.find_definition(name) if history is not None else None
+    if history is None or definition is None:
+        return
+    members = definition.list_members(*member) if member else ()
+    spans = [row.spans for row in members] if member else [definition.spans]
+    for state, version in enumerate(history.starts):
+        yield version, any(covers(one, state) for one in spans)
 
 
 def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
@@ -295,7 +321,8 @@ def _find_generation(group: dict[str, Any]) -> int | None:
 def _judge(group: dict[str, Any], ros: int, old: str, new: str) -> tuple[str, list[dict[str, str | int]]]:
     """The verdict on a row of a group, and what the rows have instead that stand for it where the stored versions
     contradict its bound: one for each generation of ROS that lost the name, unless all of that is told without it."""
-    kind, package, given = group["kind"], group["package"], group.get("removed_in", "")
+    kind, package = group["kind"], group["package"]
+    given: str = group.get("removed_in", "")
     deprecated = group.get("deprecated_in", "")
     found, rows = judge_row(kind, package, old, new, given, ros, bool(deprecated)), [{}]
     bounds = dict.fromkeys((ros,) if ros else (1, 2), given)

@@ -23,6 +23,10 @@ from rosimpact.impact.targets.snapshot import DATA
          "answered"),
         ("api-removed", "rclcpp", "rclcpp::GenericRate", "rclcpp::Rate", "29.0.0", "contradicted"),
         ("api-removed", "rclcpp", "rclcpp::GenericRate", "rclcpp::Rate", "28.3.2", "more"),
+        # What is made of interfaces, the table of interfaces tells.
+        ("header-removed", "cob_srvs", "cob_srvs/SetMaxVel.h", "", "0.6.3", "answered"),
+        ("api-removed", "cob_srvs", "cob_srvs::SetMaxVel", "", "0.6.3", "answered"),
+        ("python-removed", "nav2_msgs", "nav2_msgs.action.BackUp.Goal.NONE", "", "1.3.0", "answered"),
         ("api-removed", "no_such_package", "no_such_package::Name", "", "1.0.0", "unknown"),
     ],
 )  # fmt: skip

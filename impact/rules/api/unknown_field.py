@@ -11,9 +11,9 @@ Why it breaks
     robot, or an ImportError.
 
 Severity
-    error for code that is built or run, tests of ROS 2 included; warning in tests of ROS 1, for the first of each
-    package that only goes with an update of the distro, and where a telling name is used on something whose type does
-    not show; note in examples, and for the rest of those.
+    error for code that is built or run, tests of ROS 2 included; warning in tests of ROS 1, for an interface that is
+    imported in a function, for the first of each package that only goes with an update of the distro, and where a
+    telling name is used on something whose type does not show; note in examples, and for the rest of those.
 
 Example
     request->start_controllers = {"arm"};       // controller_manager_msgs of Iron has activate_controllers
@@ -101,7 +101,7 @@ def _list_imports(view: TargetView, package: Package) -> Iterator[Diagnostic | U
             full = f"{imported.module}.{name}"
             found = view.find_availability(Symbol("interface", f"{kind}/{name}", (head,)))
             if found.is_missing and not _is_reviewed(view, full) and view.applies(imported.conditions):
-                doubts = (*list_place_doubts(view, imported.role, imported.conditions), Doubt.LATE)
+                doubts = (*list_place_doubts(view, imported.role, imported.conditions), not imported.lazy or Doubt.LATE)
                 yield diagnose(found, imported.at, full, package.name, doubts)
 
 
