@@ -143,7 +143,7 @@ def _make_gone_test(bound: str, package: str, ros: int) -> Callable[[str], bool 
         return lambda version: ros == 2
     if bound not in DISTROS:
         return lambda version: is_at_least(version, bound)
-    if not _concerns(bound, ros):
+    if not _may_hold(bound, ros):
         return lambda version: None
 
     def is_gone(version: str) -> bool | None:
@@ -153,7 +153,7 @@ def _make_gone_test(bound: str, package: str, ros: int) -> Callable[[str], bool 
     return is_gone
 
 
-def _concerns(bound: str, ros: int) -> bool:
+def _may_hold(bound: str, ros: int) -> bool:
     """Whether a bound may hold in a generation of ROS: that of the distro, where it is one."""
     return bound not in DISTROS or (DISTROS[bound] >= DISTROS["ardent"]) == (ros == 2)
 
@@ -331,7 +331,7 @@ def _judge(group: dict[str, Any], ros: int, old: str, new: str) -> tuple[str, li
         if not derived:
             return "wrong", rows
         verdicts = {
-            one: judge_row(kind, package, old, new, bound, one, bool(deprecated) and _concerns(deprecated, one))
+            one: judge_row(kind, package, old, new, bound, one, bool(deprecated) and _may_hold(deprecated, one))
             for one, bound in derived.items()
         }
         if set(verdicts.values()) <= {"answered", "more"}:
