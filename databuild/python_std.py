@@ -20,6 +20,7 @@ import msgspec
 
 from ..impact.facts.python.surface import Bound, ImportedName, ModuleSurface
 from ..impact.targets.snapshot import DATA, load_snapshot
+from ..impact.targets.surface.python import SurfaceNames
 from ..impact.targets.surface.surface import BuildSurface, InstalledModule, PythonSurface, Surface
 from .extract.python import extract
 from .jobs import Packing
@@ -86,6 +87,7 @@ class Stubs:
             first, last = self._find_lifetime(name)
             if first <= minor <= last:
                 tree = _Resolver(minor).visit(ast.parse(path.read_bytes()))
+                tree = _Hider(tree).visit(tree)
                 surface = extract(ast.unparse(ast.fix_missing_locations(tree)).encode())
                 public = tuple(bound for bound in surface.names if not bound.private)
                 surface = msgspec.structs.replace(surface, names=public)
@@ -194,6 +196,38 @@ class _Resolver(ast.NodeTransformer):
         return self.visit_FunctionDef(node)
 
 
+class _Hider(ast.NodeTransformer):
+    """Gives what a stub imports for itself a private name: only `import a as a`, and what `__all__` lists, is there for
+    those who import the module (PEP 484)."""
+
+    def __init__(self, tree: ast.Module):
+        exported = {
+            one.value
+            for node in ast.walk(tree)
+            if isinstance(node, (ast.Assign, ast.AugAssign))
+            and "__all__" in map(ast.unparse, node.targets if isinstance(node, ast.Assign) else [node.target])
+            for one in ast.walk(node.value)
+            if isinstance(one, ast.Constant)
+        }
+        self._names = {
+            alias.name: f"_own_{alias.name}"
+            for node in ast.walk(tree)
+            if isinstance(node, (ast.Import, ast.ImportFrom))
+            for alias in node.names
+            if alias.asname is None and alias.name.isidentifier() and alias.name not in exported
+        }
+        self._names.pop("deprecated", None)  # a decorator that is known by its name
+
+    def visit_alias(self, node: ast.alias) -> ast.alias:
+        if node.asname is None:
+            node.asname = self._names.get(node.name)
+        return node
+
+    def visit_Name(self, node: ast.Name) -> ast.Name:
+        node.id = self._names.get(node.id, node.id)
+        return node
+
+
 def read_versions(states: Iterable[Stubs]) -> dict[int, dict[str, InstalledModule]]:
     """The modules of every minor version that one of the states tells of. states: oldest first."""
     ordered = sorted(states, key=lambda one: one.span[1])
@@ -213,11 +247,17 @@ def _go_back(
 ) -> dict[str, InstalledModule]:
     """The modules of a version. after: those of the next one; old, new: how a state of the stubs tells of both."""
     found = {}
+    before = SurfaceNames(PythonSurface(PACKAGE, tuple(old.values())))
     for name, module in after.items():
         if name in new and name not in old:
             continue
         if name in new and new[name].surface != old[name].surface:
             surface = _change_back(module.surface, old[name].surface, new[name].surface)
+            # What another module defined before, and this one took from there, was here all the same.
+            moved = {one.name for one in module.surface.names if before.find(f"{name}.{one.name}") is not None}
+            kept = {one.name for one in surface.names}
+            back = (one for one in module.surface.names if one.name in moved - kept)
+            surface = msgspec.structs.replace(surface, names=(*surface.names, *back))
             module = msgspec.structs.replace(module, surface=surface)
         found[name] = module
     found.update({name: module for name, module in old.items() if name not in new and name not in after})

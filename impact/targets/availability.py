@@ -220,16 +220,21 @@ class Availabilities:
         here = [(row, state) for row, state in here if state != "absent" or row.pattern is not None]
         here += [(row, "absent") for row in new if find_state(row, self.target) == "absent"]
         found = [_convert_row(kind, row, state, self.target) for row, state in here]
-        coming = ((row, ahead) for ahead, _ in self.ahead for row in old if _is_coming(row, self.target, ahead))
-        for row, ahead in islice(coming, 1):
-            found.append(_convert_row(kind, row, "removed", ahead.target).apply_horizon(ahead))
-        return tuple(
-            one for one in found if (one.symbol.name == name or kind == "command") and not self._is_contradicted(one)
+        found = [one for one in found if not self._is_contradicted(one)]
+        coming = (
+            (one, ahead)
+            for ahead, then in self.ahead
+            for row in old
+            if _is_coming(row, self.target, ahead)
+            and not then._is_contradicted(one := _convert_row(kind, row, "removed", ahead.target))
         )
+        found += [one.apply_horizon(ahead) for one, ahead in islice(coming, 1)]
+        return tuple(one for one in found if one.symbol.name == name or kind == "command")
 
     def _is_contradicted(self, row: Availability) -> bool:
         """Whether what is stored of the very release has a name that a reviewed row denies."""
-        if row.library or not row.is_missing or (row.symbol.kind not in _STORED and row.symbol.kind not in _CMAKE):
+        stored = not row.library or self.offers.surfaces.is_library(row.package)
+        if not stored or not row.is_missing or (row.symbol.kind not in _STORED and row.symbol.kind not in _CMAKE):
             return False
         if row.symbol.kind == "header":
             found = self._find_header_in(row.symbol, row.package, row.version)

@@ -14,6 +14,10 @@ OLD = {
     "VERSIONS": "drum: 3.0-\n_drum: 3.0-\nflute: 3.0-3.8 # gone\nband.stage: 3.7-\nband: 3.0-\nharp: 3.9-\n",
     "drum.pyi": """import sys
 from _drum import beat as beat
+if sys.version_info >= (3, 8):
+    class Stick: ...
+else:
+    from _drum import *
 _T = int
 class Kit:
     size: int
@@ -27,7 +31,7 @@ elif sys.version_info >= (3, 7):
 if sys.platform == "win32":
     def beep() -> None: ...
 """,
-    "_drum.pyi": "def beat(): ...\n",
+    "_drum.pyi": "import sys\ndef beat(): ...\nif sys.version_info < (3, 8):\n    class Stick: ...\n",
     "flute.pyi": "def play(): ...\n",
     "harp.pyi": "def pluck(): ...\n",
     "band/__init__.pyi": "",
@@ -38,8 +42,10 @@ NEW = {
     "drum.pyi": """import sys
 from typing import overload
 from typing_extensions import deprecated
-from _drum import beat as beat
-class Kit:
+from _drum import beat as beat, Rack, stool
+__all__ = ["beat", "stool"]
+class Stick: ...
+class Kit(Rack):
     size: int
     weight: int
     def hit(self, how: int, /, soft: bool = False) -> None: ...
@@ -59,7 +65,7 @@ else:
 @deprecated("Long ago.")
 def thump() -> None: ...
 """,
-    "_drum.pyi": "def beat(): ...\n",
+    "_drum.pyi": "def beat(): ...\ndef stool(): ...\nclass Rack:\n    def fold(self): ...\n",
     "flute.pyi": "def play(): ...\n",
     "harp.pyi": "def pluck(): ...\n",
     "cello.pyi": "def bow(): ...\n",
@@ -91,6 +97,13 @@ def history(tmp_path_factory) -> tuple[SurfaceHistory, Line]:
         ("drum.roll", "7 8 9 10 11"),
         ("drum.muffle", "11"),
         ("drum.beep", ""),
+        # What a stub imports for itself is not there for others, but tells what its classes are.
+        ("drum.Rack", "6 7"),  # the old state takes all of that module
+        ("drum.stool", "6 7 8 9 10 11"),
+        ("drum.Kit.fold", "6 7 8 9 10 11"),
+        ("drum.sys", ""),
+        # It stood in another module up to 3.7.
+        ("drum.Stick", "6 7 8 9 10 11"),
         ("flute", "6 7 8"),
         ("harp.pluck", "9 10 11"),
         ("band.stage.LIGHTS", "7 8 9 10 11"),
