@@ -425,6 +425,47 @@ SPIN = ["shop::Drill::spin/1"]
          SPIN * 2),
         ("void g(std::tuple<int, shop::Drill> t) { std::get<0>(t).spin(1); std::get<1>(t).spin(1); }", SPIN),
         ("void g(std::vector<std::pair<int, shop::Drill>> v) { for (auto & [a, b] : v) b.spin(1); }", SPIN),
+        ("void g(std::variant<int, shop::Drill> v) { std::get<1>(v).spin(1); std::get_if<1>(&v)->spin(1); }", SPIN * 2),
+        ("void g() { auto & d = std::get<shop::Drill>(f()); d.spin(1); std::get_if<shop::Drill>(f())->spin(1); }",
+         SPIN * 2),
+        ("void g(std::tuple<shop::Drill> t) { std::get<int>(t).spin(1); std::get<N>(t).spin(1); get<0>(t).spin(1); }",
+         []),
+        # through what maps give back of what is put into them
+        *[(f"void g(std::map<int, shop::Drill> m) {{ auto r = m.{put}; r.first->second.spin(1); r->second.spin(1); }}",
+           SPIN) for put in ("insert({1, d})", "emplace(1, d)", "try_emplace(1)", "insert_or_assign(1, d)")],
+        ("void g(std::map<int, shop::Drill> m) { auto [at, made] = m.emplace(1, d); at->second.spin(1); at->spin(1); }",
+         SPIN),
+        ("void g(std::map<int, shop::Drill> m) { m.emplace_hint(m.end(), 1, d)->second.spin(1); }", SPIN),
+        ("void g(std::vector<shop::Drill> v) { v.emplace_back().spin(1); v.insert(v.end(), d).first->spin(1); }", SPIN),
+        # through structured bindings of this package's structs
+        ("struct S { static int n; int a; shop::Drill b; int f(); }; void g(S s) { auto & [x, y] = s; y.spin(1); }",
+         SPIN),
+        ("struct S { int a; shop::Drill b; }; void g(std::vector<S> v) { for (auto [x, y] : v) { x.spin(1); } }", []),
+        ("struct R { shop::Drill a; }; struct S : R { void f(); }; void g(S s) { auto [x] = s; x.spin(1); }", SPIN),
+        ("template<class T> struct S { int a; T b; }; void g(S<shop::Drill> s) { auto [x, y] = s; y.spin(1); }", SPIN),
+        ("struct S {\n#if A\n int a;\n#endif\n shop::Drill b, c; }; void g(S s) { auto [x, y] = s; y.spin(1); }", []),
+        ("struct S { int a; shop::Drill b; }; template<> struct std::tuple_size<S>;"
+         " void g(S s) { auto [x, y] = s; y.spin(1); }", []),
+        # through parameters of lambdas that algorithms call
+        *[(f"void g(std::vector<shop::Drill> v) {{ {call}; }}", SPIN) for call in (
+            "std::for_each(v.begin(), v.end(), [](auto & d) { d.spin(1); })",
+            "std::any_of(std::begin(v), std::end(v), [&](const auto & d) { return d.spin(1); })",
+            "v.erase(std::remove_if(v.begin(), v.end(), [](auto && d) { return d.spin(1); }), v.end())",
+            "std::transform(v.begin(), v.end(), w.begin(), out, [](auto d, auto e) { e.spin(1); return d.spin(1); })",
+            "std::accumulate(v.begin(), v.end(), 0, [](auto sum, auto & d) { sum.spin(1); return sum + d.spin(1); })",
+            "std::erase_if(v, [](auto & d) { return d.spin(1); })",
+            "for (auto & w : v) std::for_each(u.begin(), u.end(), [&](auto & v) { v.spin(1); w.spin(1); })",
+        )],
+        ("void g(std::vector<shop::Drill> v) { std::sort(v.begin(), v.end(), [](auto & a, auto & b) {"
+         " return a.spin(1) < b.spin(1); }); }", SPIN * 2),
+        ("void g(std::map<int, shop::Drill *> m) { std::count_if(m.cbegin(), m.cend(), [](auto & p) {"
+         " return p.second->spin(1); }); }", SPIN),
+        *[(f"void g(std::vector<shop::Drill> v) {{ {call}; }}", []) for call in (
+            "mine::for_each(v.begin(), v.end(), [](auto & d) { d.spin(1); })",
+            "std::for_each(f(v), f(v), [](auto & d) { d.spin(1); })",
+            "std::for_each(v.begin(), v.end(), h([](auto & d) { d.spin(1); }))",
+            "auto f = [](auto & d) { d.spin(1); }",
+        )],
         ("void g(std::weak_ptr<shop::Drill> p) { if (auto q = p.lock()) q->spin(1); p->spin; }", SPIN),
         ("void g(std::optional<shop::Drill> p) { p.value().spin(1); if (auto q = p; q) q->spin(1); }", SPIN * 2),
         ("void g() { auto [a, b] = f(); b.spin(1); for (auto & [c, d] : f()) d.spin(1); }", []),

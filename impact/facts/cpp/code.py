@@ -371,6 +371,8 @@ class CppCode:
             given = declarator.child_by_field_name("value") or node.child_by_field_name("value")
             if given is not None:
                 value = self._parse_value(given, path, depth) if "auto" in type_ else None
+            elif how == "parameter" and "auto" in type_:
+                value = self._find_passed(node, path, depth)
             elif parameters is not None and "auto" not in type_:
                 # `A a(b);` looks like a function, and is one only with parameters that have names or kinds.
                 if how == "variable" and self._may_be_arguments(declarator):
@@ -379,10 +381,28 @@ class CppCode:
             return Local(how, type_ + marks + ("[]" if array else ""), value, offset)
         return Local("variable", "", None, offset)
 
+    def _find_passed(self, node: Node, path: Sequence[Node], depth: int) -> Expr | None:
+        """What a parameter of a lambda is, where a call of an algorithm of the standard library tells. path: up to the
+        lambda."""
+        if len(path) < 3 or path[-1].kind_id != KIND.lambda_expression or path[-3].kind_id != KIND.call_expression:
+            return None
+        function, arguments = path[-3].child_by_field_name("function"), path[-2]
+        declarator = path[-1].child_by_field_name("declarator")
+        listed = declarator.child_by_field_name("parameters") if declarator is not None else None
+        if function is None or listed is None or arguments.kind_id != KIND.argument_list:
+            return None
+        outer, _, last = self._read(function).removeprefix("::").rpartition("::")
+        if outer != "std" or get_items(listed).index(node) not in _TAKING_ELEMENTS.get(last, ()):
+            return None
+        first = self._make_expr(get_items(arguments)[0], path[:-2], depth + 1)
+        return Expr(*(("each", "") if last == "erase_if" else ("unary", "*")), first.offset, (first,))
+
     def _make_binding(self, names: Node, value: Expr | None, offset: int) -> Local:
         """The name at an offset among those of a structured binding."""
-        at = next(n for n, each in enumerate(names.named_children) if each.start_byte == offset)
-        return Local("binding", "auto", Expr("part", str(at), offset, (value,)) if value is not None else None, offset)
+        every = get_items(names)
+        at = next(n for n, each in enumerate(every) if each.start_byte == offset)
+        value = Expr("part", f"{at}/{len(every)}", offset, (value,)) if value is not None else None
+        return Local("binding", "auto", value, offset)
 
     def _may_be_arguments(self, declarator: Node) -> bool:
         listed = declarator.child_by_field_name("parameters")
@@ -619,6 +639,19 @@ class CppCode:
 # Macros of gtest that open the body of a method of a class that is derived from what they are given first.
 _FIXTURES = frozenset(("TEST_F", "TEST_P", "TYPED_TEST", "TYPED_TEST_P"))
 _MAKERS = frozenset(("make_shared", "make_unique"))
+# Algorithms, with the places of the parameters that are elements of the first range, of the functions they are given.
+_TAKING_ELEMENTS = {
+    **dict.fromkeys((
+        "for_each", "for_each_n", "find_if", "find_if_not", "any_of", "all_of", "none_of", "count_if", "remove_if",
+        "remove_copy_if", "copy_if", "replace_if", "replace_copy_if", "erase_if", "partition", "stable_partition",
+        "partition_point", "partition_copy", "is_partitioned", "transform", "lower_bound",
+    ), (0,)),
+    **dict.fromkeys((
+        "sort", "stable_sort", "partial_sort", "nth_element", "is_sorted", "is_sorted_until", "max_element",
+        "min_element", "minmax_element", "unique", "adjacent_find",
+    ), (0, 1)),
+    **dict.fromkeys(("upper_bound", "accumulate"), (1,)),
+}  # fmt: skip
 _SCOPED = _STATEMENTS_WITH_HEAD | get_kinds(
     "lambda_expression", "function_definition", "catch_clause", "for_range_loop", "for_statement",
     "template_declaration",
@@ -769,7 +802,7 @@ class _Declarations:
         place = len(self.classes)
         self._add_nodes(body.named_children, full, inside, ())
         open_ = any(child.kind_id == KIND.ERROR or child.is_missing for child in body.children) or any(
-            each.type.isupper() for those in inside.values() for each in those
+            each.type.isupper() and each.type not in template for those in inside.values() for each in those
         )
         spot = code._find_spot(name.start_byte)
         one = CppClass(full, spot, tuple(bases), inside, template, "<" in written, open_)

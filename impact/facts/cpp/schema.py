@@ -97,7 +97,7 @@ class Expr(NamedTuple):
     | unary, binary | the operator | the operands |
     | conditional | | both values |
     | each | | the container that a loop runs through |
-    | part | its place | the value that a structured binding takes apart |
+    | part | its place, `/` and the number of parts | the value that a structured binding takes apart |
     | literal | `text`, `float`, `integer`, `bool` or `null` | |
     | this, lambda, pack, other | | |
 

@@ -30,7 +30,7 @@ _SEQUENCES = frozenset((
     "vector", "array", "deque", "list", "set", "unordered_set", "multiset", "queue", "stack", "initializer_list",
     "BoundedVector", "span",
 ))  # fmt: skip
-_TUPLES = frozenset(("pair", "tuple"))
+_TUPLES = frozenset(("pair", "tuple", "variant"))
 _MAPS = frozenset(("map", "unordered_map", "multimap", "unordered_multimap"))
 _CASTS = frozenset(("static_cast", "dynamic_cast", "const_cast", "reinterpret_cast"))
 _POINTER_CASTS = frozenset(("static_pointer_cast", "dynamic_pointer_cast", "const_pointer_cast"))
@@ -38,13 +38,13 @@ _THROUGH = frozenset(("move", "forward", "as_const", "ref", "cref"))
 _POINTED = re.compile(r"(?:Const|Shared|Unique|Weak)*(?:Ptr|_ptr)")
 _SUFFIX = re.compile(r"(?:Const|Shared|Unique|Weak)*Ptr\Z")
 _SAME = frozenset(("get", "lock"))
-_ELEMENT = frozenset(("front", "back", "top"))
+_ELEMENT = frozenset(("front", "back", "top", "emplace_back", "emplace_front"))
 _ITERATOR = re.compile(r"(?:const_)?(?:reverse_)?iterator")
-# Members of containers that give an iterator, and functions of std that give back one like their first argument.
-_ITERATING = frozenset((
-    "begin", "end", "cbegin", "cend", "rbegin", "rend", "crbegin", "crend", "find", "lower_bound", "upper_bound",
-    "erase",
-))  # fmt: skip
+# Members of containers that give an iterator, those of maps that give one with a bool, and functions of std that give
+# back one like their first argument.
+_ENDS = frozenset(("begin", "end", "cbegin", "cend", "rbegin", "rend", "crbegin", "crend"))
+_ITERATING = _ENDS | {"find", "lower_bound", "upper_bound", "erase", "emplace_hint"}
+_INSERTING = frozenset(("insert", "emplace", "try_emplace", "insert_or_assign"))
 _SEARCHING = frozenset((
     "find", "find_if", "find_if_not", "lower_bound", "upper_bound", "min_element", "max_element", "next", "prev",
 ))  # fmt: skip
@@ -93,7 +93,7 @@ class CppType(NamedTuple):
         return self.parts[-1] if self.kind in ("sequence", "map", "pointer") else None
 
     def find_part(self, at: int) -> CppType | None:
-        """A part of a pair or tuple."""
+        """A part of a pair, tuple or variant."""
         return self.parts[at] if self.kind == "tuple" and at < len(self.parts) else None
 
     def find_result(self, member: str) -> CppType | None:
@@ -102,6 +102,8 @@ class CppType(NamedTuple):
             return self if member in _SAME else self.parts[0] if member == "value" else None
         if member in _ITERATING and (element := self.find_element()) is not None:
             return element.add_pointer()
+        if self.kind == "map" and member in _INSERTING:
+            return _wrap("tuple", _wrap("tuple", *self.parts).add_pointer(), None)
         if self.kind == "sequence" and member in _ELEMENT:
             return self.parts[0]
         return self.find_indexed() if member == "at" else None
@@ -594,7 +596,8 @@ class Resolver:
             if type_ is None:
                 return None
             if kind == "part":
-                return type_.find_part(int(expr.text))
+                at, _, number = expr.text.partition("/")
+                return self._resolve_part(type_, int(at), int(number), place)
             if kind == "unary":
                 return type_.remove_pointer() if expr.text == "*" else type_.add_pointer()
             return type_.find_indexed() if kind == "index" else type_.find_element()
@@ -606,6 +609,17 @@ class Resolver:
         if kind == "conditional" and len(expr.parts) == 2:
             one, other = (self.resolve_value(part, place, depth + 1) for part in expr.parts)
             return one if one == other else None
+        return None
+
+    def _resolve_part(self, type_: CppType, at: int, number: int, place: CodePlace) -> CppType | None:
+        """What one of the names of a structured binding is. number: how many they are."""
+        if not type_.own or any(file.mentions("tuple_size") for file in self.files):
+            return type_.find_part(at)
+        for one in self.list_own_lineage(type_.name):
+            fields = [name for name, those in one.members.items() if any(map(_is_field, those))]
+            if fields or one.open:
+                known = len(fields) == number and not one.open
+                return self.resolve_member(type_, fields[at], place, False) if known else None
         return None
 
     def _resolve_name_value(self, expr: Expr, place: CodePlace, depth: int) -> CppType | None:
@@ -718,10 +732,11 @@ class Resolver:
             if last in _MAKERS or last in _POINTER_CASTS:
                 type_ = self.find_type(callee.template[0], place)
                 return type_.add_pointer() if type_ is not None else None
-            if name == "std::get" and len(expr.parts) == 2:
-                value = self.resolve_value(expr.parts[1], place, depth + 1)
-                given = callee.template[0]
-                return value.find_part(int(given)) if value is not None and given.isdecimal() else None
+            if name in ("std::get", "std::get_if") and len(expr.parts) == 2:
+                return self._resolve_get(callee.template[0], expr.parts[1], last == "get_if", place, depth)
+        if outer == "std" and last in _ENDS and len(expr.parts) == 2:
+            value = self.resolve_value(expr.parts[1], place, depth + 1)
+            return value.find_result(last) if value is not None else None
         if (last in _SEARCHING and outer == "std") or (last in _THROUGH and outer in ("std", "boost")):
             return self.resolve_value(expr.parts[1], place, depth + 1) if len(expr.parts) > 1 else None
         if outer and last in _MAKERS and outer not in ("std", "boost"):
@@ -734,6 +749,16 @@ class Resolver:
         if type_ is not None and type_.kind != "pointer":
             return type_
         return self._resolve_result(name, place)
+
+    def _resolve_get(self, which: str, given: Expr, arrow: bool, place: CodePlace, depth: int) -> CppType | None:
+        """What `std::get<which>(given)` gives back, or with arrow `std::get_if<which>(given)`."""
+        if which.isdecimal():
+            value = self.resolve_value(given, place, depth + 1)
+            value = value.reach(arrow) if value is not None else None
+            found = value.find_part(int(which)) if value is not None else None
+        else:
+            found = self.find_type(which, place)
+        return found.add_pointer() if found is not None and arrow else found
 
     def _resolve_result(self, name: str, place: CodePlace) -> CppType | None:
         """What a function gives back."""
@@ -794,6 +819,11 @@ def _substitute_class(class_: CppClass, arguments: tuple[str, ...]) -> CppClass:
     }
     bases = tuple(_substitute_text(base, class_.template, arguments) for base in class_.bases)
     return class_._replace(members=members, bases=bases)
+
+
+def _is_field(one: Declaration) -> bool:
+    """Whether a member is one of each object."""
+    return one.kind == "variable" and "static" not in one.traits
 
 
 def _make_class_place(class_: CppClass) -> CodePlace:
