@@ -15,16 +15,19 @@ from ..facts.cpp.schema import CodeSpot
 from ..facts.cpp.syntax import ASSIGNING
 from ..facts.surface import Entity
 from ..targets.asked_versions import AskedVersions
-from ..targets.surface.changes import ChangeEvent, Form, Line, Overload
+from ..targets.surface.changes import ChangeEvent, Form, Line
+from ..targets.surface.conversions import MEMBERS, Conversions, find_class_taken, takes_other_class
 from ..targets.surface.offers import Standing, find_standing
 from ..targets.surface.offers_cpp import (
     compare_defaults,
     find_lost_forms,
+    is_accepted,
     is_not_deducible,
     list_callable_forms,
-    list_refused_kinds,
     makes_anew,
     may_be_implicit,
+    may_have_taken,
+    select_refused,
 )
 from ..targets.surface.overrides import list_virtual_forms
 from ..targets.surface.store import SurfaceHistory
@@ -40,9 +43,9 @@ class FoundName(NamedTuple):
 
     package, name, at: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments:
     how many a call gives, or an override takes; -1: not to be told. given: of a call, what each argument shows itself
-    to be (see ApiUses.shown); of an override, the types of its parameters, then `const` and `override` where they
-    stand. templated: template arguments are written. sure: the name is written with its scopes, or the type of the
-    object shows. through: packages of classes between the object's and the one that has the name.
+    to be (see ApiUses.classify), or its class; of an override, the types of its parameters, then `const` and `override`
+    where they stand. templated: template arguments are written. sure: the name is written with its scopes, or the type
+    of the object shows. through: packages of classes between the object's and the one that has the name.
     """
 
     package: str
@@ -58,13 +61,13 @@ class FoundName(NamedTuple):
 
 class AskedForm(NamedTuple):
     """How a version that is asked about has a changing name. version, last: as stored, it and the one before the last
-    change up to it. history: gives all versions; None where they are not to be had."""
+    change up to it. find_history: gives all versions of a package; None where they are not to be had."""
 
     standing: Standing
     version: str
     last: str
     first: str
-    history: Callable[[], SurfaceHistory | None] | None
+    find_history: Callable[[str], SurfaceHistory | None] | None
 
 
 class ChangingName:
@@ -74,6 +77,7 @@ class ChangingName:
     def __init__(self, package: str, name: str, what: str, lines: tuple[tuple[Sequence[ChangeEvent], _Forms], ...]):
         self.package, self.name, self.what, self._lines = package, name, what, lines
         self._by_count: dict[tuple[int, bool], tuple[bool, bool]] = {}
+        self._objects_refused: dict[int, frozenset[int]] = {}
 
     def add_line(self, events: Sequence[ChangeEvent], forms_of: _Forms) -> ChangingName:
         """The same name with the line of another generation, which goes first and says what it is."""
@@ -148,18 +152,49 @@ class ChangingName:
         """Whether one of the versions takes no such arguments, and one beside it may."""
         for one in self.forms:
             here = [form for form in list_callable_forms(one.standing.here) if form.accepts(arguments)]
-            if not here or any(_is_accepted(form, given) for form in here):
+            refused = select_refused(given, here, takes_other_class)
+            if not here or any(is_accepted(form, refused) for form in here):
                 continue
             others = (form for other in _list_other_forms(one.standing) for form in list_callable_forms(other))
-            if any(form.accepts(arguments) and _may_accept(form, given) for form in others):
+            if any(form.accepts(arguments) and may_have_taken(form, refused) for form in others):
                 return True
         return False
+
+    def may_refuse_objects(self, arguments: int, given: Sequence[Sequence[str]]) -> bool:
+        """Whether one of the versions may take no object of some class that one beside it takes, of a call whose
+        arguments show themselves to be no more than this."""
+        places = self._objects_refused.get(arguments)
+        if places is None:
+            places = self._objects_refused[arguments] = frozenset(self._list_refused_objects(arguments))
+        return any(place >= len(given) or not given[place] for place in places)
+
+    def _list_refused_objects(self, arguments: int) -> Iterator[int]:
+        """The places of such arguments among so many."""
+        owner = self.name.rpartition("::")[0]
+        for one in self.forms if self.what in MEMBERS and arguments > 0 else ():
+            here = [form for form in list_callable_forms(one.standing.here) if form.accepts(arguments)]
+            others = (form for other in _list_other_forms(one.standing) for form in list_callable_forms(other))
+            conversions = Conversions(self.package, partial(self._find_stored, one))
+            for form in others if here else ():
+                for place, type_ in enumerate(form.types[:arguments] if form.accepts(arguments) else ()):
+                    written = find_class_taken(type_)
+                    refusing = [each.types[place] for each in here if place < len(each.types)]
+                    if len(refusing) < len(here) or not all(takes_other_class(each, f"::{written}") for each in refusing):
+                        continue
+                    given = conversions.find_class(written, owner)
+                    if given and all(conversions.is_refused(self.name, each, given) for each in refusing):
+                        yield place
+
+    def _find_stored(self, form: AskedForm, package: str) -> tuple[SurfaceHistory, str] | None:
+        """What is stored of a package, and the version in question of this one, or the newest of another."""
+        history = form.find_history(package) if form.find_history is not None else None
+        return history and (history, form.version if package == self.package else history.versions[-1])
 
     def _differs(self, arguments: int, implicit: bool) -> tuple[bool, bool]:
         """Whether a call with so many arguments may be wrong, and the same where its template arguments are written.
         implicit: it may be one of a constructor that the compiler makes, where no header declares others."""
         unwritten = False
-        for standing, version, last, first, history in self.forms:
+        for standing, version, last, first, find_history in self.forms:
             declared = list_callable_forms(standing.here)
             here = [one for one in declared if one.accepts(arguments)]
             made = implicit and (arguments > 0 or may_be_implicit(self.name, declared, arguments, ()))
@@ -172,12 +207,15 @@ class ChangingName:
             if (
                 relying
                 and all(one.most < 0 or arguments < one.most for one in here)
-                and (history is None or compare_defaults(history(), self.name, last, first, arguments))
+                and (
+                    find_history is None
+                    or compare_defaults(find_history(self.package), self.name, last, first, arguments)
+                )
             ):
                 return True, True
             if not unwritten and any(one.accepts(arguments) for one in find_lost_forms(standing.before, standing.here)):
                 # An argument of a template may have to be written.
-                known = history() if history is not None else None
+                known = find_history(self.package) if find_history is not None else None
                 forms = standing.here, standing.before
                 unwritten = known is None or is_not_deducible(known, self.name, *forms, version, last, arguments)
         return unwritten, False
@@ -192,18 +230,6 @@ def _list_other_forms(standing: Standing) -> list[Form]:
 def _has_other_default(standing: Standing) -> bool:
     """Whether the last change up to a version was one of defaults alone, which forms do not tell."""
     return bool(standing.past) and all(reported.kind == "default" for reported in standing.past[-1].reported)
-
-
-def _is_accepted(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
-    """Whether no argument shows itself to be what its parameter does not take."""
-    pairs = zip(given, overload.types, strict=False)
-    return all(list_refused_kinds(type_).isdisjoint(shown) for shown, type_ in pairs)
-
-
-def _may_accept(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
-    """Whether each argument may be something that its parameter takes."""
-    pairs = zip(given, overload.types, strict=False)
-    return all(not shown or not list_refused_kinds(type_).issuperset(shown) for shown, type_ in pairs)
 
 
 def _is_pure(form: Form | None) -> bool:
@@ -307,7 +333,8 @@ class Changes:
             place = line.find_place(version)
             if place is not None:
                 places[place] = ahead and places.get(place, True)
-        history = partial(self._history, package, ros) if self._history is not None else None
+        find = self._history
+        history = (lambda other: find(other, ros)) if find is not None else None
         every = self._asked is None
         return lambda events: tuple(
             _list_asked_forms(events, line, _list_event_places(events) if every else places, history)
@@ -326,7 +353,7 @@ def _list_asked_forms(
     events: Sequence[ChangeEvent],
     line: Line,
     places: Mapping[int, bool],
-    history: Callable[[], SurfaceHistory | None] | None,
+    find_history: Callable[[str], SurfaceHistory | None] | None,
 ) -> Iterator[AskedForm]:
     """How versions have a name. places: of the versions in their line, and of each whether only an update brings it."""
     for place, ahead in places.items():
@@ -336,7 +363,7 @@ def _list_asked_forms(
         if ahead:
             standing = standing._replace(deprecated=False, after=None, future=())
         first = standing.past[-1].place if standing.past else 0
-        yield AskedForm(standing, line.versions[place], line.versions[first - 1], line.versions[first], history)
+        yield AskedForm(standing, line.versions[place], line.versions[first - 1], line.versions[first], find_history)
 
 
 _INTERNAL = frozenset(("detail", "details", "internal", "impl", "operator"))

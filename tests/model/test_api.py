@@ -57,6 +57,10 @@ class Declared:
     """What both versions of a package declare, as its history tells it."""
 
     versions = ("1.0.0", "2.0.0")
+    converting = frozenset()
+
+    def is_understood(self, name: str) -> bool:
+        return True
 
     def __init__(self, codes: tuple[str, str]):
         self._of = dict(zip(self.versions, (header(code.encode()) for code in codes), strict=True))
@@ -312,6 +316,46 @@ def test_what_a_variable_shows_itself_to_be(before, shown, changes):
     found = resolver(f"class C {{ rmw_qos_profile_t v; void g() {{\n{before} call(v); }} }};", vocabulary)
     (use,) = found.known.list_uses(found.known.list_mentions(["call"]))
     assert ApiUses(found).classify(use.call[0], use.place) == shown
+
+
+# What is put into it is a tool, then a pose; what it is moved to a message, then another.
+RACK = """namespace rack {{ struct Tool {{ void turn({}); }}; struct Pose {{}}; struct Rack {{
+void put({}); void move(const a_msgs::msg::{} & m); void hang({}); Tool tool(); Tool first; }}; }}"""
+RACKS = (RACK.format("", "const Tool & t", "A", "Unseen u"), RACK.format("int a", "const Pose & p", "B", "Other o"))
+
+
+@pytest.mark.parametrize(
+    ("text", "given"),
+    [
+        ("void g(rack::Rack r, const rack::Tool & t) { r.put(t); }", ["rack::Tool"]),
+        ("void g(rack::Rack r) { rack::Pose p; r.put(p); r.put(rack::Pose{}); r.put(rack::Pose()); }",
+         ["rack::Pose"] * 3),
+        ("void g(rack::Rack r) { r.put(r.tool()); auto t = r.first; r.put(std::move(t)); }", ["rack::Tool"] * 2),
+        ("void g(rack::Rack r, a_msgs::msg::A a) { r.move(a); }", ["a_msgs::msg::A"]),
+        ("class C { a_msgs::msg::B b_; void g(rack::Rack r) { r.move(b_); } };", ["a_msgs::msg::B"]),
+        # what is no object of such a class, or may be another where a directive decides
+        ("void g(rack::Rack r, rack::Tool * t) { r.put(t); r.put(f()); }", []),
+        ("struct Tool : rack::Tool {}; void g(rack::Rack r, Tool t) { r.put(t); }", []),
+        ("namespace rack { struct Tool {}; } void g(rack::Rack r, rack::Tool t) { r.put(t); }", []),
+        ("void g(rack::Rack r, std::vector<rack::Tool> t) { r.put(t); r.put({t}); r.put(rack::Grip<int>()); }", []),
+        ("void g(rack::Rack r) {\n#if A\n rack::Tool t;\n#else\n rack::Pose t;\n#endif\n r.put(t); }", []),
+        ("void g(rack::Rack r, a_msgs::msg::A::SharedPtr a) { r.move(a); r.hang(r.tool()); }", []),
+    ],
+)
+def test_which_objects_of_classes_are_given(text, given):
+    vocabulary = Vocabulary(["rack"], "mine", changes_of({"rack": RACKS}, Versions("1.0.0", "2.0.0")))
+    uses = ApiUses(resolver(text, vocabulary), {"rack"}).find_uses(["hang", "move", "put"])
+    assert [one for use in sorted(uses, key=lambda use: use.at) for one in use.given] == given
+
+
+@pytest.mark.parametrize(
+    ("version", "read"), [("1.0.0", ["put", "move"]), ("2.0.0", ["put", "move"])]
+)
+def test_a_file_is_parsed_where_an_argument_may_be_refused(version, read):
+    vocabulary = Vocabulary(["rack"], "mine", changes_of({"rack": RACKS}, Asked(version, False)))
+    known = resolver("void g(rack::Rack r) { r.put(a); r.put(1); r.move(b); r.hang(c); }", vocabulary)
+    uses, mentions = ApiUses(known, {"rack"}), known.known.list_mentions(["put", "move", "hang"])
+    assert [one.word for one in mentions if uses._may_matter(one)] == read
 
 
 @pytest.mark.parametrize(

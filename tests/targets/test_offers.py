@@ -304,3 +304,81 @@ def test_what_is_made_of_a_use(codes, how, arguments, given, kinds, store):
         for version in ("1.0.0", "2.0.0")
     )
     assert tuple(one.form if one is not None else None for one in found) == kinds
+
+
+OBJECTS = """namespace arm {{
+struct Base {{}}; struct Tool : Base {{}}; struct Pose {{ Pose(double x, std::string frame = ""); }};
+struct Other {{}}; using Same = Tool; template<class T> struct Grip {{}};
+{0}
+}}"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "given", "found"),
+    [
+        # the type of the parameter, then and now, and the class of the argument
+        ("const Tool & a", "const Other & a", "arm::Tool", "types"),
+        ("Tool a", "Pose & a", "arm::Tool", "types"),
+        ("const geometry_msgs::msg::Pose2D & a", "const geometry_msgs::msg::Pose & a", "geometry_msgs::msg::Pose2D",
+         "types"),
+        ("const Tool & a", "geometry_msgs::msg::Pose a", "arm::Tool", "types"),
+        ("const geometry_msgs::msg::Pose & a", "const Pose & a", "geometry_msgs::msg::Pose", "types"),
+        # it was never taken
+        ("const Tool & a", "const Other & a", "arm::Pose", None),
+        # a base class, one of the two derived from the other, an alias, a template, a pointer, what is not known
+        ("const Tool & a", "const Base & a", "arm::Tool", None),
+        ("const Base & a", "const Tool & a", "arm::Base", None),
+        ("const Tool & a", "const Same & a", "arm::Tool", None),
+        ("const Tool & a", "const Grip<int> & a", "arm::Tool", None),
+        ("const Tool & a", "std::shared_ptr<Other> a", "arm::Tool", None),
+        ("const Tool & a", "const Unseen & a", "arm::Tool", None),
+        ("const Tool & a", "const Other & a", "arm::Unseen", None),
+        ("const leg::Pose & a", "const Other & a", "leg::Pose", None),
+    ],
+)
+def test_whether_an_object_of_a_class_is_refused(before, after, given, found, store):
+    codes = (OBJECTS.format(f"struct Arm {{ void put({one}); }};") for one in (before, after))
+    surfaces = store(*(surface("arm", f"{n}.0.0", code) for n, code in enumerate(codes, 1)))
+    new = check_use(Offers(target(arm="2.0.0"), surfaces), "arm", "arm::Arm::put", "call", 1, (given,))
+    assert (new and new.form) == found
+
+
+@pytest.mark.parametrize(
+    ("code", "found"),
+    [
+        ("struct Tool {}; struct Other { Other(int a); explicit Other(const Tool & a); };", "types"),
+        ("struct Tool { explicit Tool(const Other & a); bool ready(); }; struct Other {};", "types"),
+        ("struct Tool {}; struct Other { Other(const Tool & a, int b = 0); };", None),
+        ("struct Base {}; struct Tool : Base {}; struct Other { Other(const Base & a); };", None),
+        ("struct Tool {}; struct Other { template<class T> Other(const T & a); };", None),
+        ("struct Tool {}; struct Other { Other(const Unseen & a); };", None),
+        ("struct Tool {}; using Any = Tool; struct Other { Other(Any a); };", None),
+        ("struct Tool {}; struct Base { Base(const Tool & a); }; struct Other : Base { using Base::Base; };", None),
+        ("struct Tool {}; struct Other : Unseen {};", None),
+        ("struct Tool : Unseen {}; struct Other {};", None),
+        ("struct Other {}; struct Tool { operator Other() const; };", None),
+        ("struct Other {}; struct Base { operator Other() const; }; struct Tool : Base {};", None),
+        ("struct Tool {}; template<class T> struct Other {};", None),
+        ("struct Tool {}; typedef Tool Other;", None),
+        # a base of the class, or its template, may mean another by the name
+        ("struct Tool {}; struct Other {}; struct Root { using Other = Tool; }; #define BASE : Root", None),
+        ("struct Tool {}; struct Other {}; #define BASE : Unseen", None),
+    ],
+)
+def test_what_a_class_takes_in_place_of_an_object_of_its_own(code, found, store):
+    code, _, base = code.partition("#define BASE")
+    versions = (f"namespace arm {{ {code} struct Arm{base} {{ void put({one} a); }}; }}" for one in ("Tool", "Other"))
+    surfaces = store(*(surface("arm", f"{n}.0.0", text) for n, text in enumerate(versions, 1)))
+    new = check_use(Offers(target(arm="2.0.0"), surfaces), "arm", "arm::Arm::put", "call", 1, ("arm::Tool",))
+    assert (new and new.form) == found
+
+
+def test_an_object_is_taken_by_any_overload_and_by_functions_of_a_namespace(store):
+    surfaces = store(
+        surface("arm", "1.0.0", OBJECTS.format("struct Arm { void put(Tool a); }; void put(Tool a);")),
+        surface("arm", "2.0.0", OBJECTS.format("struct Arm { void put(Other a); template<class T> void put(T a); };"
+                                               " void put(Other a);")),
+    )  # fmt: skip
+    offers = Offers(target(arm="2.0.0"), surfaces)
+    assert check_use(offers, "arm", "arm::Arm::put", "call", 1, ("arm::Tool",)) is None
+    assert check_use(offers, "arm", "arm::put", "call", 1, ("arm::Tool",)) is None

@@ -18,6 +18,7 @@ _QOS_TYPES = {
     "qos": re.compile(r"(?:static |const )*rclcpp\s*::\s*\w*QoS\s*&?"),
     "profile": re.compile(r"(?:static |const |struct )*rmw_qos_profile_[ts]\s*&?"),
 }
+_CLASS = re.compile(r"(?:const )?((?:\w+::)+\w+)&?")
 _DEEPEST = 8
 _INTERFACES = ("::msg", "::srv", "::action")
 _EMPLACING = {"emplace_back": "sequence", "emplace": "pointer"}
@@ -287,7 +288,9 @@ class ApiUses:
         call = use.call or ()
         if any(argument.kind == "pack" for argument in call):
             return -1, ()
-        return len(call), tuple(self.classify(argument, use.place) for argument in call)
+        return len(call), tuple(
+            self.classify(argument, use.place) or self.find_class(argument, use.place) for argument in call
+        )
 
     def classify(self, argument: Expr, place: CodePlace) -> str:
         """What an argument shows itself to be: `text`, `float`, `integer`, `bool`, `lambda`, `bind`, `null`, `this`,
@@ -318,6 +321,24 @@ class ApiUses:
         if callee is not None and callee.kind == "member":
             return "profile" if name == "get_rmw_qos_profile" else ""
         return "qos" if re.fullmatch(r"rclcpp\s*::\s*\w*QoS", name) else ""
+
+    def find_class(self, argument: Expr, place: CodePlace) -> str:
+        """The full name of the class of another package, or of the message, that an argument is an object of, where its
+        type is known or written in full; whether it is a class, those know who have its surface. Empty for the rest."""
+        if _is_apart(argument):
+            return ""
+        type_ = self.resolver.resolve_value(argument, place)
+        if type_ is not None:
+            known = not type_.own and type_.plain and not type_.arguments and "::" in type_.name
+            return type_.name if known and self.vocabulary.classes[type_.name] not in self.vocabulary.home else ""
+        name = argument.parts[0] if argument.kind == "call" else argument
+        written = self.resolver.find_written_type(name, place) if name is argument and name.kind == "name" else name.text
+        class_ = _CLASS.fullmatch(written)
+        if class_ is None or name.kind not in ("name", "braces", "cast") or name.template:
+            return ""
+        head, last = class_[1].partition("::")[0], class_[1].rpartition("::")[2]
+        own = head in self.vocabulary.home or any(last in file.type_names for file in self.resolver.files)
+        return "" if own else class_[1]
 
     def _classify_variable(self, name: Expr, place: CodePlace) -> str:
         """The same of a variable, by the type that it is declared with, or by what it begins with; empty where a
@@ -433,12 +454,21 @@ def collect_bases(names: Iterable[str], files: Iterable[KnownFile]) -> frozenset
     return frozenset(found)
 
 
+def _is_apart(expr: Expr) -> bool:
+    """Whether a directive stands between the declaration of a name in an expression and its use."""
+    local = expr.local
+    begun = local is not None and (local.apart or (local.value is not None and _is_apart(local.value)))
+    return begun or any(map(_is_apart, expr.parts))
+
+
 def _may_differ(known: ChangingName, mention: Mention) -> bool:
     """Whether what follows a name may call it in a way that not all versions take."""
     given = mention.construction if known.what == "constructor" else mention.call
     if given is None or given.number == UNREAD:
         return given is not None
-    return known.differs("call", given.number, given.shown, mention.templated)
+    return known.differs("call", given.number, given.shown, mention.templated) or (
+        known.may_refuse_objects(given.number, given.shown)
+    )
 
 
 def _is_among(class_: str, names: Collection[str]) -> bool:

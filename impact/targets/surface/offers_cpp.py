@@ -4,8 +4,8 @@ longer overriding, on its way out. Asked of the names that only some stored vers
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from functools import lru_cache, partial
 
 from ...facts.surface import Entity, format_declaration
 from ...facts.usage import split_arguments
@@ -13,6 +13,7 @@ from ..evidence import make_offer_evidence
 from ..symbol import Availability, State, Symbol
 from ..version import is_at_least
 from .changes import Form, Overload
+from .conversions import MEMBERS, Conversions, names_class
 from .offers import Offered, Offers, PackageOffer, iterate_other_forms, list_declared, make_offered
 from .overrides import Override
 from .store import SurfaceHistory
@@ -186,10 +187,14 @@ def _check_call(offers: Offers, offered: Offered, arguments: int, given: tuple[s
     if offered.what == "constructor" and may_be_implicit(offered.name, here, arguments, shown):
         return None
     fitting = [one for one in here if one.accepts(arguments)]
-    if not fitting or (any(given) and not any(_takes(one, given) for one in fitting)):
+    if any("::" in one for one in given):
+        conversions = Conversions(offered.package, partial(_find_stored, offers))
+        members = offered.what in MEMBERS
+        shown = select_refused(shown, fitting, lambda *pair: members and conversions.is_refused(offered.name, *pair))
+    if not fitting or not any(is_accepted(one, shown) for one in fitting):
         for event, form, earlier in iterate_other_forms(offers, offered):
             others = (one for one in list_callable_forms(form) if one.accepts(arguments))
-            if any(not fitting or _takes(one, given) for one in others):
+            if any(not fitting or may_have_taken(one, shown) for one in others):
                 why = "types" if fitting else "arguments"
                 return _answer("changed", make_offered(offers, offered, event, earlier), why, earlier)
         return None
@@ -222,9 +227,40 @@ def list_callable_forms(form: Form | None) -> list[Overload]:
     return [one for one in form.overloads if "deleted" not in one.traits] if form is not None else []
 
 
-def _takes(overload: Overload, given: Iterable[str]) -> bool:
-    """False when an argument shows itself to be what its parameter does not take."""
-    return not any(shown in list_refused_kinds(type_) for shown, type_ in zip(given, overload.types, strict=False))
+def select_refused(
+    given: Sequence[Sequence[str]], here: Collection[Overload], refuses: Callable[[str, str], bool]
+) -> list[Sequence[str]]:
+    """What arguments may show themselves to be, without the classes of those objects that one of some overloads may
+    take. refuses: whether a parameter of a type takes no object of a class."""
+    return [
+        tuple(one for one in shown if "::" not in one or all(
+            place < len(overload.types) and refuses(overload.types[place], one) for overload in here
+        ))
+        for place, shown in enumerate(given)
+    ]  # fmt: skip
+
+
+def is_accepted(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
+    """Whether no argument shows itself to be what its parameter does not take. given: as by select_refused()."""
+    pairs = zip(given, overload.types, strict=False)
+    return all(
+        list_refused_kinds(type_).isdisjoint(shown) and not any("::" in one for one in shown) for shown, type_ in pairs
+    )
+
+
+def may_have_taken(overload: Overload, given: Sequence[Sequence[str]]) -> bool:
+    """Whether each argument may be something that its parameter takes; an object of a class: of the very same."""
+    pairs = zip(given, overload.types, strict=False)
+    return all(
+        not shown or (not list_refused_kinds(type_).issuperset(shown) and all(names_class(type_, one) for one in shown))
+        for shown, type_ in pairs
+    )
+
+
+def _find_stored(offers: Offers, package: str) -> tuple[SurfaceHistory, str] | None:
+    """What is stored of a package, and the version that stands for the target's."""
+    offer = offers.find_package(package)
+    return (offer.history, offer.stored) if offer is not None else None
 
 
 # What an argument may show itself to be and no object of a class is.

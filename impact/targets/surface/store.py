@@ -189,6 +189,18 @@ class SurfaceHistory:
                 found.setdefault(last, []).append(row)
         return found
 
+    @cached_property
+    def converting(self) -> frozenset[str]:
+        """Last parts of the classes that some version converts to other types by operators of their own."""
+        heads = (_decode_head(value) for _, value, _ in self._rows.get("entity", ()))
+        owners = (head.name.rpartition("::operator ")[0] for head in heads if head.kind == "conversion")
+        return frozenset(owner.rpartition("::")[2] for owner in owners)
+
+    def is_understood(self, name: str) -> bool:
+        """Whether nothing is lost of the headers that declare a name in some version, or one that ends like it."""
+        paths = {scope for scope, *_ in self._by_last.get(name.rpartition("::")[2], ())}
+        return not any(scope in paths and _decoded(value)[3] for scope, value, _ in self._rows.get("header", ()))
+
     @cache_method
     def _list_inline_namespaces(self, version: str) -> tuple[str, ...]:
         """The inline namespaces of a version."""
