@@ -28,6 +28,7 @@ from ..targets.surface.offers_cpp import (
     may_be_implicit,
     may_have_taken,
     select_refused,
+    takes_types,
 )
 from ..targets.surface.overrides import list_virtual_forms
 from ..targets.surface.store import SurfaceHistory
@@ -41,11 +42,12 @@ CLASSES = frozenset(("class", "struct", "union"))
 class FoundName(NamedTuple):
     """A use of such a name in a text.
 
-    package, name, at: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments:
-    how many a call gives, or an override takes; -1: not to be told. given: of a call, what each argument shows itself
-    to be (see ApiUses.classify), or its class; of an override, the types of its parameters, then `const` and `override`
-    where they stand. templated: template arguments are written. sure: the name is written with its scopes, or the type
-    of the object shows. through: packages of classes between the object's and the one that has the name.
+    package, name, at: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments: how
+    many a call gives, or an override takes; -1: not to be told. given: of a call, what each argument shows itself to be
+    (see ApiUses.classify), or its class; of an override, the types of its parameters, then `const` and `override` where
+    they stand. templated: how many template arguments are written, -1 for none, UNREAD where that is not told. sure:
+    the name is written with its scopes, or the type of the object shows. through: packages of classes between the
+    object's and the one that has the name.
     """
 
     package: str
@@ -54,7 +56,7 @@ class FoundName(NamedTuple):
     how: str
     arguments: int
     given: tuple[str, ...]
-    templated: bool
+    templated: int
     sure: bool
     through: tuple[str, ...]
 
@@ -100,6 +102,7 @@ class ChangingName:
             self.there
             or any(_list_other_forms(one.standing) or _has_other_default(one.standing) for one in self.forms)
             or self.virtual
+            or self._has_other_template
         )
 
     @cached_property
@@ -134,11 +137,11 @@ class ChangingName:
         )
 
     def differs(
-        self, how: str, arguments: int, given: Sequence[Sequence[str]] = (), templated: bool = False
+        self, how: str, arguments: int, given: Sequence[Sequence[str]] = (), templated: int = -1
     ) -> bool:
         """Whether a use of it may be wrong in one of the versions. given: by argument, what it may show itself to be,
         empty where that is nothing."""
-        if self.there or how in ("override", "implement"):
+        if self.there or how in ("override", "implement") or (templated >= 0 and self.may_refuse_types(templated)):
             return True
         if how != "call" or arguments < 0:
             return False
@@ -146,7 +149,7 @@ class ChangingName:
         known = self._by_count.get((arguments, copied))
         if known is None:
             known = self._by_count[arguments, copied] = self._differs(arguments, copied)
-        return known[templated] or (any(given) and self._may_refuse(arguments, given))
+        return known[templated != -1] or (any(given) and self._may_refuse(arguments, given))
 
     def _may_refuse(self, arguments: int, given: Sequence[Sequence[str]]) -> bool:
         """Whether one of the versions takes no such arguments, and one beside it may."""
@@ -159,6 +162,20 @@ class ChangingName:
             if any(form.accepts(arguments) and may_have_taken(form, refused) for form in others):
                 return True
         return False
+
+    @cached_property
+    def _has_other_template(self) -> bool:
+        """Whether its template parameters are not the same in all versions."""
+        every = (reported for events, _ in self._lines for event in events for reported in event.reported)
+        return any("template" in one.aspects or "kind" in one.aspects for one in every)
+
+    @cache_method
+    def may_refuse_types(self, number: int) -> bool:
+        """Whether one of the versions may take no such number of template arguments. number: as in FoundName."""
+        if number == -1 or self.what == "constructor" or not self._has_other_template:
+            return False
+        stored = [self._find_stored(one, self.package) for one in self.forms if one.standing.there]
+        return any(one is None or number < 0 or not takes_types(one[0], self.name, one[1], number) for one in stored)
 
     def may_refuse_objects(self, arguments: int, given: Sequence[Sequence[str]]) -> bool:
         """Whether one of the versions may take no object of some class that one beside it takes, of a call whose
@@ -179,7 +196,8 @@ class ChangingName:
                 for place, type_ in enumerate(form.types[:arguments] if form.accepts(arguments) else ()):
                     written = find_class_taken(type_)
                     refusing = [each.types[place] for each in here if place < len(each.types)]
-                    if len(refusing) < len(here) or not all(takes_other_class(each, f"::{written}") for each in refusing):
+                    others_taken = all(takes_other_class(each, f"::{written}") for each in refusing)
+                    if len(refusing) < len(here) or not others_taken:
                         continue
                     given = conversions.find_class(written, owner)
                     if given and all(conversions.is_refused(self.name, each, given) for each in refusing):

@@ -206,7 +206,7 @@ class CppApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     role: str
     sure: bool
     through: tuple[str, ...] = ()
-    templated: bool = False
+    templated: int = -1
     conditions: tuple[Condition, ...] = ()
     targets: tuple[str, ...] = ()
 

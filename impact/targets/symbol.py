@@ -18,7 +18,7 @@ class CppUseForm(NamedTuple):
     how: str
     arguments: int = -1
     given: tuple[str, ...] = ()
-    templated: bool = False
+    templated: int = -1
 
 
 class Symbol(NamedTuple):

@@ -62,6 +62,9 @@ class Declared:
     def is_understood(self, name: str) -> bool:
         return True
 
+    def announces(self, name: str, version: str) -> bool:
+        return False
+
     def __init__(self, codes: tuple[str, str]):
         self._of = dict(zip(self.versions, (header(code.encode()) for code in codes), strict=True))
 
@@ -356,6 +359,34 @@ def test_a_file_is_parsed_where_an_argument_may_be_refused(version, read):
     known = resolver("void g(rack::Rack r) { r.put(a); r.put(1); r.move(b); r.hang(c); }", vocabulary)
     uses, mentions = ApiUses(known, {"rack"}), known.known.list_mentions(["put", "move", "hang"])
     assert [one.word for one in mentions if uses._may_matter(one)] == read
+
+
+# How many template arguments they have differs, of `keep` alone not.
+SHELF = """namespace shelf {{ template<class A{}> class Shelf {{}}; template<class A> class Keep {{ {} f(); }};
+template<class A{}> void lay(int a); template<class... A> void stack(A... {}); class Plain {{}}; }}"""
+SHELVES = (SHELF.format("", "int", ", class B", "a"), SHELF.format(", class B = int", "bool", "", "b"))
+
+
+@pytest.mark.parametrize(
+    ("text", "first", "second"),
+    [
+        # text, and how many template arguments what is found has where a target has the first version, or the second
+        ("shelf::Shelf<int, std::vector<int>> s;", [2], []),
+        ("using namespace shelf; Shelf<int, f(1, 2)> s;", [2], []),
+        ("std::shared_ptr<shelf::Shelf<int, int>> s; class C : shelf::Shelf<a, b> { C(); };", [2, 2], []),
+        ("shelf::Shelf<int> s; shelf::Shelf t;", [], []),
+        ("shelf::Shelf<> s;", [0], [0]),
+        ("template<class... T> void g(shelf::Shelf<T...> s);", [], []),
+        ("void g() { shelf::lay<int, int>(1); shelf::lay<int>(1); shelf::lay(1); }", [], [2]),
+        ("void g() { shelf::stack<int, int>(1, 2); shelf::Keep<int, int> k; }", [], []),
+        ("template<> class shelf::Shelf<int, bool> {};", [], []),
+    ],
+)  # fmt: skip
+def test_how_many_template_arguments_are_found(text, first, second):
+    for version, found in (("1.0.0", first), ("2.0.0", second)):
+        vocabulary = Vocabulary(["shelf"], "mine", changes_of({"shelf": SHELVES}, Asked(version, False)))
+        uses = ApiUses(resolver(text, vocabulary), {"shelf"}).find_uses(["Shelf", "Keep", "lay", "stack"])
+        assert [use.templated for use in sorted(uses, key=lambda use: use.at)] == found
 
 
 @pytest.mark.parametrize(

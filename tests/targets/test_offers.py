@@ -382,3 +382,38 @@ def test_an_object_is_taken_by_any_overload_and_by_functions_of_a_namespace(stor
     offers = Offers(target(arm="2.0.0"), surfaces)
     assert check_use(offers, "arm", "arm::Arm::put", "call", 1, ("arm::Tool",)) is None
     assert check_use(offers, "arm", "arm::put", "call", 1, ("arm::Tool",)) is None
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "number", "kinds"),
+    [
+        # how many template arguments are written, and what is told of the first version and of the second
+        ("template<class A> struct T {};", "template<class A, class B> struct T {};", 1, (None, "template arguments")),
+        ("template<class A> struct T {};", "template<class A, class B> struct T {};", 2, ("template arguments", None)),
+        ("template<class A> struct T {};", "template<class A, class B = int> struct T {};", 1, (None, None)),
+        ("template<class A> struct T {};", "template<class... A> struct T {};", 0, ("template arguments", None)),
+        ("template<class A> struct T {};", "struct T {};", 1, (None, "template arguments")),
+        ("template<class A> struct T {};", "template<class A, class B> struct T {};", 3, (None, None)),
+        ("template<class A> struct T {};", "template<class A, class B> struct T {};"
+         "template<class A> struct T<A, int> {};", 1, (None, "template arguments")),
+        ("template<class A, class B> using T = A;", "template<class A> using T = A;", 2, (None, "template arguments")),
+        # defaults may stand where it is announced
+        ("template<class A> struct T {};", "template<class A, class B = int> struct T;"
+         "template<class A, class B> struct T {};", 1, (None, None)),
+        # what is left out, the arguments of a call may tell
+        ("template<class A> void T(A);", "template<class A, class B> void T(A, B);", 1, (None, None)),
+        ("template<class A, class B> void T(A, B);", "template<class A> void T(A);", 2, (None, "template arguments")),
+        ("template<class A> void T(A);", "void T(int);", 0, (None, "template arguments")),
+        ("template<class A, class B> void T(A);", "template<class... A> void T(A...);", 2, (None, None)),
+        ("template<class A, class B> void T(A);", "template<class A> void T(A); template<class A, int B> void T(A);", 2,
+         (None, None)),
+    ],
+)
+def test_how_many_template_arguments_are_taken(before, after, number, kinds, store):
+    codes = (f"namespace arm {{ {one} }}" for one in (before, after))
+    surfaces = store(*(surface("arm", f"{n}.0.0", code) for n, code in enumerate(codes, 1)))
+    found = (
+        check_use(Offers(target(arm=version), surfaces), "arm", "arm::T", "name", -1, (), number)
+        for version in ("1.0.0", "2.0.0")
+    )
+    assert tuple(one.form if one is not None else None for one in found) == kinds

@@ -18,12 +18,13 @@ import msgspec
 from ..place import Problem
 from ..usage import Rows, find_template_arguments
 from .lexical import COMMENT, KEYWORDS, CppFile, decode_source, find_words
+from .names import split_at_commas
 from .schema import CppUse, FileDeclarations
 
 ASSIGNING = {f"operator{sign}=": f"{sign}=" for sign in "+-*/"}
 """Operators by name that are looked for where they stand behind an object, to the sign that they are written with."""
 UNREAD = -2
-"""The number of arguments that only a parser can count."""
+"""A number of arguments that is not told, or that only a parser can count."""
 
 
 class Given(NamedTuple):
@@ -40,9 +41,10 @@ class Mention(NamedTuple):
     form: `member` (behind `.` or `->`), `scoped`, `declared` (behind a type, or in a sentence), `assigned` (an
     operator) or `bare`. ahead: the scopes as written, without blanks and the colons at their end, empty where others
     than names stand there; of an operator the word, or the sign, before it. of_std: the scopes are a template of std.
-    call: what is given behind it; construction: the same where it may be a class. templated: template arguments stand
-    behind it. typed: a type may stand before it. listed: a colon or comma stands before it and a bracket behind it, as
-    in the initializer list of a constructor. names: what it may declare, as the type before these names."""
+    call: what is given behind it; construction: the same where it may be a class. templated: how many template
+    arguments stand behind it, -1 for none, UNREAD where it takes a parser. typed: a type may stand before it. listed: a
+    colon or comma stands before it and a bracket behind it, as in the initializer list of a constructor. names: what it
+    may declare, as the type before these names."""
 
     word: str
     offset: int
@@ -51,7 +53,7 @@ class Mention(NamedTuple):
     of_std: bool = False
     call: Given | None = None
     construction: Given | None = None
-    templated: bool = False
+    templated: int = -1
     typed: bool = False
     listed: bool = False
     names: tuple[str, ...] = ()
@@ -152,11 +154,12 @@ def _list_mentions(text: str, word: str) -> Iterator[Mention]:
         last = text[before - 1 : before]
         listed = form != "scoped" and last in (":", ",") and text.startswith(("(", "{"), opened)
         typed = last in ("*", "&") or (before < at and (last in (">", "]") or last.isalnum() or last == "_"))
-        templated = text.startswith("<", opened)
-        types = find_template_arguments(text, opened + 1) if templated else None
-        if templated and types is None:
-            yield Mention(word, at, form, ahead, of_std, Given(UNREAD), Given(UNREAD), True)
+        opening = text.startswith("<", opened)
+        types = find_template_arguments(text, opened + 1) if opening else None
+        if opening and types is None:
+            yield Mention(word, at, form, ahead, of_std, Given(UNREAD), Given(UNREAD), UNREAD)
             continue
+        templated = _count_template_arguments(types.group()) if types is not None else -1
         opened = types.end() if types is not None else end
         constructed = _CONSTRUCTED.match(text, opened)
         declared = _NAMES.match(text, opened)
@@ -169,6 +172,11 @@ def _list_mentions(text: str, word: str) -> Iterator[Mention]:
         opened = _SPACE.match(text, opened).end()  # type: ignore[union-attr]
         call = _parse_arguments(text, opened) if text.startswith("(", opened) else None
         yield Mention(word, at, form, ahead, of_std, call, construction, templated, typed, listed, names)
+
+
+def _count_template_arguments(text: str) -> int:
+    """How many stand in a text up to its `>`; UNREAD where other signs than their own may part them."""
+    return UNREAD if re.search(r"\.\.\.|[(/\"']", text) else len(split_at_commas(text.removesuffix(">")))
 
 
 def _find_end_before(text: str, at: int) -> int:

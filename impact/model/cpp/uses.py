@@ -70,7 +70,7 @@ class ApiUses:
             return False
         full = f"{scope}::{word}"
         known = vocabulary.names.get(full)
-        if known is not None and (known.there or (known.what in CALLED and _may_differ(known, mention))):
+        if known is not None and (known.there or _may_differ(known, mention)):
             return True
         if f"{full}::{word}" in vocabulary.list_constructors(word):
             return _may_differ(vocabulary.names[f"{full}::{word}"], mention)
@@ -83,7 +83,7 @@ class ApiUses:
     def _may_be_any(self, names: Iterable[str], mention: Mention) -> bool:
         """Whether one of some names that all end alike may be used in a way that differs between versions."""
         every = map(self.vocabulary.names.__getitem__, names)
-        return any(known.there or (known.what in CALLED and _may_differ(known, mention)) for known in every)
+        return any(known.there or _may_differ(known, mention) for known in every)
 
     @cache_method
     def _list_bare(self, word: str) -> list[str]:
@@ -233,7 +233,8 @@ class ApiUses:
         known = self.vocabulary.names.get(name)
         if known is None or (use.braced and not known.takes_braces):
             return None
-        templated = use.template is not None and use.form not in ("member", "initializer")
+        # These are the class's, so that it is not told how many the constructor has.
+        templated = UNREAD if use.template is not None and use.form not in ("member", "initializer") else -1
         count, given = self._describe_arguments(use)
         return FoundName(known.package, name, use.at, "call", count, given, templated, True, ())
 
@@ -281,7 +282,7 @@ class ApiUses:
         if known.what in CALLED and use.call is not None and not use.made:
             how = "call"
             count, given = self._describe_arguments(use)
-        return FoundName(known.package, name, use.at, how, count, given, use.template is not None, sure, through)
+        return FoundName(known.package, name, use.at, how, count, given, _count_types(use), sure, through)
 
     def _describe_arguments(self, use: Written) -> tuple[int, tuple[str, ...]]:
         """How many arguments a call gives (-1: not to be told), and what each shows itself to be."""
@@ -329,8 +330,9 @@ class ApiUses:
             return ""
         type_ = self.resolver.resolve_value(argument, place)
         if type_ is not None:
-            known = not type_.own and type_.plain and not type_.arguments and "::" in type_.name
-            return type_.name if known and self.vocabulary.classes[type_.name] not in self.vocabulary.home else ""
+            if type_.own or not type_.plain or type_.arguments or "::" not in type_.name:
+                return ""
+            return "" if self.vocabulary.classes[type_.name] in self.vocabulary.home else type_.name
         name = argument.parts[0] if argument.kind == "call" else argument
         written = self.resolver.find_written_type(name, place) if name is argument and name.kind == "name" else name.text
         class_ = _CLASS.fullmatch(written)
@@ -383,7 +385,7 @@ class ApiUses:
                             marks = (*marks, describe_bases(bases))
                         given = describe_override(types, marks, normalise_parameter(method.type), class_.name)
                         yield FoundName(names[member[0]].package, member[0], spot, "override", len(types),
-                                    given, False, True, member[1])  # fmt: skip
+                                    given, -1, True, member[1])  # fmt: skip
 
     def _spell_parameter(self, parameter: WrittenParameter, class_: CppClass) -> str:
         """The type of a parameter of a class's method, with what aliases of the package in it stand for."""
@@ -434,7 +436,7 @@ class ApiUses:
                     for name in self.vocabulary.list_pure(type_.name):
                         package, word = self.vocabulary.names[name].package, name.rpartition("::")[2]
                         if package not in self.vocabulary.home and not any(file.mentions(word) for file in files):
-                            yield FoundName(package, name, class_.at, "implement", -1, (), False, True, ())
+                            yield FoundName(package, name, class_.at, "implement", -1, (), -1, True, ())
 
     def _find_first(self, classes: Iterable[str], word: str) -> tuple[str, tuple[str, ...]] | None:
         return next((found for one in classes if (found := self.vocabulary.find_member(one, word)) is not None), None)
@@ -454,6 +456,13 @@ def collect_bases(names: Iterable[str], files: Iterable[KnownFile]) -> frozenset
     return frozenset(found)
 
 
+def _count_types(use: Written) -> int:
+    """How many template arguments a use has, as in FoundName."""
+    if use.template is None:
+        return -1
+    return UNREAD if any("..." in one for one in use.template) else len(use.template)
+
+
 def _is_apart(expr: Expr) -> bool:
     """Whether a directive stands between the declaration of a name in an expression and its use."""
     local = expr.local
@@ -462,7 +471,11 @@ def _is_apart(expr: Expr) -> bool:
 
 
 def _may_differ(known: ChangingName, mention: Mention) -> bool:
-    """Whether what follows a name may call it in a way that not all versions take."""
+    """Whether what follows a name may use it in a way that not all versions take."""
+    if known.may_refuse_types(mention.templated):
+        return True
+    if known.what not in CALLED:
+        return False
     given = mention.construction if known.what == "constructor" else mention.call
     if given is None or given.number == UNREAD:
         return given is not None

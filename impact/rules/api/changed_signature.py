@@ -4,10 +4,11 @@ What it does
     Reports calls with arguments, template arguments, or in a form that the known-changes table says the target's
     version of a package or library takes no longer, or not yet; calls of C++ functions with so many arguments as no
     overload of the target's stored version takes and another version's does, or with arguments that show themselves to
-    be of another type; methods that override none of their base's there and did, or do, in another version; exported
-    classes that lack a method which their base made pure virtual; calls that leave out a template argument that nothing
-    else tells; what the C++ standard that the package is compiled with refuses or lacks; and what libraries of the
-    newest distro take no longer.
+    be of another type, among them objects of a class that neither is nor becomes the parameter's; templates with a
+    number of arguments that they do not take there and do in another version; methods that override none of their
+    base's there and did, or do, in another version; exported classes that lack a method which their base made pure
+    virtual; calls that leave out a template argument that nothing else tells; what the C++ standard that the package is
+    compiled with refuses or lacks; and what libraries of the newest distro take no longer.
 
 Why it breaks
     The compiler finds no matching function, or Python raises a TypeError or an AttributeError: the name is there, but
@@ -49,6 +50,7 @@ _HELP = "[[use `{replacement}`]][[it is declared as `{detail}`]]"
 _LOST = {
     "arguments": f"`{{subject}}` does not accept {{arguments}} in {_HERE}; an earlier version does",
     "types": f"`{{subject}}` does not accept arguments of these types in {_HERE}; an earlier version does",
+    "template arguments": f"`{{subject}}` does not accept {{types}} in {_HERE}; an earlier version does",
     "template": f"the template argument of `{{subject}}` cannot be deduced from this call in {_HERE}",
     "override": f"this method does not override `{{subject}}` in {_HERE}: its signature changed",
     "gone": f"this method does not override `{{subject}}` in {_HERE}: it was removed",
@@ -58,6 +60,7 @@ _LOST = {
 _EARLY = {
     "arguments": f"`{{subject}}` does not accept {{arguments}} in {_LATER}",
     "types": f"`{{subject}}` does not accept arguments of these types in {_LATER}",
+    "template arguments": f"`{{subject}}` does not accept {{types}} in {_LATER}",
     "override": f"this method does not override `{{subject}}` in {_LATER}",
     "pure": f"this class does not implement `{{subject}}`, which is pure virtual in {_HERE}",
 }
@@ -88,7 +91,9 @@ def changed_signature(view: TargetView):
 
 
 def _diagnose_use(use: UnservedUse, package: Package) -> Diagnostic | Upcoming:
-    data = {**build_data(use.found), "arguments": format_count(use.arguments, "argument")}
+    counts = {"arguments": format_count(use.arguments, "argument"),
+              "types": format_count(use.templated, "template argument")}  # fmt: skip
+    data = {**build_data(use.found), **counts}
     kind = use.found.form if use.found.earlier else f"{use.found.form} early"
     return diagnose(use.found, use.at, use.name, package.name, use.doubts, kind=kind, data=data)
 

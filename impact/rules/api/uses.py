@@ -14,7 +14,8 @@ from ..vocabulary import At, Doubt, Package, TargetView, list_place_doubts
 
 class UnservedUse(NamedTuple):
     """A use, how the target stands to it, and what speaks against an error at its place. arguments: how many the call
-    of a C++ function has; keywords: those of a Python call. sure: it surely means that name."""
+    of a C++ function has, templated: and how many of a template; keywords: those of a Python call. sure: it surely
+    means that name."""
 
     at: At
     name: str
@@ -23,6 +24,7 @@ class UnservedUse(NamedTuple):
     arguments: int = -1
     keywords: tuple[str, ...] = ()
     sure: bool = True
+    templated: int = -1
 
 
 @cache_in_derived
@@ -60,7 +62,8 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
             continue  # a base class may be another there
         if _is_silent(use, found) and (extract_class(use.given, use.arguments), use.name) in overridden:
             continue  # another of that name overrides, or is to
-        yield UnservedUse(use.at, use.name, found, _collect_cpp_doubts(view, use, found), use.arguments, sure=use.sure)
+        doubts = _collect_cpp_doubts(view, use, found)
+        yield UnservedUse(use.at, use.name, found, doubts, use.arguments, sure=use.sure, templated=use.templated)
 
 
 def _is_of_another(space: str, package: str, near: Collection[str]) -> bool:

@@ -54,7 +54,9 @@ class Conversions:
         type_: of the parameter; given: the class, in full."""
         owner = name.rpartition("::")[0]
         _, every = self._list_declared(name)
-        if not self._is_plain(owner) or any(one.kind not in FUNCTIONS or one.template is not None or one.macro for one in every):
+        if not self._is_plain(owner):
+            return False
+        if any(one.kind not in FUNCTIONS or one.template is not None or one.macro for one in every):
             return False
         written = find_class_taken(type_)
         around = self._list_lineage(owner)

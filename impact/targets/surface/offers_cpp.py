@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import lru_cache, partial
 
-from ...facts.surface import Entity, format_declaration
+from ...facts.surface import CLASSES, FUNCTIONS, Entity, format_declaration
 from ...facts.usage import split_arguments
 from ..evidence import make_offer_evidence
 from ..symbol import Availability, State, Symbol
@@ -40,7 +40,7 @@ def check_use(
     how: str,
     arguments: int,
     given: tuple[str, ...],
-    templated: bool = False,
+    templated: int = -1,
 ) -> Availability | None:
     """How the target stands to a use of a package's name, where it does not serve it; None where it does, or where that
     cannot be told. The use is described as in model.package.CppApiUse."""
@@ -58,7 +58,7 @@ def check_use(
 
 
 def _check_present(
-    offers: Offers, offered: Offered, how: str, arguments: int, given: tuple[str, ...], templated: bool
+    offers: Offers, offered: Offered, how: str, arguments: int, given: tuple[str, ...], templated: int
 ) -> Availability | None:
     """The same of a name that the target's version has."""
     package, name = offered.package, offered.name
@@ -68,10 +68,11 @@ def _check_present(
         return _check_unimplemented(offers, offered)
     if offered.state == "deprecated":
         return _answer("deprecated", offered)
-    if how != "call" or arguments < 0:
-        return None
+    refused = _check_types(offers, offered, templated) if templated >= 0 else None
+    if refused is not None or how != "call" or arguments < 0:
+        return refused
     return _check_call(offers, offered, arguments, given) or (
-        None if templated else _check_template_arguments(offers, offered, arguments)
+        None if templated != -1 else _check_template_arguments(offers, offered, arguments)
     )
 
 
@@ -213,6 +214,7 @@ def may_be_implicit(name: str, here: Iterable[Overload], arguments: int, given: 
     return arguments == 1 and not any(_ANYTHING.intersection(shown) for shown in given)
 
 
+_TEMPLATES = FUNCTIONS | CLASSES | {"alias"}
 _COPIED = re.compile(r"(?:const )?(?:\w*::)*(?:<.*>)?(?: const)?&{1,2}")
 
 
@@ -340,6 +342,34 @@ def _check_template_arguments(offers: Offers, offered: Offered, arguments: int) 
     before = offer.line.versions[place] if place is not None else ""
     lost = is_not_deducible(offer.history, offered.name, offered.here, offered.before, offer.stored, before, arguments)
     return _answer("changed", offered, "template") if lost else None
+
+
+def _check_types(offers: Offers, offered: Offered, number: int) -> Availability | None:
+    """Whether a template takes so many arguments no longer, or not yet."""
+    offer = offers.find_package(offered.package)
+    if offer is None or takes_types(offer.history, offered.name, offer.stored, number):
+        return None
+    for event, _, earlier in iterate_other_forms(offers, offered):
+        version = offer.line.versions[event.place - 1 if earlier else event.place]
+        if takes_types(offer.history, offered.name, version, number):
+            return _answer("changed", make_offered(offers, offered, event, earlier), "template arguments", earlier)
+    return None
+
+
+def takes_types(history: SurfaceHistory, name: str, version: str, number: int) -> bool:
+    """Whether a version's template of a name takes so many arguments; True where it is not known. Those of a function
+    may be told by what it is called with, and defaults of a class may stand where it is only announced."""
+    every = [one for one in history.iterate_entities(name, version) if not one.arguments]
+    if any(one.kind not in _TEMPLATES or one.macro for one in every):
+        return True
+    for one in every:
+        parameters = one.template or ()
+        packed = any(parameter.pack for parameter in parameters)
+        required = sum(parameter.default is None and not parameter.pack for parameter in parameters)
+        enough = one.kind in FUNCTIONS or required <= number or history.announces(name, version)
+        if one.template is not None and enough and (packed or number <= len(parameters)):
+            return True
+    return not every
 
 
 def is_not_deducible(

@@ -196,6 +196,11 @@ class SurfaceHistory:
         owners = (head.name.rpartition("::operator ")[0] for head in heads if head.kind == "conversion")
         return frozenset(owner.rpartition("::")[2] for owner in owners)
 
+    def announces(self, name: str, version: str) -> bool:
+        """Whether a header of a version announces a type, which another may define."""
+        paths = (path for path, _ in self._iterate("header", version))
+        return any(name in self.included.list_announced_types(path, version) for path in paths)
+
     def is_understood(self, name: str) -> bool:
         """Whether nothing is lost of the headers that declare a name in some version, or one that ends like it."""
         paths = {scope for scope, *_ in self._by_last.get(name.rpartition("::")[2], ())}
