@@ -334,11 +334,12 @@ class ApiUses:
                 return ""
             return "" if self.vocabulary.classes[type_.name] in self.vocabulary.home else type_.name
         name = argument.parts[0] if argument.kind == "call" else argument
-        written = self.resolver.find_written_type(name, place) if name is argument and name.kind == "name" else name.text
+        is_variable = name is argument and name.kind == "name"
+        written = self.resolver.find_written_type(name, place) if is_variable else name.text
         class_ = _CLASS.fullmatch(written)
         if class_ is None or name.kind not in ("name", "braces", "cast") or name.template:
             return ""
-        head, last = class_[1].partition("::")[0], class_[1].rpartition("::")[2]
+        head, *_, last = class_[1].split("::")
         own = head in self.vocabulary.home or any(last in file.type_names for file in self.resolver.files)
         return "" if own else class_[1]
 
