@@ -62,7 +62,7 @@ class Declared:
     def is_understood(self, name: str) -> bool:
         return True
 
-    def announces(self, name: str, version: str) -> bool:
+    def has_announced(self, name: str, version: str) -> bool:
         return False
 
     def __init__(self, codes: tuple[str, str]):

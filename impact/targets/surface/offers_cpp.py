@@ -366,7 +366,7 @@ def takes_types(history: SurfaceHistory, name: str, version: str, number: int) -
         parameters = one.template or ()
         packed = any(parameter.pack for parameter in parameters)
         required = sum(parameter.default is None and not parameter.pack for parameter in parameters)
-        enough = one.kind in FUNCTIONS or required <= number or history.announces(name, version)
+        enough = one.kind in FUNCTIONS or required <= number or history.has_announced(name, version)
         if one.template is not None and enough and (packed or number <= len(parameters)):
             return True
     return not every

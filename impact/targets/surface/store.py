@@ -196,7 +196,7 @@ class SurfaceHistory:
         owners = (head.name.rpartition("::operator ")[0] for head in heads if head.kind == "conversion")
         return frozenset(owner.rpartition("::")[2] for owner in owners)
 
-    def announces(self, name: str, version: str) -> bool:
+    def has_announced(self, name: str, version: str) -> bool:
         """Whether a header of a version announces a type, which another may define."""
         paths = (path for path, _ in self._iterate("header", version))
         return any(name in self.included.list_announced_types(path, version) for path in paths)
