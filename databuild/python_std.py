@@ -20,7 +20,7 @@ import msgspec
 
 from ..impact.facts.python.surface import Bound, ImportedName, ModuleSurface
 from ..impact.targets.snapshot import DATA, load_snapshot
-from ..impact.targets.surface.python import SurfaceNames
+from ..impact.targets.surface.python import UNKNOWN, SurfaceNames
 from ..impact.targets.surface.surface import BuildSurface, InstalledModule, PythonSurface, Surface
 from .extract.python import extract
 from .jobs import Packing
@@ -254,7 +254,8 @@ def _go_back(
         if name in new and new[name].surface != old[name].surface:
             surface = _change_back(module.surface, old[name].surface, new[name].surface)
             # What another module defined before, and this one took from there, was here all the same.
-            moved = {one.name for one in module.surface.names if before.find(f"{name}.{one.name}") is not None}
+            every = {one.name for one in module.surface.names}
+            moved = {one for one in every if before.find(f"{name}.{one}") not in (None, UNKNOWN)}
             kept = {one.name for one in surface.names}
             back = (one for one in module.surface.names if one.name in moved - kept)
             surface = msgspec.structs.replace(surface, names=(*surface.names, *back))

@@ -58,7 +58,7 @@ class Workspace(SimpleNamespace):
 
 
 MACHINE = SimpleNamespace(is_from_library=lambda header: header == "Eigen/src/Core/Dot.h")
-OFFERS = SimpleNamespace(find_package=lambda package: None)
+OFFERS = SimpleNamespace(find_package=lambda package: None, surfaces=SimpleNamespace(is_library=lambda package: False))
 REVIEWED = Availabilities(Target(), cast(Offers, OFFERS), ahead=())
 NAMES = ReviewedNames(
     cast(

@@ -81,8 +81,8 @@ class Offers:
         if not self.surfaces.is_library(name):
             return self.target.find_version(name)
         version, line = self.target.find_library(name), self.surfaces.find_line(name, self.target.ros)
-        if version is None or line is None:
-            return None
+        if version is None or line is None or (name == "python" and not self.target.python):
+            return None  # code of a distro of Python 2 does not run on the platform's Python 3
         return ".".join(version.split(".")[: line.versions[-1].count(".") + 1])
 
     def find_history(self, package: str) -> SurfaceHistory | None:
