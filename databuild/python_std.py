@@ -196,6 +196,10 @@ class _Resolver(ast.NodeTransformer):
         return self.visit_FunctionDef(node)
 
 
+# A decorator, and bases without members, that readers of surfaces know by their names.
+_KNOWN_BY_NAME = ("ABC", "Generic", "Protocol", "deprecated")
+
+
 class _Hider(ast.NodeTransformer):
     """Gives what a stub imports for itself a private name: only `import a as a`, and what `__all__` lists, is there for
     those who import the module (PEP 484)."""
@@ -216,7 +220,8 @@ class _Hider(ast.NodeTransformer):
             for alias in node.names
             if alias.asname is None and alias.name.isidentifier() and alias.name not in exported
         }
-        self._names.pop("deprecated", None)  # a decorator that is known by its name
+        for name in _KNOWN_BY_NAME:
+            self._names.pop(name, None)
 
     def visit_alias(self, node: ast.alias) -> ast.alias:
         if node.asname is None:
