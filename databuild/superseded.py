@@ -35,12 +35,14 @@ from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
+import zstandard
+
 from ..edges.files import write_file
 from ..impact.targets.availability import Availabilities
 from ..impact.targets.changes import DISTROS
 from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.distro.known import list_known_distros
-from ..impact.targets.snapshot import DATA
+from ..impact.targets.snapshot import DATA, read_table
 from ..impact.targets.surface.changes import Line
 from ..impact.targets.surface.fields import covers, load_fields
 from ..impact.targets.surface.offers import find_standing
@@ -50,7 +52,7 @@ from ..impact.targets.version import is_at_least
 
 _SIDES = {"api": ("c++",), "python": ("python",), "header": ("header",), "cmake": ("command", "target", "variable")}
 _SEPARATOR = {"c++": "::", "python": ".", "header": "\0"}
-_DERIVED = frozenset(("changes_ros_tags.json",))
+_DERIVED = frozenset(("changes_ros_tags.json.zst",))
 _GOES = {True: ("answered", "contradicted", "wrong", "bare"), False: ("answered", "wrong", "bare")}
 """Verdicts on rows that go: of derived files, and of reviewed ones."""
 
@@ -289,7 +291,7 @@ def _list_interface_presence(interface: Symbol, ros: int) -> Iterator[tuple[str,
 def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]]]:
     """A file's content without superseded rows, and with bounds as the stored versions have them, and how many rows of
     each kind had which verdict."""
-    content = json.loads(file.read_bytes())
+    content = read_table(file, dict[str, Any])
     count: Counter[tuple[str, str]] = Counter()
     kept = []
     for group in content["changes"]:
@@ -362,18 +364,26 @@ def format_content(content: dict[str, Any]) -> str:
     return '{"changes": [\n' + ",\n".join(groups) + "\n], " + rest + "}\n"
 
 
+def write_table(file: Path, content: dict[str, Any]) -> None:
+    """Writes a file's content, packed where it is."""
+    if file.suffix == ".zst":
+        write_file(file, zstandard.ZstdCompressor(level=19).compress(json.dumps(content).encode()))
+    else:
+        write_file(file, format_content(content).encode())
+
+
 def main(arguments: list[str]) -> None:
     """Prints what becomes of the rows of each file, and with --write takes out those that are superseded."""
-    for file in sorted(DATA.glob("changes*.json")):
+    for file in sorted(DATA.glob("changes*.json*")):
         content, count = drop_superseded(file)
         before = sum(count.values())
-        changed = content != json.loads(file.read_bytes())
+        changed = content != read_table(file, dict[str, Any])
         after = sum(len(group["names"]) for group in content["changes"])
         print(f"{file.name}: {before} rows, {after} left")
         for (kind, found), number in sorted(count.items()):
             print(f"  {kind:16} {found:13} {number}")
         if "--write" in arguments and changed:
-            write_file(file, format_content(content).encode())
+            write_table(file, content)
 
 
 if __name__ == "__main__":

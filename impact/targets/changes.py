@@ -137,7 +137,7 @@ def _load_files() -> list[_File]:
     """All data/changes*.json. A name that two files treat counts as in the more special one; what that does not say of
     it is taken from the other. What was read from packages comes last, since nobody reviewed it; before it the general
     table, since the others were compared with headers and tags."""
-    return _read("changes*.json", "changes.json", "changes_debian.json", "changes_library_tags.json")
+    return _read("changes*.json*", "changes.json", "changes_debian.json", "changes_library_tags.json")
 
 
 def _get_shared_fields(group: _Group) -> dict:

@@ -1,6 +1,5 @@
 """Known changes of ROS packages: the facts as a target sees them, and the shape of the two files they stand in."""
 
-import json
 import re
 from pathlib import Path
 
@@ -8,9 +7,10 @@ import pytest
 from rosimpact.impact.targets import changes
 from rosimpact.impact.targets.changes import DISTROS, iterate_in_force
 from rosimpact.impact.targets.distro.distro import DistroTarget
+from rosimpact.impact.targets.snapshot import read_table
 
 DATA = Path(changes.__file__).parent / "data"
-FILES = ("changes_ros.json", "changes_ros_tags.json")
+FILES = ("changes_ros.json", "changes_ros_tags.json.zst")
 KINDS = {
     f"{subject}-{what}"
     for subject, whats in {
@@ -35,7 +35,7 @@ SPELLING = {
 
 
 def read(name):
-    return json.loads((DATA / name).read_text())["changes"]
+    return read_table(DATA / name, dict)["changes"]
 
 
 @pytest.mark.parametrize("name", FILES)

@@ -3,7 +3,7 @@
 `data/std_names.json.zst`, which build/std_names.py makes by asking the compilers, tells for GCC 9 and later which names
 each header brings under C++14, 17 and 20, which is much more from standard to standard.
 
-`data/providers_std.json` was made by preprocessing each standard header of GCC 5, 7 and 9 to 15 under the language
+`data/providers_std.json.zst` was made by preprocessing each standard header of GCC 5, 7 and 9 to 15 under the language
 standards in use, and listing the standard headers that it read. Where standards differ, all that any of them reads
 counts. It tells of GCC 5 and 7, of which names brought more than later versions did.
 """
@@ -72,7 +72,7 @@ def _load_c_headers() -> dict[str, frozenset[str]]:
 
 @cache
 def _load_tables() -> tuple[tuple[int, dict[str, frozenset[str]]], ...]:
-    read = read_table(DATA / "providers_std.json", dict[str, dict[str, str]])
+    read = read_table(DATA / "providers_std.json.zst", dict[str, dict[str, str]])
     return tuple(
         (int(major), {header: frozenset(text.split()) for header, text in table.items()})
         for major, table in sorted(read.items(), key=lambda item: int(item[0]))
