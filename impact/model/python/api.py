@@ -104,7 +104,9 @@ def find_uses(facts: PythonFile, own: frozenset[str], changing: Changing, types:
 
 
 def count_unresolved(facts: PythonFile, changing: Changing) -> int:
-    """Members that may be such names of what a file imports, of objects whose type is not known."""
+    """Members that may be such names of what a file imports, of objects whose type is not known. Those of the standard
+    library are called as anything is."""
     heads = {item.module.partition(".")[0] for item in facts.imports if not item.level}
+    heads = {head for head in heads if not is_in_any_stdlib(head)}
     words = frozenset().union(*map(changing.list_words, heads)) if facts.unknown else frozenset()
     return sum(places for word, places in facts.unknown.items() if word in words)
