@@ -295,6 +295,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     python_offer: PythonOffer = PythonOffer()
     # Sources, each with another one that defines a function which it seems to use, and the function.
     own_calls: tuple[tuple[str, str, str], ...] = ()
+    # C++ files that define or run tests of gtest.
+    testing: tuple[str, ...] = ()
     # Files that name folders of distros.
     distros: tuple[tuple[str, DistroFile], ...] = ()
     # Each requirements.txt, with its path.
@@ -419,6 +421,11 @@ class Watched(msgspec.Struct, frozen=True, dict=True):
         if wanted not in self.qualified:
             wanted = text if text in self.words or text.rsplit("::", 1)[-1] in self.words else ""
         return wanted
+
+
+# What a program does with gtest that needs its library.
+_OF_TESTS = frozenset(("TEST", "TEST_F", "TEST_P", "TYPED_TEST", "TYPED_TEST_P", "RUN_ALL_TESTS", "InitGoogleTest",
+                       "InitGoogleMock"))  # fmt: skip
 
 
 class PackageJoin:
@@ -582,6 +589,7 @@ class PackageJoin:
             modules=tuple(sorted(modules)),
             plugins=tuple(plugins),
             registered=tuple(registered),
+            testing=tuple(path for path in self.cpp if not _OF_TESTS.isdisjoint(self.list_words(path))),
             setup=tuple(setup),
             allows=tuple(allows),
             problems=tuple(problems),

@@ -10,7 +10,7 @@ Why it breaks
     it worked as long as another package happened to export the library.
 
 Severity
-    error for programs that include headers of gtest or gmock; warning.
+    error for programs that define tests of gtest or run them; warning.
 
 Example
     add_executable(loader test/loader.cpp)        # includes gtest/gtest.h
@@ -81,13 +81,13 @@ def unlinked_library(view: TargetView, package: Package):
             seen.add((word, name))
             subject = include.path.partition("/")[0].removesuffix(".h")
             data = {"target": name, "header": include.path}
-            yield Diagnostic(include.at, subject, package.name, data, doubts=_collect_doubts(target, word))
+            testing = word in ("gtest", "gmock") and include.at.path in package.linked.testing
+            yield Diagnostic(include.at, subject, package.name, data, doubts=_collect_doubts(target, testing))
 
 
-def _collect_doubts(target: BuildTarget, word: str) -> tuple[Doubt, ...]:
-    """A program that includes a header for tests defines tests, which the library runs; of other headers it may use
-    what needs no library."""
-    if target.kind != "executable" or word not in ("gtest", "gmock"):
+def _collect_doubts(target: BuildTarget, testing: bool) -> tuple[Doubt, ...]:
+    """A program that defines tests needs the library, which runs them; of headers it may use what needs none."""
+    if target.kind != "executable" or not testing:
         return (Doubt.INCOMPLETE,)
     return (Doubt.TEST,) if target.excluded else ()
 
