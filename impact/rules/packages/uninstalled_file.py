@@ -97,8 +97,8 @@ def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagn
     missing: dict[str, tuple[str, str]] = {}
     catkin = package.build_type == "catkin"
     places = list_places(package, installs)
-    for name in sorted(opened):
-        path = posixpath.normpath(posixpath.join(package.path, name)) if "$" not in name else ""
+    for name in sorted(name for name in opened if "$" not in name):
+        path = posixpath.normpath(posixpath.join(package.path, name))
         files = [path] if path in package.files else _list_below(package, path)
         inside = posixpath.relpath(path, package.path or ".")
         if not files or inside == "." or _lies_in(places, package.name, inside):
