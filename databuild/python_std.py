@@ -5,20 +5,22 @@
 STUBS are folders `stdlib` of typeshed, oldest first, as mypy's wheels carry them (`mypy/typeshed/stdlib`; the first
 with a file VERSIONS came with mypy 0.900). A state of typeshed tells of the versions that its conditions name; what one
 version has more or less than the next is told by the newest state that tells of both, so that stubs that were completed
-meanwhile are no change. Of overloaded functions the parameters are not kept, and of nothing the types.
+meanwhile are no change. Of overloaded functions the parameters are not kept, of nothing the types, and
+what all versions have alike is left out, but for classes and what is called like something that changed.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 
 import msgspec
 
 from ..impact.facts.python.surface import Bound, ImportedName, ModuleSurface
+from ..impact.targets.changes import load_rows
 from ..impact.targets.snapshot import DATA, load_snapshot
 from ..impact.targets.surface.python import UNKNOWN, SurfaceNames
 from ..impact.targets.surface.surface import BuildSurface, InstalledModule, PythonSurface, Surface
@@ -280,17 +282,51 @@ def _change_back(after: ModuleSurface, old: ModuleSurface, new: ModuleSurface) -
 def _merge(after: tuple, old: tuple, new: tuple) -> tuple:
     """The names of a version, from those of the next one and from what a state of the stubs tells of both."""
 
-    def index(items: Iterable[Bound | ImportedName]) -> dict[str, tuple]:
-        found: dict[str, tuple] = {}
-        for item in items:
-            found[item.name] = (*found.get(item.name, ()), msgspec.structs.replace(item, line=0))
-        return found
-
-    had, has, here = index(old), index(new), index(after)
+    had, has, here = _index_names(old), _index_names(new), _index_names(after)
     kept = {name: had.get(name, items) if had.get(name) != has.get(name) and name in has else items
             for name, items in here.items() if name in had or name not in has}  # fmt: skip
     back = {name: items for name, items in had.items() if name not in has and name not in here}
     return tuple(item for items in (*kept.values(), *back.values()) for item in items)
+
+
+def leave_out_alike(versions: Mapping[int, Mapping[str, InstalledModule]]) -> dict[int, dict[str, InstalledModule]]:
+    """The versions without what never changes: a name that is not there is not asked about. Kept are classes with what
+    tells their bases, and all that is called like something that changed, or that a reviewed row names."""
+    words = {row.old.rpartition(".")[2] for row in load_rows() if row.package == PACKAGE}
+    names = {name for modules in versions.values() for name in modules}
+    words.update(name.rpartition(".")[2] for name in names if any(name not in modules for modules in versions.values()))
+    for name in names:
+        surfaces = [modules[name].surface for modules in versions.values() if name in modules]
+        states = [_index_names((*surface.names, *surface.imports)) for surface in surfaces]
+        every = {bound for state in states for bound in state}
+        words.update(
+            bound.rpartition(".")[2] for bound in every if any(s.get(bound) != states[0].get(bound) for s in states)
+        )
+    surfaces = (module.surface for modules in versions.values() for module in modules.values())
+    taken = words | {one.name for surface in surfaces for one in surface.names if one.kind == "class"}
+    return {
+        minor: {name: kept for name, module in modules.items() if (kept := _select(module, words, taken)) is not None}
+        for minor, modules in versions.items()
+    }
+
+
+def _index_names(items: Iterable[Bound | ImportedName]) -> dict[str, tuple]:
+    found: dict[str, tuple] = {}
+    for item in items:
+        found[item.name] = (*found.get(item.name, ()), msgspec.structs.replace(item, line=0))
+    return found
+
+
+def _select(module: InstalledModule, words: Collection[str], taken: Collection[str]) -> InstalledModule | None:
+    """What of a module may be asked about; None for nothing. words: last parts of what is kept besides classes. taken:
+    the same of what imports are kept of."""
+    surface = module.surface
+    names = tuple(one for one in surface.names if one.kind == "class" or one.name.rpartition(".")[2] in words)
+    imports = tuple(one for one in surface.imports if one.name == "*" or one.name in taken or one.original in taken)
+    if not names and not imports and module.name.rpartition(".")[2] not in words:
+        return None
+    kept = msgspec.structs.replace(surface, names=names, imports=imports, all=None)
+    return msgspec.structs.replace(module, surface=kept)
 
 
 def pack_versions(versions: Mapping[int, Mapping[str, InstalledModule]]):
@@ -313,7 +349,7 @@ def main(arguments: list[str] | None = None) -> None:
     states = [Stubs(folder) for folder in given.stubs]
     for state in states:
         print(f"{state.folder}: Python 3.{state.span[0]} to 3.{state.span[1]}, {len(state.files)} modules", flush=True)
-    versions = read_versions(states)
+    versions = leave_out_alike(read_versions(states))
     made = pack_versions(versions)
     file = given.output / "surfaces.sqlite"
     packages, distros = read_packages(file)

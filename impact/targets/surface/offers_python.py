@@ -49,7 +49,7 @@ class PythonOffers:
 
     def _check_use(self, offer: PackageOffer, use: PythonUse) -> Availability | None:
         if use.how == "from":
-            return self._check_imported(offer, use)
+            return self._check_imported(offer, use) if not self._is_partial(offer) else None
         lost = self._check_at(offer, use, offer.place)
         if lost is None or lost.state == "deprecated" or offer.exact:
             return lost
@@ -126,9 +126,13 @@ class PythonOffers:
                 instead = self._find_replacement(offer, gone, had)
                 return self._answer("removed", offer, gone, last=versions[other], first=self._find_next(offer, other),
                                    replacement=instead, old=_describe(gone, had), sure=not had.conditional)  # fmt: skip
-        if offer.exact and gone == use.name and self._has_never_had(offer, gone, place):
+        if offer.exact and gone == use.name and not self._is_partial(offer) and self._has_never_had(offer, gone, place):
             return self._answer("not yet", offer, gone, form="never")
         return None
+
+    def _is_partial(self, offer: PackageOffer) -> bool:
+        """Whether only what changes is stored, as of libraries of the platform."""
+        return self._offers.surfaces.is_library(offer.package)
 
     def _has_never_had(self, offer: PackageOffer, name: str, place: int) -> bool:
         """Whether a module that is there surely lacks a name that others of the package have, in the version at a place
