@@ -201,7 +201,7 @@ def _get_last_blob(versions: list) -> str:
     return versions[-1].blob if versions else ""
 
 
-def _load(path: Path, kind: type):
+def _load(path: Path, kind: type) -> Any:
     try:
         return msgspec.msgpack.decode(read_file(path, get_limits().report), type=kind)
     except (OSError, msgspec.MsgspecError):

@@ -319,4 +319,5 @@ _raw = msgspec.msgpack.Decoder(FileFacts[msgspec.Raw])
 
 @cache
 def _make_decoder(kind: str) -> msgspec.msgpack.Decoder[FileFacts[Any]]:
-    return msgspec.msgpack.Decoder(FileFacts[None] if kind in ("script", "flow_script") else FileFacts[_get_type(kind)])
+    generic: Any = FileFacts
+    return msgspec.msgpack.Decoder(generic[None if kind in ("script", "flow_script") else _get_type(kind)])
