@@ -122,9 +122,9 @@ def _build_surfaces(sources: Sources, data: Path, own: Path) -> list[str] | None
                  "--output", file, "--quiet")  # fmt: skip
 
 
-def _read_clones(module: str, *more: str) -> Callable[[Sources, Path, Path], list[str] | None]:
+def _read_clones(module: str) -> Callable[[Sources, Path, Path], list[str] | None]:
     """The arguments of a builder that reads the folder of clones."""
-    return lambda sources, data, own: _call(module, sources.clones, *more) if sources.clones else None
+    return lambda sources, data, own: _call(module, sources.clones) if sources.clones else None
 
 
 def _build_providers(sources: Sources, data: Path, own: Path) -> list[str] | None:
