@@ -196,7 +196,8 @@ class Services:
     def _handler(services) -> type[BaseHTTPRequestHandler]:
         class Handler(BaseHTTPRequestHandler):
             protocol_version = "HTTP/1.1"
-            wbufsize = -1  # head and body leave together, or each answer takes 40 ms
+            wbufsize = -1
+            disable_nagle_algorithm = True  # a body larger than the buffer leaves after its head, 40 ms later
 
             def do_GET(self) -> None:
                 parts = urlsplit(self.path)
