@@ -33,6 +33,7 @@ from .known import (
     find_distro,
     format_day,
     list_known_distros,
+    list_public_rules,
     list_rosdep_systems,
     suggest_name,
 )
@@ -505,11 +506,7 @@ class DistroTarget:
         moments = [self._rule_ts]
         if self.end_of_life and self.end_of_life < self.date:
             moments.append(compute_end_of_day(self.end_of_life))
-        # Some keys stand for every operating system under the name `*`.
-        asked = "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key"
-        tables = [[self._data.fetch(asked, (system, ts)) for system in ("*", split_platform(self.platform)[0])]
-                  for ts in moments]  # fmt: skip
-        return [{key: rule for rows in table for key, rule, _ in rows if rule is not None} for table in tables]
+        return [list_public_rules(self._data, split_platform(self.platform)[0], ts) for ts in moments]
 
     def knows_key(self, key: str) -> bool:
         """True when rosdep has, or had, a key of this name for any platform."""

@@ -115,3 +115,12 @@ def list_rosdep_systems(data: Snapshot) -> frozenset[str]:
     """The operating systems that rosdep has rules for."""
     counted = data.fetch("SELECT os, count(DISTINCT key) FROM rule GROUP BY os")
     return frozenset(name for name, keys in counted if keys >= _FEW_RULES and name != "*")
+
+
+@functools.lru_cache(maxsize=8)
+def list_public_rules(data: Snapshot, system: str, ts: int) -> dict[str, str]:
+    """The public rosdep rules of a moment for an operating system by key, as they are stored; targets share them."""
+    asked = "SELECT key, rule, max(ts) FROM rule WHERE os = ? AND ts <= ? GROUP BY key"
+    # Some keys stand for every operating system under the name `*`.
+    rows = (row for name in ("*", system) for row in data.fetch(asked, (name, ts)))
+    return {key: rule for key, rule, _ in rows if rule is not None}
