@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Collection
+from functools import lru_cache
 
 import msgspec
 
@@ -71,3 +72,14 @@ def normalize_library_name(name: str) -> str:
     """The name a platform library has in platform_versions.yaml."""
     lowered = name.lower()
     return _SHIPPED.library_aliases.get(lowered, lowered)
+
+
+def strip_separators(name: str) -> str:
+    """The letters and digits of a library's name, in lower case: what spellings of it have in common."""
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+@lru_cache(maxsize=10000)
+def strip_to_letters(name: str) -> str:
+    """The letters of a library's name, without what its package, key and variables differ in."""
+    return re.sub(r"[^a-z]|^lib|dev$", "", name.lower())

@@ -32,6 +32,7 @@ from ....edges.reach import walk
 from ...facts.condition import Condition
 from ...model.cmake.links import list_linked_items
 from ...model.cmake.names import MODULES
+from ...targets.platform import strip_separators
 from ...targets.surface.offers import PackageOffer
 from ...targets.symbol import Availability, Symbol
 from ..vocabulary import (
@@ -179,17 +180,17 @@ def _is_linked_otherwise(view: TargetView, name: str, items: Iterable[str]) -> b
 
 def _may_be_built(view: TargetView, package: Package, name: str) -> bool:
     """Whether a package that comes along is called like a system library, and so may have another version of it."""
-    space = _fold(name.partition("::")[0])
+    space = strip_separators(name.partition("::")[0])
     found = (one.name for one in package.build.found if one.how == "find_package")
-    return any(space in _fold(one) for one in view.list_transitive(found) if view.is_package(one))
+    return any(space in strip_separators(one) for one in view.list_transitive(found) if view.is_package(one))
 
 
 def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
     """Whether a target of a system library may come from something else than its own configuration: a find module, its
     own or of a package that is found."""
-    space = _fold(name.partition("::")[0])
+    space = strip_separators(name.partition("::")[0])
     found = [one.name for one in package.build.found if one.how == "find_package"]
-    named = [one for one in found if _fold(one) == space]
+    named = [one for one in found if strip_separators(one) == space]
     return (
         not named
         or bool(package.build.unresolved)
@@ -197,7 +198,3 @@ def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
         or any(f"Find{one}" in MODULES or one in view.workspace.find_modules for one in named)
         or any(provider.kind == "ros" for one in named for provider in view.find_cmake(one)[:1])
     )
-
-
-def _fold(name: str) -> str:
-    return name.lower().replace("-", "").replace("_", "")

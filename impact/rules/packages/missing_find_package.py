@@ -34,10 +34,10 @@ from ...model.cmake.links import list_found_names, list_given_names, stops_at_na
 from ...model.cmake.names import MODULES
 from ...model.misspelling import SpellingIndex
 from ...model.view import find_included_interface
+from ...targets.platform import strip_to_letters
 from ...targets.providers.libraries import load_libraries
 from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
-from .unset_library_variable import fold
 
 # Headers of platform libraries that the compiler finds without any find_package, by how their paths begin.
 _SYSTEM_BY_DEFAULT = (
@@ -94,8 +94,8 @@ def missing_find_package(view: TargetView, package: Package):
         )
         doubts = (stops_at_names(view) or Doubt.LUCKY, not opaque or Doubt.INCOMPLETE)
         yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
-    sought = {fold(f.name) for f in package.build.found if f.name in outside}
-    linked = {fold(link.item) for link in package.build.target_links if link.how == "link"}
+    sought = {strip_to_letters(f.name) for f in package.build.found if f.name in outside}
+    linked = {strip_to_letters(link.item) for link in package.build.target_links if link.how == "link"}
     for need in view.sort_needs(package):
         tested = need.role == "test" and bool(need.targets) and view.is_built("test") and not finds_tested
         if need.how != "include" or not (need.role == "build" or tested) or not need.certain:
@@ -107,7 +107,7 @@ def missing_find_package(view: TargetView, package: Package):
         if name is None or name in seen or name == package.name:
             continue
         ros = need.providers[0].kind == "ros"
-        stems = {fold(p.name) for p in need.providers} | {fold(need.subject.split("/")[0])}
+        stems = {strip_to_letters(p.name) for p in need.providers} | {strip_to_letters(need.subject.split("/")[0])}
         if any(a in b or b in a for a in stems for b in sought if len(a) > 2 and len(b) > 2):
             continue
         if not ros and any(a in b or b in a for a in stems for b in linked if len(a) > 2 and len(b) > 2):
@@ -174,7 +174,7 @@ def _find_vendored_libraries(view: TargetView, package: Package):
         asked = found.get(vendor)
         if asked is None or library in found or not version or not is_at_least(version, since):
             continue
-        if any(fold(link.item) == fold(library) for link in package.build.target_links):
+        if any(strip_to_letters(link.item) == strip_to_letters(library) for link in package.build.target_links):
             continue
         use = next((i for i in package.linked.includes if i.path.startswith(root) and i.targets), None)
         if use is None or not view.is_sure(use.conditions):

@@ -19,8 +19,8 @@ Not reported
 
 from ...model.cmake.links import is_opaque, list_linked_items
 from ...model.package import IncludeUse
+from ...targets.platform import strip_separators
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import normalize
 from .unlinked_library import COMPILED
 
 # Beside those that are always linked, libraries of which some headers can be used alone: another target has to show
@@ -55,7 +55,7 @@ def unlinked_beside(view: TargetView, package: Package):
             continue
         for name in users.keys() - links.keys():
             links[name] = list_linked_items(package, name) if name in targets else None
-        own = {n for n in users if any(word in normalize(item) for item in links[n] or ())}
+        own = {n for n in users if any(word in strip_separators(item) for item in links[n] or ())}
         for name, include in users.items():
             target, items = targets.get(name), links[name]
             if not own or name in own or target is None or items is None or word in seen:

@@ -25,9 +25,10 @@ Not reported
 """
 
 from ...model.cmake.build import BuildTarget
+from ...model.cmake.catkin_links import BRING_NOTHING, CatkinExports, find_linked_packages, list_linked
 from ...model.cmake.links import resolve_package
+from ...targets.platform import strip_separators
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import BRING_NOTHING, CatkinExports, find_linked_packages, list_linked, normalize
 
 COMPILED = (
     ("yaml-cpp/", "yamlcpp"),
@@ -95,18 +96,16 @@ def _collect_doubts(target: BuildTarget, testing: bool) -> tuple[Doubt, ...]:
 def _is_brought(view: TargetView, package: Package, target: str, header: str, word: str) -> bool:
     """Whether anything that a target is given links the library of a header, or may."""
     items = list_linked(package, target)
-    if items is None or any(word.removesuffix("2") in normalize(item) for item in items):
+    if items is None or any(word.removesuffix("2") in strip_separators(item) for item in items):
         return True
-    if word == "gmock" and any("gtest" in normalize(item) for item in items):
+    if word == "gmock" and any("gtest" in strip_separators(item) for item in items):
         return False
     if any(_may_bring_anything(view, package, item) for item in items):
         return True
     packages = find_linked_packages(view, package, items)
     if view.target.ros == 2:
         return view.is_met(view.find_header(header), view.list_transitive(packages))
-    exported = CatkinExports(view)
-    brought = exported.list_transitive(packages)
-    return brought is None or any(exported.may_bring(name, word) for name in brought)
+    return CatkinExports(view).list_bringing(packages, word) != set()
 
 
 def _may_bring_anything(view: TargetView, package: Package, item: str) -> bool:

@@ -19,9 +19,9 @@ Not reported
 """
 
 from ...model.cmake.build import is_for_tests
+from ...model.cmake.catkin_links import list_bringing, list_linked
 from ...targets.providers.library import OPENCV_FUNCTIONS
 from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
-from .catkin_links import CatkinExports, find_brought, list_linked
 
 # Distros whose cv_bridge hands on every library of OpenCV.
 _WITH_ALL_OF_OPENCV = frozenset({"groovy", "hydro", "indigo", "jade"})
@@ -45,7 +45,6 @@ def unlinked_opencv(view: TargetView, package: Package):
     ]
     if not calls or any("$" in f.name for f in build.found):
         return
-    exported = CatkinExports(view)
     for target in build.targets:
         if target.kind != "executable" or is_for_tests(target.conditions) or not view.is_sure(target.conditions):
             continue
@@ -53,11 +52,10 @@ def unlinked_opencv(view: TargetView, package: Package):
         if linked is None or any("opencv" in item.lower() for item in linked):
             continue
         call = next((use for use in calls if use.at.path in target.sources), None)
-        brought = find_brought(view, package, linked) if call is not None else None
-        if call is None or brought is None:
+        bringing = list_bringing(view, package, linked, "opencv") if call is not None else None
+        if call is None or bringing is None or not bringing <= {"cv_bridge", "OpenCV"}:
             continue
-        bringing = {name for name in brought if name != "OpenCV" and exported.may_bring(name, "opencv")}
-        if not bringing <= {"cv_bridge"} or (bringing and view.target.distro in _WITH_ALL_OF_OPENCV):
+        if "cv_bridge" in bringing and view.target.distro in _WITH_ALL_OF_OPENCV:
             continue
         data = {"target": target.name, "function": call.text, "library": OPENCV_FUNCTIONS[call.text]}
         yield Diagnostic(call.at, "OpenCV", package.name, data)

@@ -25,8 +25,8 @@ Not reported
 from collections.abc import Collection
 
 from ...model.cmake.links import list_linked_items, resolve_package
+from ...targets.platform import strip_separators
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
-from .catkin_links import normalize
 
 
 @rule(
@@ -67,7 +67,8 @@ def unlinked_own_library(view: TargetView, package: Package):
             if items is None or any("$" in item and resolve_package(item) not in known for item in items):
                 continue
             reached = {name, *items, *(targets[n].alias_of for n in items & targets.keys())}
-            if not definers.isdisjoint(reached) or any(normalize(n) in normalize(i) for n in libraries for i in items):
+            words = [strip_separators(item) for item in items]
+            if not definers.isdisjoint(reached) or any(strip_separators(n) in one for n in libraries for one in words):
                 continue
             users = [given for given in links.values() if given is not None and name in given]
             if definers and users and not any(definers.isdisjoint(given) for given in users):

@@ -25,9 +25,10 @@ Not reported
 from collections.abc import Iterator
 
 from ...model.cmake.build import is_for_tests
+from ...model.cmake.catkin_links import CatkinExports, find_linked_packages, list_linked
 from ...model.package import IncludeUse
+from ...targets.platform import strip_separators
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .catkin_links import CatkinExports, find_linked_packages, list_linked, normalize
 
 
 @rule(
@@ -107,7 +108,7 @@ def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         brought = exported.list_transitive(find_linked_packages(view, package, linked))
         if brought is None:
             continue
-        words = [normalize(item) for item in linked]
+        words = [strip_separators(item) for item in linked]
         for include in includes.get(target.name, ()):
             if not include.path.startswith(_COMPILED) or include.at.path not in target.sources:
                 continue  # a header may be included for what another source uses
@@ -118,7 +119,7 @@ def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             if name in brought or name in seen or name == package.name:
                 continue
             libraries = exported.list_libraries(name)
-            if not libraries or any(normalize(lib) in word for lib in (*libraries, name) for word in words):
+            if not libraries or any(strip_separators(lib) in word for lib in (*libraries, name) for word in words):
                 continue
             seen.add(name)
             data = {"target": target.name, "header": include.path}

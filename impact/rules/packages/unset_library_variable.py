@@ -23,9 +23,9 @@ Not reported
 """
 
 import re
-from functools import lru_cache
 
 from ...model.cmake.names import MODULES
+from ...targets.platform import strip_to_letters
 from ...targets.providers.library import list_variables
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
@@ -66,8 +66,8 @@ def _list_unset(view: TargetView, package: Package):
     build = package.build
     if build.unresolved or any("$" in f.name for f in build.found):
         return
-    sought = {fold(n) for f in build.found for n in (f.name, f.prefix) if n}
-    reachable = {fold(name) for name in view.list_transitive(f.name for f in build.found)}
+    sought = {strip_to_letters(n) for f in build.found for n in (f.name, f.prefix) if n}
+    reachable = {strip_to_letters(name) for name in view.list_transitive(f.name for f in build.found)}
     qt = {f.name for f in build.found if f.name.startswith("Qt")}
     seen = set()
     for use in build.uses:
@@ -77,7 +77,7 @@ def _list_unset(view: TargetView, package: Package):
         if match is None or use.name in seen or not view.is_sure(use.conditions):
             continue
         stem = match.group(1)
-        folded = fold(stem)
+        folded = strip_to_letters(stem)
         later = next((name for name in qt if name not in ("Qt", "Qt4")), "")
         if use.name == "QT_LIBRARIES" and later and qt.isdisjoint(("Qt", "Qt4")):
             seen.add(use.name)
@@ -134,7 +134,7 @@ def _is_compiled_with(view: TargetView, package: Package, variable: str, stem: s
         items = [link.item for link in target.links if link.how == "link"]
         if f"${{{variable}}}" not in items or not view.is_sure(target.conditions):
             continue
-        if any("$" not in item and fold(stem) in fold(item) for item in items):
+        if any("$" not in item and strip_to_letters(stem) in strip_to_letters(item) for item in items):
             continue
         includes = (i for i in package.linked.includes if target.name in i.targets and view.is_sure(i.conditions))
         if any((p.package or p.name) in owners for i in includes for p in view.find_header(i.path)[:1]):
@@ -148,9 +148,3 @@ def _list_prefixes(package: Package):
         if found.how == "pkg_check_modules" and found.prefix in ("REQUIRED", "QUIET"):
             data = {"prefix": found.prefix, "variable": found.name.upper().replace("-", "_")}
             yield Diagnostic(found.at, found.name, package.name, data, "prefix", (Doubt.DISTURBS,))
-
-
-@lru_cache(maxsize=10000)
-def fold(name: str) -> str:
-    """The letters of a library's name, without what its package, key and variables differ in."""
-    return re.sub(r"[^a-z]|^lib|dev$", "", name.lower())

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from ...facts import elf
 from ...facts.elf import AskedSymbolVersions, Elf, split_soname
 from ..distro.distro import DistroTarget
+from ..platform import strip_separators
 from ..version import compare
 from .loader import Loader
 from .sonames import Sonames
@@ -187,7 +188,7 @@ class DescribedLibraries(SharedLibraries):
     @cached_property
     def _released(self) -> frozenset[str]:
         """Names of ROS packages without what spelling may change, and without `vendor` and `lib`."""
-        names = (_normalize(name) for name in self._described.list_released())
+        names = (strip_separators(name) for name in self._described.list_released())
         return frozenset(name.removesuffix("vendor").removeprefix("lib") for name in names)
 
     def _is_of_ros(self, stem: str) -> bool:
@@ -198,18 +199,15 @@ class DescribedLibraries(SharedLibraries):
     def _may_be_of_ros(self, soname: str) -> bool:
         """Whether a released package may bring the library in: it is called like the library, or its beginning, or like
         the Debian package that has it."""
-        stem = _normalize(split_soname(soname)[0].removesuffix(".so").removeprefix("lib"))
-        package = _normalize(re.sub(r"[\d.]+[a-z]?\d*$", "", self._sonames.find_package(soname)).removeprefix("lib"))
-        library = _normalize(self._sonames.find_family(soname))
+        stem = strip_separators(split_soname(soname)[0].removesuffix(".so").removeprefix("lib"))
+        debian = re.sub(r"[\d.]+[a-z]?\d*$", "", self._sonames.find_package(soname))
+        package = strip_separators(debian.removeprefix("lib"))
+        library = strip_separators(self._sonames.find_family(soname))
         return any(
             name[:length] in self._released
             for name in (stem, package, library)
             for length in range(_LONG_ENOUGH, len(name) + 1)
         )
-
-
-def _normalize(name: str) -> str:
-    return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
 def _find_max(offers: frozenset[str], version: str) -> str:

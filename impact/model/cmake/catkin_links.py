@@ -4,13 +4,16 @@ What `catkin_LIBRARIES` holds is told by what the components asked for export, t
 by the build of those in the workspace, and by the stored surfaces of those that are released.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterable
 
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...model.cmake.links import is_opaque, list_linked_items, resolve_package
-from ..vocabulary import Package, TargetView
+from ..view import TargetView
+from ..workspace import Package
+from .links import is_opaque, list_linked_items, resolve_package
 
 # What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along. Kept by hand: of the
 # Ubuntu releases of ROS 1 no index of dependencies is stored (apt.json.zst begins with Debian 11).
@@ -54,6 +57,12 @@ class CatkinExports:
         found = frozenset(walk(names, lambda name: self._list_dependencies(name) or ()))
         return None if any(self._list_dependencies(name) is None for name in found) else found
 
+    def list_bringing(self, names: Iterable[str], library: str) -> set[str] | None:
+        """Which of these packages, and of all that they bring, may hand on a part of a library; None where it is not
+        known what one of them brings."""
+        found = self.list_transitive(names)
+        return None if found is None else {name for name in found if self.may_bring(name, library)}
+
     @cache_method
     def _list_dependencies(self, name: str) -> Iterable[str] | None:
         package = self._view.workspace.packages.get(name)
@@ -80,12 +89,13 @@ def list_linked(package: Package, target: str) -> set[str] | None:
     return None if any(map(is_opaque, items)) else items
 
 
-def find_brought(view: TargetView, package: Package, items: Iterable[str]) -> frozenset[str] | None:
-    """The packages of catkin that link items stand for, and all that they bring; None where that cannot be told."""
+def list_bringing(view: TargetView, package: Package, items: Iterable[str], library: str) -> set[str] | None:
+    """Which packages of catkin that link items stand for, and of all that they bring, may hand on a part of a library;
+    None where that cannot be told."""
     stems = (resolve_package(item) for item in items if "$" in item)
     if not all(stem in BRING_NOTHING or view.is_package(stem) for stem in stems):
         return None
-    return CatkinExports(view).list_transitive(find_linked_packages(view, package, items))
+    return CatkinExports(view).list_bringing(find_linked_packages(view, package, items), library)
 
 
 def find_linked_packages(view: TargetView, package: Package, items: Iterable[str]) -> set[str]:
@@ -94,7 +104,3 @@ def find_linked_packages(view: TargetView, package: Package, items: Iterable[str
     if "catkin" in names:
         names.update(f.name for f in package.build.found if f.how == "catkin")
     return {name for name in names if view.is_package(name)} - {package.name, "catkin"}
-
-
-def normalize(name: str) -> str:
-    return re.sub(r"[^a-z0-9]", "", name.lower())
