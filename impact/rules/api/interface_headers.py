@@ -3,6 +3,7 @@
 import re
 from typing import NamedTuple
 
+from ...model.absent_headers import INTERFACE_FOLDERS, find_interface_folder, generates_interfaces, is_nobody
 from ...model.misspelling import SpellingIndex
 from ...model.package import IncludeUse, is_header
 from ...model.workspace import make_snake_case
@@ -28,7 +29,6 @@ _GENERATED_HEADER = {
     1: re.compile(r"[A-Z][A-Za-z0-9]*(?<!Config)\.h\Z"),
     2: re.compile(r"(?:msg|srv|action)/[a-z][a-z0-9_]*(?<!__struct)(?<!__traits)(?<!__builder)\.hpp\Z"),
 }
-_FOLDERS = ("msg", "srv", "action")
 _CAMEL = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 _C_HEADER = re.compile(r"(?P<stem>(?P<package>\w+)/(?:msg|srv|action)/[a-z0-9_]+)\.h\Z")
 
@@ -64,26 +64,17 @@ def find_interface_fault(view: TargetView, path: str) -> Fault | None:
         fault = Fault("", {}, found) if found is not None else None
     else:
         fault = _find_never_generated(view, path)
-        if fault is None and _GENERATED_HEADER[view.target.ros].match(rest) and _is_nobody(view, head):
+        if fault is None and _GENERATED_HEADER[view.target.ros].match(rest) and is_nobody(view, head):
             fault = _find_moved(view, head, rest)
     match = _C_HEADER.match(path) if fault is None and view.target.ros == 2 else None
-    if match and _generates_interfaces(view, match["package"]):
+    if match and generates_interfaces(view, match["package"]):
         return Fault("c", {"replacement": f"{match['stem']}.hpp"})
     return fault
 
 
-def _is_nobody(view: TargetView, name: str) -> bool:
-    """Whether no package is known by a name, and none of the workspace declares one."""
-    return not (
-        view.is_package(name)
-        or view.is_private(name)
-        or any(name in view.collect_declared(p) for p in view.list_built())
-    )
-
-
 def _respell(view: TargetView, head: str, rest: str) -> Fault | None:
     """A spelling of the other generation, in another case, or without the folder."""
-    if not _generates_interfaces(view, head):
+    if not generates_interfaces(view, head):
         return None
     parts = rest.split("/")
     name = parts[-1].rsplit(".", 1)[0]
@@ -91,34 +82,13 @@ def _respell(view: TargetView, head: str, rest: str) -> Fault | None:
         if len(parts) == 1 and rest.endswith(".h") and _CAMEL.match(name):
             folder = "srv" if name.endswith(("Request", "Response")) else "msg"
             return Fault("ros 1 name", {"replacement": f"{head}/{folder}/{make_snake_case(name)}.hpp"})
-        if len(parts) == 1 and rest.endswith(".hpp") and (folder := _find_folder(view, head, name)):
+        if len(parts) == 1 and rest.endswith(".hpp") and (folder := find_interface_folder(view, head, name)):
             return Fault("folder", {"folder": f"{head}/{folder}", "replacement": f"{head}/{folder}/{rest}"})
-        if len(parts) == 2 and parts[0] in _FOLDERS and name != name.lower():
+        if len(parts) == 2 and parts[0] in INTERFACE_FOLDERS and name != name.lower():
             return Fault("case", {"replacement": f"{head}/{parts[0]}/{make_snake_case(name).replace('__', '_')}.hpp"})
-    elif len(parts) == 2 and parts[0] in _FOLDERS and rest.endswith(".hpp"):
+    elif len(parts) == 2 and parts[0] in INTERFACE_FOLDERS and rest.endswith(".hpp"):
         return Fault("ros 2 name", {"replacement": f"{head}/<Name>.h"})
     return None
-
-
-def _find_folder(view: TargetView, head: str, stem: str) -> str:
-    """The folder of the only generated header of a package with this stem; empty where the package has such a header
-    beside the folders."""
-    if head in view.workspace.packages:
-        made = {folder for folder in _FOLDERS if view.workspace.is_interface_header(head, f"{folder}/{stem}.hpp")}
-    elif view.providers.list_known_releases(head) and not view.providers.list_header_spans(head, f"{head}/{stem}.hpp"):
-        history = load_fields().find_history(head, view.target.ros)
-        made = {folder for folder in _FOLDERS if history is not None and f"{folder}/{stem}" in history.by_header}
-    else:
-        return ""
-    return made.pop() if len(made) == 1 else ""
-
-
-def _generates_interfaces(view: TargetView, name: str) -> bool:
-    """True for packages that make headers from messages, services or actions, as far as their name tells it."""
-    package = view.workspace.packages.get(name)
-    if package is not None:
-        return package.is_interface_package
-    return name.endswith(("_msgs", "_interfaces", "_srvs", "_actions")) and view.target.find_version(name) is not None
 
 
 def _find_moved(view: TargetView, head: str, rest: str) -> Fault | None:

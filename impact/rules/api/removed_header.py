@@ -27,10 +27,11 @@ Not reported
     (unknown-header reports them).
 """
 
+from ...model.absent_headers import find_misspelt, is_bridge
 from ...model.package import is_header
 from ..vocabulary import Package, TargetView, Text, rule
 from .diagnosis import build_availability_texts, diagnose
-from .included_headers import find_misspelt, get_included_headers, is_bridge
+from .included_headers import get_included_headers
 from .interface_headers import find_interface_fault
 
 

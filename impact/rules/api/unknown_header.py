@@ -27,9 +27,10 @@ Not reported
     what a later or an earlier version has (removed-header reports it).
 """
 
+from ...model.absent_headers import find_misspelt, is_bridge, is_nowhere
 from ...model.package import IncludeUse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
-from .included_headers import find_misspelt, get_included_headers, is_bridge, is_nowhere
+from .included_headers import get_included_headers
 from .interface_headers import TEXTS, collect_c_header_doubts, find_interface_fault
 
 
