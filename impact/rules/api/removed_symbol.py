@@ -29,13 +29,11 @@ Not reported
 """
 
 from collections.abc import Iterable, Iterator
-from functools import cached_property
-from typing import Literal
 
 from ...facts.condition import Condition
-from ...model.package import NameUse, is_header
+from ...model.package import NameUse
+from ...model.returned_names import ReturnedNames
 from ...targets.changes import list_excuses
-from ...targets.providers.library import include_roots
 from ...targets.providers.stdlib import has_substitute
 from ...targets.symbol import Availability
 from ...targets.version import parse
@@ -73,7 +71,7 @@ def removed_symbol(view: TargetView):
 
 def _list_reviewed(view: TargetView, package: Package, rows: ReviewedNames) -> Iterator[Diagnostic | Upcoming]:
     """What the tables of known changes tell."""
-    headers = _Headers(view, package)
+    headers = ReturnedNames(view, package)
     for use in package.linked.names:
         if "::" in use.text and use.text in rows.own:
             continue  # the workspace defines it
@@ -136,51 +134,3 @@ def _is_run(package: Package, use: NameUse) -> bool:
     if use.role != "test":
         return use.role in ("build", "run")
     return any(use.at.path in target.sources for target in package.build.targets if target.kind == "test")
-
-
-_CMAKE_NAME = {"opencv": "OpenCV", "boost": "Boost", "pcl": "PCL"}
-
-
-class _Headers:
-    """What the files of a package include: some headers bring back a name which a library took out of its usual ones
-    (`_c.h` for OpenCV's C constants)."""
-
-    def __init__(self, view: TargetView, package: Package):
-        self._view, self._package = view, package
-
-    @cached_property
-    def _included(self) -> dict[str, set[str]]:
-        """What each file includes of others, with what the package's own headers do, since any of them may come
-        before."""
-        includes = self._package.linked.includes
-        found: dict[str, set[str]] = {}
-        found[""] = shared = {i.path for i in includes if is_header(i.at.path)}
-        for include in includes:
-            found.setdefault(include.at.path, set(shared)).add(include.path)
-        return found
-
-    def bring_back(self, file: str, library: str, endings: tuple[str, ...]) -> Literal["yes", "maybe", "no"]:
-        """Whether a file has a name that a library took out, by what it includes. endings: of what brings it back."""
-        paths = self._included.get(file, self._included[""])
-        if any(self._brings(library, endings, path) for path in paths):
-            return "yes"
-        return "maybe" if any(self._may_bring(library, path) for path in paths) else "no"
-
-    def _brings(self, library: str, endings: tuple[str, ...], path: str) -> bool:
-        """True for headers that bring the name back, and for those of other packages that include one of the library's
-        that does, at whatever distance."""
-        roots = include_roots(library)
-        if path.endswith(endings) or not roots or path.startswith(roots):
-            return path.endswith(endings)
-        return any(h.startswith(roots) and h.endswith(endings) for h in self._view.machine.find_brought(path).headers)
-
-    def _may_bring(self, library: str, path: str) -> bool:
-        """True for headers of packages that depend on the changed library, and of nobody known."""
-        view = self._view
-        if path.startswith(include_roots(library) or "\0") or view.is_standard(path):
-            return False
-        providers = view.find_header(path)
-        keys = {provider.name for provider in view.find_cmake(_CMAKE_NAME.get(library, library))}
-        return not providers or any(
-            p.kind == "ros" and not keys.isdisjoint(view.list_transitive((p.name,))) for p in providers
-        )
