@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping, Set
 from functools import lru_cache
 
 from ....edges.reach import walk
@@ -129,3 +129,34 @@ def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, s
             continue
         if link.how == "ament":
             yield link.at, link.item
+
+
+def find_brought(view: TargetView, package: Package, target: str) -> tuple[frozenset[str], set[str]] | None:
+    """What comes along with all that a target is given, and the items that may stand for something else; None where
+    that cannot be told."""
+    build = package.build
+    items = list_linked_items(package, target, None)
+    if items is None:
+        return None
+    items |= _list_of_interfaces(package, items)
+    hiding, kinds = set(filter(is_opaque, items)), {t.name: t.kind for t in build.targets}
+    # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
+    # A target of the package may be called like the package, and brings none of what that declares.
+    given = {resolve_package(item) for item in (*(items - hiding - kinds.keys()), *(i for i, _ in build.include_dirs))}
+    given -= {"", package.name}
+    known = view.collect_declared(package).keys() | {f.name for f in build.found}
+    if view.unknown_contents.list_unknown(frozenset(given & known)):
+        return None  # what one of them brings is not known
+    if any(kinds.get(item) == "generated" for item in items):
+        given.update(name for made in build.generated for name, _ in made.dependencies)
+    return view.list_transitive(s for n in given for s in (n, n.lower())), hiding
+
+
+def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:
+    """The packages of the interfaces that those of the package itself rest on, whose targets bring them along."""
+    return {
+        name
+        for made in package.build.generated
+        if any(item == made.target or item.startswith(f"{made.target}__rosidl_") for item in items)
+        for name, _ in made.dependencies
+    }

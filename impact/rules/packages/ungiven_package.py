@@ -26,10 +26,10 @@ Not reported
 """
 
 import re
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Iterable, Iterator
 from functools import cache, partial
 
-from ...model.cmake.links import is_opaque, list_linked_items, may_hide, resolve_package
+from ...model.cmake.links import find_brought, is_opaque, list_linked_items, may_hide, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .include_folders import OFF_PATH, collect_folder_doubts, shares_one_folder
 
@@ -56,7 +56,7 @@ def ungiven_package(view: TargetView, package: Package):
     if any("$" in name for name in found) or package.build.finds_declared:
         return
     seen = set()
-    find_brought = cache(partial(_find_brought, view, package))
+    find_once = cache(partial(find_brought, view, package))
     for path, including, role in includes:
         providers = view.find_header(path)
         owners = {p.name for p in providers}
@@ -75,7 +75,7 @@ def ungiven_package(view: TargetView, package: Package):
         if of_folder is None or (len(providers) > 1 and Doubt.INCOMPLETE in of_folder):
             continue
         for target in including:
-            brought = find_brought(target)
+            brought = find_once(target)
             if brought is None or not owners.isdisjoint(brought[0]) or any(may_hide(item, name) for item in brought[1]):
                 continue
             seen.add(name)
@@ -84,27 +84,6 @@ def ungiven_package(view: TargetView, package: Package):
             data = {"target": target, "header": path}
             yield Diagnostic(targets[target].at, name, package.name, data, doubts=doubts)
             break
-
-
-def _find_brought(view: TargetView, package: Package, target: str) -> tuple[frozenset[str], set[str]] | None:
-    """What comes along with all that a target is given, and the items that may stand for something else; None where
-    that cannot be told."""
-    build = package.build
-    items = list_linked_items(package, target, None)
-    if items is None:
-        return None
-    items |= _list_of_interfaces(package, items)
-    hiding, kinds = set(filter(is_opaque, items)), {t.name: t.kind for t in build.targets}
-    # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
-    # A target of the package may be called like the package, and brings none of what that declares.
-    given = {resolve_package(item) for item in (*(items - hiding - kinds.keys()), *(i for i, _ in build.include_dirs))}
-    given -= {"", package.name}
-    known = view.collect_declared(package).keys() | {f.name for f in build.found}
-    if view.unknown_contents.list_unknown(frozenset(given & known)):
-        return None  # what one of them brings is not known
-    if any(kinds.get(item) == "generated" for item in items):
-        given.update(name for made in build.generated for name, _ in made.dependencies)
-    return view.list_transitive(s for n in given for s in (n, n.lower())), hiding
 
 
 def _list_off_path(
@@ -148,13 +127,3 @@ def _list_off_path(
 
 # Includes by the name of the folder itself, as in <eigen3/Eigen/Core>.
 _NAMES_FOLDER = re.compile(r"(?:eigen3|pcl-[\d.]+|bullet|OGRE|libxml2)/")
-
-
-def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:
-    """The packages of the interfaces that those of the package itself rest on, whose targets bring them along."""
-    return {
-        name
-        for made in package.build.generated
-        if any(item == made.target or item.startswith(f"{made.target}__rosidl_") for item in items)
-        for name, _ in made.dependencies
-    }
