@@ -1,6 +1,7 @@
 """The CMake of one package, interpreted across files: what is found, built, linked, generated, installed, exported."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import NamedTuple
 
 import msgspec
 
@@ -226,6 +227,17 @@ def is_for_tests(conditions: Iterable[Condition]) -> bool:
     return any("TESTING" in c.text for c in conditions)
 
 
+class WrittenPath(NamedTuple):
+    """A path in CMake. how: `source`, `test` or `read`, which have to exist, `install`, `link` or `include`. by: the
+    target or command that takes it."""
+
+    path: str
+    how: str
+    by: str
+    at: At
+    conditions: tuple[Condition, ...]
+
+
 class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What the CMake of a package says. minimum: cmake_minimum_required's version and place. standard: the highest C++
     standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with its
@@ -299,6 +311,27 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def may_add_targets(self) -> bool:
         """Whether what is not read may add targets and set variables."""
         return bool(self.unresolved) or self.builds_others or any(target.name.endswith("()") for target in self.targets)
+
+    def list_paths(self) -> Iterator[WrittenPath]:
+        """The paths of the tree that it reads, compiles, links, searches and installs."""
+        for read in self.read_elsewhere:
+            yield WrittenPath(read.path, "read", read.command, read.at, read.conditions)
+        for target in self.targets:
+            guarded = dict(target.guarded)
+            for path in target.sources if target.kind in ("executable", "library", "module", "test") else ():
+                conditions = (*target.conditions, *guarded.get(path, ()))
+                # A test whose only source is no code that is compiled runs that file.
+                alone = target.kind == "test" and target.sources == (path,)
+                how = "test" if alone and not path.endswith((".c", ".cc", ".cpp", ".cxx")) else "source"
+                yield WrittenPath(path, how, target.name, target.at, conditions)
+            for link in target.links:
+                if link.how in ("link", "include"):
+                    yield WrittenPath(link.item, link.how, target.name, link.at, link.conditions)
+        for path, at in self.include_dirs:
+            yield WrittenPath(path, "include", "", at, ())
+        for install in self.installs:
+            for path in install.items if install.kind in ("files", "programs", "directory") else ():
+                yield WrittenPath(path, "install", "", install.at, install.conditions)
 
 
 _CONDITIONAL = ("found", "targets", "installs", "exports", "generated", "uses", "links", "handed_on", "refused",

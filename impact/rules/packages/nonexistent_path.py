@@ -32,11 +32,9 @@ Not reported
 import posixpath
 import re
 from collections.abc import Iterator
-from typing import NamedTuple
 
-from ...facts.condition import Condition
-from ...model.cmake.build import is_for_tests
-from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from ...model.cmake.build import WrittenPath, is_for_tests
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .absent_paths import is_absent
 from .install_rules import list_places
 
@@ -65,7 +63,7 @@ _CORRECT = "correct or remove the path"
 def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     yield from _list_opened(view, package)
     seen: set[str] = set()
-    for use in _list_paths(package):
+    for use in package.build.list_paths():
         kind, subject = _find_fault(view, package, use)
         if not kind or not view.applies(use.conditions):
             continue
@@ -84,44 +82,11 @@ def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]
         yield Diagnostic(use.at, subject, package.name, {"by": use.by}, kind, doubts)
 
 
-class _Path(NamedTuple):
-    """A path in CMake. how: `source`, `test` or `read`, which have to exist, `install`, `link` or `include`. by: the
-    target or command that takes it."""
-
-    path: str
-    how: str
-    by: str
-    at: At
-    conditions: tuple[Condition, ...]
-
-
-def _list_paths(package: Package) -> Iterator[_Path]:
-    build = package.build
-    for read in build.read_elsewhere:
-        yield _Path(read.path, "read", read.command, read.at, read.conditions)
-    for target in build.targets:
-        guarded = dict(target.guarded)
-        for path in target.sources if target.kind in ("executable", "library", "module", "test") else ():
-            conditions = (*target.conditions, *guarded.get(path, ()))
-            # A test whose only source is no code that is compiled runs that file.
-            alone = target.kind == "test" and target.sources == (path,)
-            how = "test" if alone and not path.endswith((".c", ".cc", ".cpp", ".cxx")) else "source"
-            yield _Path(path, how, target.name, target.at, conditions)
-        for link in target.links:
-            if link.how in ("link", "include"):
-                yield _Path(link.item, link.how, target.name, link.at, link.conditions)
-    for path, at in build.include_dirs:
-        yield _Path(path, "include", "", at, ())
-    for install in build.installs:
-        for path in install.items if install.kind in ("files", "programs", "directory") else ():
-            yield _Path(path, "install", "", install.at, install.conditions)
-
-
 _LIBRARY = re.compile(r"/(?:usr|opt|lib)/.+\.(?:so[\d.]*|a)\Z")
 _HOME = re.compile(r"(?:/home|/Users)/[\w.-]+/|/root/|[A-Za-z]:[/\\]")
 
 
-def _find_fault(view: TargetView, package: Package, use: _Path) -> tuple[str, str]:
+def _find_fault(view: TargetView, package: Package, use: WrittenPath) -> tuple[str, str]:
     """What is wrong with a path, as the kind of a text and the subject, both empty where nothing is."""
     path = posixpath.normpath(use.path)
     if _HOME.match(path) or (use.how == "link" and _LIBRARY.match(path)):
