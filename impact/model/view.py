@@ -54,6 +54,9 @@ def make_sort_key(need: Need) -> tuple:
     return (_ROLE[need.role], not need.certain, not need.required, _HOW[need.how], need.at.path, need.at.line)
 
 
+# What a package that generates messages hands on to whoever uses them.
+_RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
+_OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
 _DEFINED = re.compile(r"\bDEFINED ENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}")
 
 
@@ -80,6 +83,19 @@ class TargetView(WorkspaceOnTarget):
     def sort_needs(self, package: Package) -> tuple[Need, ...]:
         """The same, what is surest to break first."""
         return tuple(sorted(self.list_needs(package), key=make_sort_key))
+
+    def is_circular(self, package: Package, name: str) -> bool:
+        """True when what would be declared comes with the package itself, or is of the workspace and needs it."""
+        other = self.workspace.packages.get(name)
+        if other is None:
+            return package.name in self.list_transitive([name])
+        return package.name in self.build_environment(other) or any(
+            provider.name == package.name for need in self.list_needs(other) for provider in need.providers[:1]
+        )
+
+    def generates_header(self, name: str, header: str) -> bool:
+        """Whether a package makes the header of an interface, which no tree of the released package shows."""
+        return bool(_OF_INTERFACE.match(header)) and not _RUNTIMES.isdisjoint(self.list_installed_with(name))
 
     def _collect(self, package: Package) -> Iterator[Need]:
         linked = package.linked

@@ -18,19 +18,6 @@ TEST_HEADERS = ("gtest/", "gmock/")
 """How the headers begin that macros which make tests bring along."""
 # Debian packages of libraries: `libgazebo11-dev`, `libqt5core5a`.
 _LIBRARY = re.compile(r"lib|.*-dev\Z")
-# What a package that generates messages hands on to whoever uses them.
-_RUNTIMES = frozenset({"message_runtime", "message_generation", "rosidl_default_runtime"})
-_OF_INTERFACE = re.compile(r"[\w-]+/(?:[A-Z]\w*\.h|(?:msg|srv|action)/[a-z]\w*\.hpp)\Z")
-
-
-def is_circular(view: TargetView, package: Package, name: str) -> bool:
-    """True when what would be declared comes with the package itself, or is of the workspace and needs it."""
-    other = view.workspace.packages.get(name)
-    if other is None:
-        return package.name in view.list_transitive([name])
-    return package.name in view.build_environment(other) or any(
-        provider.name == package.name for need in view.list_needs(other) for provider in need.providers[:1]
-    )
 
 
 def collect_missing_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:
@@ -101,7 +88,7 @@ def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, nam
         return (Doubt.EXAMPLE,)
     if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
         return (Doubt.DISPENSABLE,)
-    if is_circular(view, package, name):
+    if view.is_circular(package, name):
         return (Doubt.DISPENSABLE,)
     # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
     wanted = need.required or (need.how == "launch" and name in view.workspace.packages)
@@ -119,14 +106,14 @@ def _collect_include_doubts(view: TargetView, package: Package, need: Need, name
         passed_on = need.public and first.kind == "ros" and not need.subject.startswith(TEST_HEADERS)
         if need.role == "test":
             return (Doubt.TEST,)
-        if not passed_on or is_circular(view, package, name):
+        if not passed_on or view.is_circular(package, name):
             return (Doubt.UNCOMPILED,)
         return () if _stops_another(view, package, need) else (Doubt.DISTURBS,)
     doubts = (*_collect_unknown_doubts(view, package, need, name), *collect_compile_doubts(view, package, need))
     # By its name alone it is theirs: a header that lies beside others, or one that the release is known to lack.
     if not first.sure and first.kind == "system":
         return (*doubts, Doubt.AMBIGUOUS)
-    if not first.sure and not is_generated(view, first.name, need.subject):
+    if not first.sure and not view.generates_header(first.name, need.subject):
         return doubts if view.has_released_header(first.name, need.subject) is not False else (*doubts, Doubt.AMBIGUOUS)
     return doubts
 
@@ -142,11 +129,6 @@ def _collect_unknown_doubts(view: TargetView, package: Package, need: Need, name
         return (Doubt.INCOMPLETE,)
     together = need.role == "test" and not view.roles.farm_makes_tests
     return (Doubt.LUCKY,) if together and view.is_met(need.providers, view.brought_to_workspace) else ()
-
-
-def is_generated(view: TargetView, name: str, header: str) -> bool:
-    """True for the header of an interface, which no tree of the released package shows."""
-    return bool(_OF_INTERFACE.match(header)) and not _RUNTIMES.isdisjoint(view.list_installed_with(name))
 
 
 def _stops_another(view: TargetView, package: Package, need: Need) -> bool:

@@ -7,7 +7,7 @@ from ....edges.memory import cache_in_derived
 from ...model.cmake.links import list_exported_targets, resolve_package
 from ...targets.providers.libraries import load_libraries
 from ..vocabulary import Declare, Need, Package, Remove, TargetView
-from .clean_machine import TEST_HEADERS, is_circular
+from .clean_machine import TEST_HEADERS
 
 # What is exported is installed for dependants; bloom's Build-Depends of the package itself lack it.
 _FOR_BUILD = frozenset({"build", "buildtool"})
@@ -110,7 +110,7 @@ def fix_kind(view: TargetView, package: Package, name: str, tag: str, kinds: Set
     """Declares a name for more than it is declared for. What is declared for tests alone is declared anew, since
     `depend` beside `test_depend` says one thing twice."""
     path = package.linked.manifest_path
-    if is_circular(view, package, name):
+    if view.is_circular(package, name):
         return ()
     if kinds == {"test"} and tag == "depend":
         return (Remove(path, name, "test_depend"), Declare(path, name, tag))

@@ -19,7 +19,7 @@ Not reported
 """
 
 from ..vocabulary import Diagnostic, Need, Package, TargetView, make_sort_key, rule
-from .clean_machine import is_chance, is_circular, is_generated
+from .clean_machine import is_chance
 from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, list_sources, make_texts
 
 _USED = frozenset(("include", "import", "find_package", "component"))
@@ -47,8 +47,8 @@ def _find_first(view: TargetView, package: Package, name: str, needs: list[Need]
     """The first direct use of a ROS package that is sure to be met."""
     used = [need for need in needs if need.how in _USED and need.role in ("build", "run") and need.certain]
     direct = (need for need in used if need.required and need.subject not in _TOOLS and need.providers[0].kind == "ros"
-              and (need.providers[0].sure or is_generated(view, need.providers[0].name, need.subject)))  # fmt: skip
+              and (need.providers[0].sure or view.generates_header(need.providers[0].name, need.subject)))  # fmt: skip
     first = min(direct, key=make_sort_key, default=None)
-    if first is None or is_chance(view, package, first, name) or is_circular(view, package, name):
+    if first is None or is_chance(view, package, first, name) or view.is_circular(package, name):
         return None
     return first

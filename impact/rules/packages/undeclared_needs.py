@@ -5,7 +5,7 @@ from typing import NamedTuple
 from ....edges.memory import cache_in_derived
 from ...model.misspelling import fold_name, is_one_edit
 from ..vocabulary import Declare, Need, Package, TargetView, Text, translate_tag
-from .clean_machine import TEST_HEADERS, is_circular
+from .clean_machine import TEST_HEADERS
 
 _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 DECLARE = "add `<{tag}>{subject}</{tag}>`[[ and `<{also}>{subject}</{also}>`]] to {manifest}"
@@ -104,7 +104,7 @@ def declare_need(view: TargetView, package: Package, need: Need, name: str) -> t
         for d in view.collect_declared(package)
     ):
         return ()
-    if is_circular(view, package, name) or not view.is_available(name):
+    if view.is_circular(package, name) or not view.is_available(name):
         return ()
     return (Declare(package.linked.manifest_path, name, _tag(need)),)
 
