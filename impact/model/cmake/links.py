@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import posixpath
 import re
-from collections.abc import Container, Iterable, Iterator, Mapping, Set
+from collections.abc import Container, Iterable, Iterator, Mapping
 from functools import lru_cache
 
 from ....edges.reach import walk
@@ -11,6 +12,7 @@ from ...targets.version import is_at_least
 from ..view import TargetView
 from ..workspace import Package
 from .build import At, BuildTarget, Link, is_for_tests
+from .names import MODULES
 
 _OF_PACKAGE = re.compile(r"\$\{([^${}]+?)_(?:LIBRARIES|TARGETS|INCLUDE_DIRS?|LIBRARY|LIBS|EXPORTED_TARGETS)\}")
 
@@ -138,7 +140,13 @@ def find_brought(view: TargetView, package: Package, target: str) -> tuple[froze
     items = list_linked_items(package, target, None)
     if items is None:
         return None
-    items |= _list_of_interfaces(package, items)
+    # Targets of the package's own interfaces bring along the packages that these rest on.
+    items |= {
+        name
+        for made in build.generated
+        if any(item == made.target or item.startswith(f"{made.target}__rosidl_") for item in items)
+        for name, _ in made.dependencies
+    }
     hiding, kinds = set(filter(is_opaque, items)), {t.name: t.kind for t in build.targets}
     # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
     # A target of the package may be called like the package, and brings none of what that declares.
@@ -152,11 +160,25 @@ def find_brought(view: TargetView, package: Package, target: str) -> tuple[froze
     return view.list_transitive(s for n in given for s in (n, n.lower())), hiding
 
 
-def _list_of_interfaces(package: Package, items: Set[str]) -> set[str]:
-    """The packages of the interfaces that those of the package itself rest on, whose targets bring them along."""
-    return {
-        name
-        for made in package.build.generated
-        if any(item == made.target or item.startswith(f"{made.target}__rosidl_") for item in items)
-        for name, _ in made.dependencies
-    }
+def describe_finding(view: TargetView, key: str, header: str) -> str:
+    """The call by which CMake finds the library that a key installs, by CMake's own module, the library's configuration
+    or pkg-config, where that is called as the key, its package or the header is; empty where there is none."""
+    stems = [re.sub(r"\Alib|-dev\Z", "", name) for name in (key, *sorted(view.list_debs(key)))]
+    stems.append(posixpath.splitext(header.partition("/")[0])[0])
+    for name in (name for stem in stems for name in view.providers.list_spellings(stem)):
+        known = view.find_cmake(name) if f"Find{name}" in MODULES else view.providers.find_installed_cmake(name)
+        if any(p.name == key for p in known):
+            return f"find_package({name} REQUIRED)"
+    for name in (name for stem in stems for name in (stem, f"lib{stem}")):
+        if any(p.name == key for p in view.providers.find_pkgconfig(name)):
+            return f"pkg_check_modules({name} REQUIRED IMPORTED_TARGET {name})"
+    return ""
+
+
+def list_given_items(package: Package, names: Container[str]) -> Iterator[str]:
+    """What targets of a package are given, themselves or as all are. names: of these targets."""
+    yield from (item for item, _ in package.build.include_dirs)
+    yield from (link.item for link in package.build.links)
+    for target in package.build.targets:
+        if target.name in names:
+            yield from (link.item for link in target.links)

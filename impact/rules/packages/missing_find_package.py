@@ -25,19 +25,20 @@ Not reported
     ament_lint_auto or ament_auto finds what is declared for them.
 """
 
-import posixpath
-import re
-from collections.abc import Iterator
-
 from ...model.cmake.build import is_for_tests
-from ...model.cmake.links import list_found_names, list_given_names, stops_at_names
-from ...model.cmake.names import MODULES
+from ...model.cmake.links import (
+    describe_finding,
+    list_found_names,
+    list_given_items,
+    list_given_names,
+    stops_at_names,
+)
 from ...model.misspelling import SpellingIndex
 from ...model.view import find_included_interface
 from ...targets.platform import strip_to_letters
 from ...targets.providers.libraries import load_libraries
 from ...targets.version import is_at_least
-from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 # Headers of platform libraries that the compiler finds without any find_package, by how their paths begin.
 _SYSTEM_BY_DEFAULT = (
@@ -120,34 +121,10 @@ def missing_find_package(view: TargetView, package: Package):
         counts = name in view.collect_declared(package) and ros and not header_only
         doubts = (_find_include_doubt(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
         folder = "" if ros or not shipped.intersection(need.targets) else load_libraries().find_folder(need.subject)
-        if folder and not any(folder in item or "$" in item for item in _list_given(package, need)):
+        if folder and not any(folder in item or "$" in item for item in list_given_items(package, need.targets)):
             doubts = (Doubt.INCOMPLETE,)
-        data = {"header": need.subject, "how": "" if ros else _describe_finding(view, name, need.subject)}
+        data = {"header": need.subject, "how": "" if ros else describe_finding(view, name, need.subject)}
         yield Diagnostic(need.at, name, package.name, data, "included" if ros else "library", doubts)
-
-
-def _describe_finding(view: TargetView, key: str, header: str) -> str:
-    """The call by which CMake finds the library that a key installs, by CMake's own module, the library's configuration
-    or pkg-config, where that is called as the key, its package or the header is; empty where there is none."""
-    stems = [re.sub(r"\Alib|-dev\Z", "", name) for name in (key, *sorted(view.list_debs(key)))]
-    stems.append(posixpath.splitext(header.partition("/")[0])[0])
-    for name in (name for stem in stems for name in view.providers.list_spellings(stem)):
-        known = view.find_cmake(name) if f"Find{name}" in MODULES else view.providers.find_installed_cmake(name)
-        if any(p.name == key for p in known):
-            return f"find_package({name} REQUIRED)"
-    for name in (name for stem in stems for name in (stem, f"lib{stem}")):
-        if any(p.name == key for p in view.providers.find_pkgconfig(name)):
-            return f"pkg_check_modules({name} REQUIRED IMPORTED_TARGET {name})"
-    return ""
-
-
-def _list_given(package: Package, need: Need) -> Iterator[str]:
-    """What the targets that include a header are given, themselves or all targets."""
-    yield from (item for item, _ in package.build.include_dirs)
-    yield from (link.item for link in package.build.links)
-    for target in package.build.targets:
-        if target.name in need.targets:
-            yield from (link.item for link in target.links)
 
 
 def _find_include_doubt(view: TargetView, need) -> Doubt | None:
