@@ -12,7 +12,9 @@ from collections.abc import Iterator
 from functools import cached_property, lru_cache
 
 from ...edges.memory import cache_method
+from ..targets.platform import strip_separators
 from ..targets.target import Provider
+from .cmake.names import MODULES
 from .on_target import INTERFACES, WorkspaceOnTarget
 from .workspace import Package
 
@@ -93,6 +95,26 @@ class UnknownContents:
         that was not read, such as a submodule."""
         made = self._list_made_apart(package)
         return bool(made) and any(part.startswith(made) for part in re.split(r"/|::", wanted.lower()))
+
+    def may_make_target(self, package: Package, name: str) -> bool:
+        """Whether a target of a system library may come from something else than its own configuration: a find module,
+        its own or of a package that is found."""
+        space = strip_separators(name.partition("::")[0])
+        named = [f.name for f in package.build.found if f.how == "find_package" and strip_separators(f.name) == space]
+        return (
+            not named
+            or bool(package.build.unresolved)
+            or self.is_made_apart(package, name)
+            or any(f"Find{one}" in MODULES or one in self._view.workspace.find_modules for one in named)
+            or any(provider.kind == "ros" for one in named for provider in self._view.find_cmake(one)[:1])
+        )
+
+    def may_build_library(self, package: Package, name: str) -> bool:
+        """Whether a package that comes along is called like the library of a target, so that it may have another
+        version of it."""
+        space = strip_separators(name.partition("::")[0])
+        along = self._view.list_transitive(f.name for f in package.build.found if f.how == "find_package")
+        return any(space in strip_separators(one) for one in along if self._view.is_package(one))
 
     def is_of_submodule(self, name: str) -> bool:
         """Whether a package is called after a folder of the workspace that was not read, which most likely holds it."""

@@ -31,9 +31,6 @@ from collections.abc import Iterable, Iterator
 from ....edges.reach import walk
 from ...facts.condition import Condition
 from ...model.cmake.links import list_linked_items
-from ...model.cmake.names import MODULES
-from ...targets.platform import strip_separators
-from ...targets.surface.offers import PackageOffer
 from ...targets.symbol import Availability, Symbol
 from ..vocabulary import (
     At,
@@ -116,8 +113,8 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
         lost = find_missing(view, kind, name, packages, conditions)
         if lost is None:
             continue
-        if not (lost.library and _may_be_made(view, package, name)):
-            alone = not lost.library or not _may_be_built(view, package, name)
+        if not (lost.library and view.unknown_contents.may_make_target(package, name)):
+            alone = not lost.library or not view.unknown_contents.may_build_library(package, name)
             doubts = (certain or Doubt.CONDITIONAL, alone or Doubt.INCOMPLETE)
             yield _diagnose(view, package, lost, at, name, doubts)
 
@@ -143,7 +140,7 @@ def _list_emptied(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             if link.how != "link" or link.item != f"${{{name}_LIBRARIES}}" or link.item in seen:
                 continue
             offer = view.offers.find_package(name) if name not in view.workspace.may_have else None
-            if offer is None or not view.is_sure(link.conditions) or not _exports_targets_alone(offer):
+            if offer is None or not view.is_sure(link.conditions) or not offer.exports_targets_alone:
                 continue
             items = list_linked_items(package, target.name)
             if items is None or _is_linked_otherwise(view, name, items):
@@ -156,18 +153,6 @@ def _list_emptied(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             yield Diagnostic(link.at, link.item, package.name, data, "emptied", (Doubt.INCOMPLETE,))
 
 
-def _exports_targets_alone(offer: PackageOffer) -> bool:
-    """Whether a package fills no variable with its libraries here, and does in another version."""
-    build = offer.build
-    if build.libraries or build.variables or any(part in ("libraries", "targets") for part, _ in build.unknown):
-        return False
-    if not any(target.kind == "library" and target.sure for target in build.targets):
-        return False
-    history = offer.history
-    others = (history.build(version, ("libraries",)) for version in history.versions if version != offer.stored)
-    return any(other is not None and other.libraries for other in others)
-
-
 def _is_linked_otherwise(view: TargetView, name: str, items: Iterable[str]) -> bool:
     """Whether something else than the variables of packages that a target is linked to may bring a package."""
     known = [item for item in items if "$" not in item]
@@ -176,25 +161,3 @@ def _is_linked_otherwise(view: TargetView, name: str, items: Iterable[str]) -> b
         return True
     brought = walk(packages, lambda one: view.offers.list_exports(one) or ())
     return name in brought or any(one in view.workspace.packages for one in packages)
-
-
-def _may_be_built(view: TargetView, package: Package, name: str) -> bool:
-    """Whether a package that comes along is called like a system library, and so may have another version of it."""
-    space = strip_separators(name.partition("::")[0])
-    found = (one.name for one in package.build.found if one.how == "find_package")
-    return any(space in strip_separators(one) for one in view.list_transitive(found) if view.is_package(one))
-
-
-def _may_be_made(view: TargetView, package: Package, name: str) -> bool:
-    """Whether a target of a system library may come from something else than its own configuration: a find module, its
-    own or of a package that is found."""
-    space = strip_separators(name.partition("::")[0])
-    found = [one.name for one in package.build.found if one.how == "find_package"]
-    named = [one for one in found if strip_separators(one) == space]
-    return (
-        not named
-        or bool(package.build.unresolved)
-        or view.unknown_contents.is_made_apart(package, name)
-        or any(f"Find{one}" in MODULES or one in view.workspace.find_modules for one in named)
-        or any(provider.kind == "ros" for one in named for provider in view.find_cmake(one)[:1])
-    )

@@ -190,6 +190,17 @@ class PackageOffer:
 
         return self.history.build(self.stored) or BuildSurface(self.package)
 
+    @property
+    def exports_targets_alone(self) -> bool:
+        """Whether it fills no variable with its libraries here, and does in another version."""
+        build, history = self.build, self.history
+        if build.libraries or build.variables or any(part in ("libraries", "targets") for part, _ in build.unknown):
+            return False
+        if not any(target.kind == "library" and target.sure for target in build.targets):
+            return False
+        others = (history.build(version, ("libraries",)) for version in history.versions if version != self.stored)
+        return any(other is not None and other.libraries for other in others)
+
     @cached_property
     def parameters(self) -> dict[str, str | None]:
         """The parameters that the stored version declares, with their defaults, as in Surface."""
