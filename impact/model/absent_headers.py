@@ -67,13 +67,9 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
         return False  # a folder of the machine
     if view.unknown_contents.may_hold(package, path.lstrip("./")):
         return False
-    return path.startswith(".") or all(_has_known_headers(view, one) for one in _list_direct(view, package))
-
-
-def _list_direct(view: TargetView, package: Package) -> set[str]:
-    """What a package declares and finds itself."""
-    passed = {link.item for link in package.build.target_links if link.how == "ament"}
-    return {*view.collect_declared(package), *(one.name for one in package.build.found), *passed}
+    passed = (link.item for link in build.target_links if link.how == "ament")
+    direct = {*view.collect_declared(package), *(one.name for one in build.found), *passed}
+    return path.startswith(".") or all(_has_known_headers(view, one) for one in direct)
 
 
 def _has_known_headers(view: TargetView, name: str) -> bool:

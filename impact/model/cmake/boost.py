@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Set
 from typing import NamedTuple
 
+from ....edges.memory import cache_in_derived
 from ...targets.providers.library import BOOST_BROUGHT, BOOST_COMPILED, BOOST_OF_ROSCPP
 from ..view import TargetView
 from ..workspace import Package
@@ -29,6 +30,7 @@ def list_asked_components(package: Package) -> Set[str] | None:
     return frozenset(components) if found else None
 
 
+@cache_in_derived
 def find_linked_boost(view: TargetView, package: Package, target: str, asked: Set[str]) -> LinkedBoost | None:
     """What a target is linked to, itself or through targets of its package; None when that cannot be seen."""
     items = list_linked_items(package, target)

@@ -7,6 +7,7 @@ import re
 from collections.abc import Container, Iterable, Iterator, Mapping
 from functools import lru_cache
 
+from ....edges.memory import cache_in_derived
 from ....edges.reach import walk
 from ...targets.version import is_at_least
 from ..view import TargetView
@@ -133,6 +134,7 @@ def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, s
             yield link.at, link.item
 
 
+@cache_in_derived
 def find_brought(view: TargetView, package: Package, target: str) -> tuple[frozenset[str], set[str]] | None:
     """What comes along with all that a target is given, and the items that may stand for something else; None where
     that cannot be told."""

@@ -26,13 +26,7 @@ Not reported
 """
 
 from ...model.cmake.build import is_for_tests
-from ...model.cmake.links import (
-    describe_finding,
-    list_found_names,
-    list_given_items,
-    list_given_names,
-    stops_at_names,
-)
+from ...model.cmake.links import describe_finding, list_found_names, list_given_items, list_given_names, stops_at_names
 from ...model.misspelling import SpellingIndex
 from ...model.view import find_included_interface
 from ...targets.platform import strip_to_letters
@@ -96,7 +90,7 @@ def missing_find_package(view: TargetView, package: Package):
         doubts = (stops_at_names(view) or Doubt.LUCKY, not opaque or Doubt.INCOMPLETE)
         yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
     sought = {strip_to_letters(f.name) for f in package.build.found if f.name in outside}
-    linked = {strip_to_letters(link.item) for link in package.build.target_links if link.how == "link"}
+    linked = sought | {strip_to_letters(link.item) for link in package.build.target_links if link.how == "link"}
     for need in view.sort_needs(package):
         tested = need.role == "test" and bool(need.targets) and view.is_built("test") and not finds_tested
         if need.how != "include" or not (need.role == "build" or tested) or not need.certain:
@@ -109,9 +103,8 @@ def missing_find_package(view: TargetView, package: Package):
             continue
         ros = need.providers[0].kind == "ros"
         stems = {strip_to_letters(p.name) for p in need.providers} | {strip_to_letters(need.subject.split("/")[0])}
-        if any(a in b or b in a for a in stems for b in sought if len(a) > 2 and len(b) > 2):
-            continue
-        if not ros and any(a in b or b in a for a in stems for b in linked if len(a) > 2 and len(b) > 2):
+        near_by = sought if ros else linked
+        if any(a in b or b in a for a in stems for b in near_by if len(a) > 2 and len(b) > 2):
             continue
         header_only = ros and view.target.ros == 1 and find_included_interface(view, need.subject) is not None
         named = {p.name for p in need.providers}

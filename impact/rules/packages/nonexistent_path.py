@@ -138,14 +138,10 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         if not _OPENED.search(name) or "$" in name or name.startswith(".."):
             continue
         path = posixpath.join(owner.path, name)
-        known = owner.build.files and not owner.build.unresolved
-        if known and is_absent(view, owner, path) and not _is_renamed(owner, name):
+        if not owner.build.files or owner.build.unresolved or not is_absent(view, owner, path):
+            continue
+        places = list_places(owner, owner.build.installs)
+        if places is not None and f"share/{owner.name}/{name}" not in places:  # as which another file is installed
             together = (Together(f"no {name} in {owner.name}", everywhere=True),)
             data = {"by": owner.name}
             yield Diagnostic(use.at, name, package.name, data, "opened", (Doubt.DISTURBS,), together=together)
-
-
-def _is_renamed(owner: Package, name: str) -> bool:
-    """Whether an install rule puts, or may put, a file to a place of the share folder."""
-    places = list_places(owner, owner.build.installs)
-    return places is None or f"share/{owner.name}/{name}" in places

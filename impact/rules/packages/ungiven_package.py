@@ -27,7 +27,6 @@ Not reported
 
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache, partial
 
 from ...model.cmake.links import find_brought, is_opaque, list_linked_items, may_hide, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
@@ -56,7 +55,6 @@ def ungiven_package(view: TargetView, package: Package):
     if any("$" in name for name in found) or package.build.finds_declared:
         return
     seen = set()
-    find_once = cache(partial(find_brought, view, package))
     for path, including, role in includes:
         providers = view.find_header(path)
         owners = {p.name for p in providers}
@@ -75,7 +73,7 @@ def ungiven_package(view: TargetView, package: Package):
         if of_folder is None or (len(providers) > 1 and Doubt.INCOMPLETE in of_folder):
             continue
         for target in including:
-            brought = find_once(target)
+            brought = find_brought(view, package, target)
             if brought is None or not owners.isdisjoint(brought[0]) or any(may_hide(item, name) for item in brought[1]):
                 continue
             seen.add(name)

@@ -68,7 +68,6 @@ def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Itera
     """Headers of compiled Boost libraries in targets that nothing given to them links the component to."""
     boost = view.target.find_library("boost") or ""
     targets = {t.name: t for t in package.build.targets}
-    given: dict[str, LinkedBoost | None] = {}
     seen = set()
     for include in package.linked.includes:
         component = find_compiled_component(include.path, boost)
@@ -79,9 +78,7 @@ def _list_unlinked(view: TargetView, package: Package, asked: Set[str]) -> Itera
         for name in include.targets:
             if name not in targets or not view.is_sure(targets[name].conditions):
                 continue
-            if name not in given:
-                given[name] = find_linked_boost(view, package, name, asked)
-            known = given[name]
+            known = find_linked_boost(view, package, name, asked)
             if known is None or component in known.linked:
                 continue
             own = include.role == "build" and include.at.path in targets[name].sources

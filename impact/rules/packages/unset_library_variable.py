@@ -106,13 +106,10 @@ def _collect_doubts(view: TargetView, package: Package, variable: str, module: s
     owners = {p.package or p.name for p in providers}
     if not _is_compiled_with(view, package, variable, stem, owners) or _sets_others(view, package):
         return (Doubt.INCOMPLETE,)
-    return (Doubt.LUCKY,) if _brings(view, package, providers[0].package) else ()
-
-
-def _brings(view: TargetView, package: Package, library: str) -> bool:
-    """True where the package of another library that is found depends on this one's, so that it may pass it on."""
+    # Where the package of another library that is found depends on this one's, it may pass it on.
     found = {p.package for f in package.build.found for p in view.find_cmake(f.name)[:1] if p.kind == "system"}
-    return any(library in view.apt.list_added(name) for name in found - {library, ""})
+    library = providers[0].package
+    return (Doubt.LUCKY,) if any(library in view.apt.list_added(name) for name in found - {library, ""}) else ()
 
 
 def _sets_others(view: TargetView, package: Package) -> bool:
