@@ -117,7 +117,7 @@ def _find_never_generated(view: TargetView, path: str) -> Fault | None:
 
 def collect_c_header_doubts(view: TargetView, package: Package, include: IncludeUse) -> tuple[Doubt, ...] | None:
     """What speaks against an error where a file includes a header of C; None where the file may be about C."""
-    beside = {i.path for i in package.linked.includes if i.at.path == include.at.path} - {include.path}
+    beside = frozenset(i.path for i in package.linked.includes if i.at.path == include.at.path) - {include.path}
     if include.role == "aside" or include.path + "pp" in beside:
         return None
     if not any(path.startswith("rclcpp") for path in beside):
@@ -126,7 +126,6 @@ def collect_c_header_doubts(view: TargetView, package: Package, include: Include
     if own or not is_header(include.at.path) or not view.is_sure(include.conditions):
         return (Doubt.UNCOMPILED,)  # what the package's own headers bring along is not followed
     machine, wanted = view.machine, include.path + "pp"
-    known = frozenset(beside)
-    unknown = [path for path in machine.list_unknown_headers(known) if path in known and not view.is_standard(path)]
-    brought = machine.find_bits((wanted,)) & machine.compute_mask(known)
+    unknown = [path for path in machine.list_unknown_headers(beside) if path in beside and not view.is_standard(path)]
+    brought = machine.find_bits((wanted,)) & machine.compute_mask(beside)
     return (Doubt.UNCOMPILED,) if unknown or brought else (Doubt.INCOMPLETE,)

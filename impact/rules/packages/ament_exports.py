@@ -31,12 +31,10 @@ def read_ament_exports(view: TargetView, package: Package) -> AmentExports | Non
     handed = {f.name for f in package.build.handed_on}
     if package.build.ament_package is None:
         written = package.build.catkin_package is None and any(i.kind == "export" for i in package.build.installs)
+        if not handed or not written:
+            return None
         near = {provider.name for name in handed for provider in view.find_cmake(name)[:1]}
-        return (
-            AmentExports((), frozenset(), frozenset(handed) | view.list_transitive(near))
-            if handed and written
-            else None
-        )
+        return AmentExports((), frozenset(), frozenset(handed) | view.list_transitive(near))
     exports = package.build.exports
     dependencies = frozenset(e.item for e in exports if e.how == "ament_export_dependencies")
     if not exports_something(exports) or any("$" in name for name in dependencies):

@@ -93,14 +93,11 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
                 continue
             seen.add(known.name)
             item = link.item if link.how == "link" else known.name
-            doubts = _collect_passed_on_doubts(view, package, target, link, known.name)
+            kind, doubts = "link", _collect_passed_on_doubts(view, package, target, link, known.name)
             data = {"target": target.name, "item": item}
             if package.build.ament_package is None:
-                yield Diagnostic(
-                    link.at, known.name, package.name, data, "written", (Doubt.DISTURBS,), together=together
-                )
-                continue
-            yield Diagnostic(link.at, known.name, package.name, data, "link", doubts, together=together)
+                kind, doubts = "written", (Doubt.DISTURBS,)
+            yield Diagnostic(link.at, known.name, package.name, data, kind, doubts, together=together)
 
 
 def _collect_passed_on_doubts(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:

@@ -95,9 +95,8 @@ def _list_directories(view: TargetView, package: Package):
             continue
         item = posixpath.normpath(export.item)
         inside = package.strip_path(item) if package.path and item.startswith(package.path + "/") else item
-        if inside.startswith("..") or not is_absent(
-            view, package, posixpath.normpath(posixpath.join(package.path, inside))
-        ):
+        path = posixpath.normpath(posixpath.join(package.path, inside))
+        if inside.startswith("..") or not is_absent(view, package, path):
             continue
         yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
 
@@ -166,11 +165,7 @@ def _list_of_catkin(view: TargetView, package: Package):
 
 def _is_own(view: TargetView, package: Package, library: str) -> bool:
     """True for the name of a library that can only be one of the package's own: CMake finds those of the system."""
-    if (
-        library.startswith("boost_")
-        or view.providers.find_pkgconfig(library)
-        or view.providers.find_pkgconfig(f"lib{library}")
-    ):
+    if library.startswith("boost_") or any(map(view.providers.find_pkgconfig, (library, f"lib{library}"))):
         return False
     return all(link.item != library for link in package.build.target_links)
 
