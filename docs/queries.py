@@ -49,6 +49,8 @@ A rule gets a `TargetView`: the workspace (`view.workspace`) as one target (`vie
 | whether something that nobody is known to have may be there all the same | `view.unknown_contents.may_hold(...)` |
 | what CMake finds along with packages, and what a package has at hand in a role | `view.roles` |
 | what targets link, pass on and are given by name | `model/cmake/links.py` |
+| what is linked of Boost, and what catkin packages hand on | `model/cmake/boost.py`, `model/cmake/catkin_links.py` |
+| which header an include path that nobody has was meant to be | `model/absent_headers.py` |
 | which C++ standard targets are compiled under | `find_standards(view, package)` of `model/standards.py` |
 | which header brings a name, where nothing that a file includes does | `LostHeaders(view, package).find(need)` |
 | which programs an ament_python package installs, and where | `ScriptSetup(package)` |

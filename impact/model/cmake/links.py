@@ -184,3 +184,13 @@ def list_given_items(package: Package, names: Container[str]) -> Iterator[str]:
     for target in package.build.targets:
         if target.name in names:
             yield from (link.item for link in target.links)
+
+
+def is_linked_otherwise(view: TargetView, name: str, items: Iterable[str]) -> bool:
+    """Whether something else than the variables of packages that a target is linked to may bring a package."""
+    known = [item for item in items if "$" not in item]
+    packages = {item.partition("::")[0] for item in known}
+    if any("$" in item and not re.fullmatch(r"\$\{\w+_LIBRARIES\}", item) for item in items):
+        return True
+    brought = walk(packages, lambda one: view.offers.list_exports(one) or ())
+    return name in brought or any(one in view.workspace.packages for one in packages)

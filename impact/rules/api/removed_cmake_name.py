@@ -25,12 +25,10 @@ Not reported
     beside which something else may bring their package.
 """
 
-import re
 from collections.abc import Iterable, Iterator
 
-from ....edges.reach import walk
 from ...facts.condition import Condition
-from ...model.cmake.links import list_linked_items
+from ...model.cmake.links import is_linked_otherwise, list_linked_items
 from ...targets.symbol import Availability, Symbol
 from ..vocabulary import (
     At,
@@ -143,7 +141,7 @@ def _list_emptied(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             if offer is None or not view.is_sure(link.conditions) or not offer.exports_targets_alone:
                 continue
             items = list_linked_items(package, target.name)
-            if items is None or _is_linked_otherwise(view, name, items):
+            if items is None or is_linked_otherwise(view, name, items):
                 continue
             seen.add(link.item)
             libraries = [one.name for one in offer.build.targets if one.kind == "library"]
@@ -151,13 +149,3 @@ def _list_emptied(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             data = {"upstream": name, "version": offer.version, "replacement": best}
             # The target may use nothing but what stands in headers.
             yield Diagnostic(link.at, link.item, package.name, data, "emptied", (Doubt.INCOMPLETE,))
-
-
-def _is_linked_otherwise(view: TargetView, name: str, items: Iterable[str]) -> bool:
-    """Whether something else than the variables of packages that a target is linked to may bring a package."""
-    known = [item for item in items if "$" not in item]
-    packages = {item.partition("::")[0] for item in known}
-    if any("$" in item and not re.fullmatch(r"\$\{\w+_LIBRARIES\}", item) for item in items):
-        return True
-    brought = walk(packages, lambda one: view.offers.list_exports(one) or ())
-    return name in brought or any(one in view.workspace.packages for one in packages)
