@@ -125,3 +125,31 @@ def walk(start: Iterable[Name], leads: Callable[[Name], Iterable[Name]]) -> Iter
             seen.add(name)
             yield name
             waiting.extend(leads(name))
+
+
+class Closures:
+    """Everything that names lead to, themselves included, kept name by name. leads: where a name leads to."""
+
+    def __init__(self, leads: Callable[[str], Iterable[str]]):
+        self._leads = leads
+        self._known: dict[str, frozenset[str]] = {}
+
+    def collect(self, names: Iterable[str]) -> frozenset[str]:
+        """All that some names lead to."""
+        return frozenset().union(*map(self._collect_one, names))
+
+    def _collect_one(self, name: str) -> frozenset[str]:
+        known = self._known
+        if name not in known:
+            found, waiting = {name}, [name]
+            while waiting:
+                for other in self._leads(waiting.pop()):
+                    if other in found:
+                        continue
+                    found.add(other)
+                    if other in known:
+                        found |= known[other]
+                    else:
+                        waiting.append(other)
+            known[name] = frozenset(found)
+        return known[name]

@@ -318,8 +318,8 @@ def test_rules_that_end_their_process_on_a_package_are_named_and_lose_no_other(t
     ws = ring(tmp_path / "ws", 9)
     whole = check(ws, Options(("jazzy",), jobs=1, cache=tmp_path / "one"))
 
-    def of_link_4(opened, rules, packages, size, task):
-        return "link_4" in packages[task[1] : task[1] + size]
+    def of_link_4(opened, rules, packages, task):
+        return "link_4" in packages[task[1] : task[2]]
 
     monkeypatch.setattr(judge, "_run_part", _dying_on(judge._run_part, of_link_4))
     report = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "two"))
@@ -340,9 +340,9 @@ def test_a_rule_that_comes_to_no_end_costs_its_package_alone(tmp_path, monkeypat
     whole = check(ws, Options(("jazzy",), cache=tmp_path / "one"))
     part = judge._run_part
 
-    def of_link_1(opened, rules, packages, size, task):
-        here = "link_1" in packages[task[1] : task[1] + size]
-        return part(opened, endless if here else rules, packages, size, task)
+    def of_link_1(opened, rules, packages, task):
+        here = "link_1" in packages[task[1] : task[2]]
+        return part(opened, endless if here else rules, packages, task)
 
     endless = [rule._replace(run=_endless) for rule in load_rules().values()]
     monkeypatch.setattr(judge, "_run_part", of_link_1)

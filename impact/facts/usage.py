@@ -165,7 +165,8 @@ def find_uses(facts: CppFile, data: bytes, table: UsageTable) -> tuple[tuple[Wat
     uses = list(table.list_qualified_uses(facts))
     functions = []
     for word in sorted(patterns.keys() & spoken):
-        if word in table.called and (word in facts.defined or declares(data, word)):
+        # What is all in capitals is a macro, which a definition alone makes one's own.
+        if word in table.called and (word in facts.defined or (not word.isupper() and declares(data, word))):
             functions.append(word)
         rows = table.select_likely_rows(word, vocabulary)
         if rows:
