@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property, lru_cache
 from types import MappingProxyType
 from typing import Any
@@ -12,7 +12,7 @@ from msgspec import structs
 
 from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
-from ...edges.reach import Reach, walk
+from ...edges.reach import Closures, Reach, walk
 from ..conditions import Environment, evaluate_all
 from ..config import Config
 from ..facts.condition import Condition
@@ -78,8 +78,8 @@ class WorkspaceOnTarget:
         # Names of the packages that rules are to report on, all when None.
         self.part: frozenset[str] | None = None
         # By name, it and what comes along with it, and with what may come along.
-        self._whole: dict[str, frozenset[str]] = {}
-        self._widest: dict[str, frozenset[str]] = {}
+        self._whole = Closures(self.list_installed_with)
+        self._widest = Closures(self._list_possibly_with)
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
@@ -612,7 +612,7 @@ class WorkspaceOnTarget:
     def list_widest_dependencies(self, names: Iterable[str]) -> frozenset[str]:
         """list_transitive(), and all that packages whose manifests are not known for their version here bring
         in the next one that is, or in any distro."""
-        return frozenset().union(*(_collect_reached(name, self._list_possibly_with, self._widest) for name in names))
+        return self._widest.collect(names)
 
     @cache_method
     def _list_possibly_with(self, name: str) -> Iterable[str]:
@@ -628,7 +628,7 @@ class WorkspaceOnTarget:
 
     @cache_method
     def _find_transitive(self, names: frozenset[str]) -> frozenset[str]:
-        return frozenset().union(*(_collect_reached(name, self.list_installed_with, self._whole) for name in names))
+        return self._whole.collect(names)
 
     @cache_method
     def list_debs(self, name: str) -> frozenset[str]:
@@ -802,25 +802,6 @@ class WorkspaceOnTarget:
 
 def _list_installed_with(dependencies: Iterable[ReleasedDependency] | None) -> tuple[str, ...]:
     return tuple(each.name for each in dependencies or () if each.kind in _INSTALLED_WITH)
-
-
-def _collect_reached(
-    name: str, leads: Callable[[str], Iterable[str]], known: dict[str, frozenset[str]]
-) -> frozenset[str]:
-    """A name and everything that it leads to. known: of other names, and of this one from now on."""
-    if name not in known:
-        found, waiting = {name}, [name]
-        while waiting:
-            for other in leads(waiting.pop()):
-                if other in found:
-                    continue
-                found.add(other)
-                if other in known:
-                    found |= known[other]
-                else:
-                    waiting.append(other)
-        known[name] = frozenset(found)
-    return known[name]
 
 
 def _drop_broad(found: list[Provider]) -> list[Provider]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ...edges.memory import cache_method
-from ...edges.reach import walk
+from ...edges.reach import Closures, walk
 from .on_target import WorkspaceOnTarget
 from .workspace import Package
 
@@ -37,6 +37,8 @@ class Roles:
 
     def __init__(self, view: WorkspaceOnTarget):
         self._view = view
+        self._by_cmake = Closures(lambda name: (*self.list_exports(name), *self.list_tools(name)))
+        self._by_promises = Closures(lambda name: (*self.list_exports(name), *self.list_promises(name)))
 
     @cache_method
     def list_at_hand(self, package: Package, role: str) -> frozenset[str]:
@@ -64,13 +66,7 @@ class Roles:
         export counts as well as what its CMake does."""
         declared = self._view.collect_declared(package)
         start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
-        return frozenset(walk(start, self._list_handed_on_either if promised else self._list_by_cmake))
-
-    def _list_handed_on_either(self, name: str) -> tuple[str, ...]:
-        return (*self.list_exports(name), *self.list_promises(name))
-
-    def _list_by_cmake(self, name: str) -> tuple[str, ...]:
-        return (*self.list_exports(name), *self.list_tools(name))
+        return (self._by_promises if promised else self._by_cmake).collect(start)
 
     def list_tools(self, name: str) -> tuple[str, ...]:
         """What the CMake extensions of a package need where it is used: `buildtool_export_depend`."""

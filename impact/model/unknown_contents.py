@@ -85,10 +85,14 @@ class UnknownContents:
         apart, or coming along as the release of a library that is built with plain CMake or Meson, or that a package of
         ROS carries (`mrpt2`, `sdformat_vendor`), or one that no index has (`glog_catkin`)."""
         return self.is_made_apart(package, wanted) or any(
-            _may_be_called_after(name, wanted)
-            and (self.is_carried_library(name) or name in self._list_unknown_along(package))
-            for name in self._view.build_environment(package)
+            _may_be_called_after(name, wanted) for name in self._list_of_unknown_contents(package)
         )
+
+    @cache_method
+    def _list_of_unknown_contents(self, package: Package) -> list[str]:
+        unknown = self._list_unknown_along(package)
+        names = self._view.build_environment(package)
+        return [name for name in names if name in unknown or self.is_carried_library(name)]
 
     def is_made_apart(self, package: Package, wanted: str) -> bool:
         """Whether something, or its folder, is called after what the build of a package downloads, or after a folder
