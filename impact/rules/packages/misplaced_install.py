@@ -1,19 +1,16 @@
-"""misplaced-install: an install rule puts headers, modules, components or scripts where they cannot be used.
+"""misplaced-install: an install rule puts headers, modules, programs or components where nobody looks for them.
 
 What it does
     Reports a folder `include` that is installed into another `include`, headers that are installed under another folder
-    name than code includes them by, nodes outside of `lib/` and the package's name, scripts that install(FILES) or
-    install(DIRECTORY) copies without execute permission, registered components outside of `lib`, install folders of a
-    Python version other than the target's, and programs whose first line names `python` where the target has `python3`
-    alone (Ubuntu focal, Debian bullseye and later).
+    name than code includes them by, nodes outside of `lib/` and the package's name, registered components outside of
+    `lib`, and install folders of a Python version other than the target's.
 
 Why it breaks
-    The package itself builds. But dependants do not find its headers, rosrun or ros2 run its scripts, Python its
+    The package itself builds. But dependants do not find its headers, rosrun or ros2 run its programs, Python its
     modules, or component containers its library, which they load from `lib`.
 
 Severity
-    error where another package of the workspace compiles such a header, and for scripts that are installed among
-    programs, or nodes in Python (ROS 1); warning otherwise.
+    error where another package of the workspace compiles such a header; warning otherwise.
 
 Example
     install(DIRECTORY include DESTINATION include)
@@ -22,7 +19,7 @@ Use instead
     install(DIRECTORY include/ DESTINATION include)
 
 Not reported
-    Launch files and other scripts that programs run as data, or that CMake code gives to the interpreter.
+    Folders whose name contains a variable that is not known.
 """
 
 import posixpath
@@ -30,13 +27,10 @@ import re
 from collections.abc import Iterator
 
 from ...model.cmake.build import Install
-from ...model.cmake.installed import list_copied_files
 from ...model.cmake.links import list_linked_items, resolve_package
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .dependants import list_compiled_elsewhere
 from .install_rules import is_installed, list_references, read_installs
-
-_OTHER_INTERPRETER = "`{subject}` is to be run by `python`, which {platform} does not have, and is installed as it is"
 
 
 @rule(
@@ -45,13 +39,6 @@ _OTHER_INTERPRETER = "`{subject}` is to be run by `python`, which {platform} doe
         "doubled": Text(
             "the folder `include` is installed into `include`, so headers end up in include/include",
             "write `include/` with a slash at its end",
-        ),
-        "not executable": Text(
-            "`{subject}` is installed with install(FILES), so it cannot be executed", "install(PROGRAMS ...)"
-        ),
-        "folder": Text(
-            "`{file}` is installed with install(DIRECTORY), which does not keep it executable",
-            "add USE_SOURCE_PERMISSIONS, or use install(PROGRAMS ...)",
         ),
         "renamed": Text(
             "headers that are included as `{name}/...` are installed into `{destination}`",
@@ -69,13 +56,11 @@ _OTHER_INTERPRETER = "`{subject}` is to be run by `python`, which {platform} doe
             "`{subject}` belongs to Python {version}, but the target has Python {own}",
             "use ament_python_install_package(), or the folder of the Python that CMake finds",
         ),
-        "interpreter": Text(_OTHER_INTERPRETER, "start it with `#!/usr/bin/env python3`"),
-        "interpreter, catkin": Text(_OTHER_INTERPRETER, "install it with catkin_install_python()"),
     },
 )
 def misplaced_install(view: TargetView, package: Package):
-    installs = read_installs(view, package)
-    for find in _FAULTS if installs else ():
+    installs = read_installs(view, package) or ()
+    for find in (_list_headers, _list_components, _list_programs, _list_other_python):
         yield from find(view, package, installs)
 
 
@@ -123,45 +108,6 @@ def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
     return any(path in headers for _, path in list_compiled_elsewhere(view, package))
 
 
-def _list_not_executable(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
-    """Scripts that are installed as data, where programs belong, or that no other rule installs as programs."""
-    programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
-    scripts = {*package.linked.scripts, *package.linked.shells}
-    # Nodes of ROS 1, which rosrun and roslaunch start from the package's share folder too.
-    nodes = {i.at.path for i in package.linked.imports if i.module == "rospy" and view.target.ros == 1}
-    for install in installs:
-        among_programs = _OF_PROGRAMS.search(install.destination)
-        if install.kind == "directory" and not install.executable and among_programs:
-            copied = [path for path, _ in list_copied_files(install, "", package.linked.files) if path in scripts]
-        elif install.kind == "files":
-            copied = [path for item in install.items if (path := posixpath.normpath(item)) in package.linked.scripts]
-        else:
-            continue
-        for path in copied:
-            inside = package.strip_path(path)
-            started = among_programs or inside.split("/")[0] in ("scripts", "nodes", "bin")
-            if not started or path in programs or inside.endswith(_RUN_BY):
-                continue
-            name = posixpath.basename(path)
-            if name in package.linked.interpreted:
-                continue
-            sure = bool(among_programs) or path in nodes
-            doubts = (sure or Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
-            if install.kind == "directory":
-                data = {"file": inside}
-                subject = posixpath.dirname(inside)
-                yield Diagnostic(install.at, subject, package.name, data, "folder", (*doubts, Doubt.LATE))
-                break
-            yield Diagnostic(install.at, name, package.name, kind="not executable", doubts=doubts)
-
-
-_ONE_LINE = (Together("interpreter"),)
-# Folders for programs, as install rules name them.
-_OF_PROGRAMS = re.compile(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION")
-# Scripts that other programs run, as data.
-_RUN_BY = (".launch.py", "setup.py", "conftest.py")
-
-
 def _list_components(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
     """Libraries of registered components that no rule installs into lib, where the resource index says they are."""
     components = {e.context for e in package.build.exports if e.how == "component"}
@@ -206,28 +152,3 @@ def _list_other_python(view: TargetView, package: Package, installs) -> Iterator
         if found is not None and found.group(1) != own and view.is_sure(install.conditions):
             data = {"version": found.group(1), "own": own}
             yield Diagnostic(install.at, install.destination, package.name, data, "python", (Doubt.LATE,))
-
-
-# The minor version of Python 3 since which the systems of targets have no command `python`.
-_WITHOUT_PLAIN = 8
-
-
-def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
-    """Programs that ask for `python`, where there is none and nothing writes another interpreter into their copies."""
-    target = view.target
-    if target.python_major < 3 or target.python < _WITHOUT_PLAIN:
-        return
-    kind = "interpreter, catkin" if package.build_type == "catkin" else "interpreter"
-    for install in installs:
-        programs = install.kind == "programs" or (install.kind == "directory" and install.executable)
-        if not programs or install.rewritten or not _OF_PROGRAMS.search(install.destination):
-            continue
-        for path, _ in list_copied_files(install, "", package.linked.files):
-            name = posixpath.basename(path)
-            if path in package.linked.plain_scripts and name not in package.linked.interpreted:
-                data = {"platform": target.platform}
-                doubts = (Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
-                yield Diagnostic(install.at, name, package.name, data, kind, doubts, together=_ONE_LINE)
-
-
-_FAULTS = (_list_headers, _list_not_executable, _list_components, _list_programs, _list_other_python, _list_plain)

@@ -1,0 +1,107 @@
+"""unexecutable-script: a script is installed so that it cannot be executed.
+
+What it does
+    Reports scripts that install(FILES) or install(DIRECTORY) copies without execute permission, and installed programs
+    whose first line names `python` where the target has `python3` alone (Ubuntu focal, Debian bullseye and later).
+
+Why it breaks
+    The package itself builds. But rosrun, ros2 run or a launch file cannot start the installed script.
+
+Severity
+    error for scripts that are installed among programs, and for nodes in Python (ROS 1); warning otherwise.
+
+Example
+    install(FILES scripts/measure DESTINATION lib/${PROJECT_NAME})
+
+Use instead
+    install(PROGRAMS scripts/measure DESTINATION lib/${PROJECT_NAME})
+
+Not reported
+    Launch files and other scripts that programs run as data, or that CMake code gives to the interpreter.
+"""
+
+import posixpath
+import re
+from collections.abc import Iterator
+
+from ...model.cmake.installed import list_copied_files
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from .install_rules import read_installs
+
+_OTHER_INTERPRETER = "`{subject}` is to be run by `python`, which {platform} does not have, and is installed as it is"
+_ONE_LINE = (Together("interpreter"),)
+# Folders for programs, as install rules name them.
+_OF_PROGRAMS = re.compile(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION")
+# Scripts that other programs run, as data.
+_RUN_BY = (".launch.py", "setup.py", "conftest.py")
+# The minor version of Python 3 since which the systems of targets have no command `python`.
+_WITHOUT_PLAIN = 8
+
+
+@rule(
+    group="misplaced-install",
+    texts={
+        "not executable": Text(
+            "`{subject}` is installed with install(FILES), so it cannot be executed", "install(PROGRAMS ...)"
+        ),
+        "folder": Text(
+            "`{file}` is installed with install(DIRECTORY), which does not keep it executable",
+            "add USE_SOURCE_PERMISSIONS, or use install(PROGRAMS ...)",
+        ),
+        "interpreter": Text(_OTHER_INTERPRETER, "start it with `#!/usr/bin/env python3`"),
+        "interpreter, catkin": Text(_OTHER_INTERPRETER, "install it with catkin_install_python()"),
+    },
+)
+def unexecutable_script(view: TargetView, package: Package):
+    installs = read_installs(view, package) or ()
+    yield from _list_not_executable(view, package, installs)
+    yield from _list_plain(view, package, installs)
+
+
+def _list_not_executable(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
+    """Scripts that are installed as data, where programs belong, or that no other rule installs as programs."""
+    programs = {posixpath.normpath(item) for i in installs if i.kind == "programs" for item in i.items}
+    scripts = {*package.linked.scripts, *package.linked.shells}
+    # Nodes of ROS 1, which rosrun and roslaunch start from the package's share folder too.
+    nodes = {i.at.path for i in package.linked.imports if i.module == "rospy" and view.target.ros == 1}
+    for install in installs:
+        among_programs = _OF_PROGRAMS.search(install.destination)
+        if install.kind == "directory" and not install.executable and among_programs:
+            copied = [path for path, _ in list_copied_files(install, "", package.linked.files) if path in scripts]
+        elif install.kind == "files":
+            copied = [path for item in install.items if (path := posixpath.normpath(item)) in package.linked.scripts]
+        else:
+            continue
+        for path in copied:
+            inside = package.strip_path(path)
+            started = among_programs or inside.split("/")[0] in ("scripts", "nodes", "bin")
+            if not started or path in programs or inside.endswith(_RUN_BY):
+                continue
+            name = posixpath.basename(path)
+            if name in package.linked.interpreted:
+                continue
+            sure = bool(among_programs) or path in nodes
+            doubts = (sure or Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
+            if install.kind == "directory":
+                doubts, data = (*doubts, Doubt.LATE), {"file": inside}
+                yield Diagnostic(install.at, posixpath.dirname(inside), package.name, data, "folder", doubts)
+                break
+            yield Diagnostic(install.at, name, package.name, kind="not executable", doubts=doubts)
+
+
+def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
+    """Programs that ask for `python`, where there is none and nothing writes another interpreter into their copies."""
+    target = view.target
+    if target.python_major < 3 or target.python < _WITHOUT_PLAIN:
+        return
+    kind = "interpreter, catkin" if package.build_type == "catkin" else "interpreter"
+    for install in installs:
+        programs = install.kind == "programs" or (install.kind == "directory" and install.executable)
+        if not programs or install.rewritten or not _OF_PROGRAMS.search(install.destination):
+            continue
+        for path, _ in list_copied_files(install, "", package.linked.files):
+            name = posixpath.basename(path)
+            if path in package.linked.plain_scripts and name not in package.linked.interpreted:
+                data = {"platform": target.platform}
+                doubts = (Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
+                yield Diagnostic(install.at, name, package.name, data, kind, doubts, together=_ONE_LINE)
