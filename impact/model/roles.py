@@ -85,6 +85,10 @@ class Roles:
             return name in self._view.list_transitive([tool])
         return name == tool or name in self._view.list_installed_with(tool)
 
+    def comes_with_client_library(self, name: str) -> bool:
+        """Whether a package comes along with the client library of C++: whoever builds a node finds it all the same."""
+        return name in self._view.list_transitive(("rclcpp" if self._view.target.ros == 2 else "roscpp",))
+
     @cache_method
     def list_exports(self, name: str) -> tuple[str, ...]:
         """What a package hands on by CMake; by its manifest where its CMake is not known."""

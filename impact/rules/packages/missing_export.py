@@ -1,9 +1,8 @@
-"""missing-export: dependants of the package will miss a package that its targets, headers or messages need.
+"""missing-export: dependants of the package will miss a package that its targets or headers need.
 
 What it does
-    Compares the packages that a package exports with those that dependants need: packages that installed headers
-    include or that an exported target links publicly and that are not exported, and in catkin packages of which its
-    messages are made, or all where no package is handed on.
+    Compares the packages that a package of ament or plain CMake exports with those that dependants need: packages that
+    installed headers include or that an exported target links publicly, and that are not exported.
 
 Why it breaks
     The package builds, and every package that depends on it fails: CMake stops at a target that is not found, or the
@@ -24,7 +23,7 @@ Not reported
     one folder, a missing ament_export_dependencies is a note.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 
 from ...model.cmake.links import list_exported_targets, list_public_links, resolve_passed_package
 from ...targets.version import is_at_least
@@ -32,7 +31,6 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
 from .ament_exports import AmentExports, read_ament_exports
 from .dependants import is_only_loaded, links_without
 from .include_folders import shares_one_folder
-from .unlisted_field_package import find_field_owner
 
 _ONCE = (Together("not exported"),)
 _EACH = (Together("not exported", few=3),)
@@ -47,20 +45,9 @@ _ADD = "add `{subject}` to ament_export_dependencies"
             "call find_dependency({subject}) in the configuration",
         ),
         "include": Text("an installed header includes `{header}`, but `{subject}` is not exported", _ADD),
-        "catkin": Text(
-            "an exported header includes `{header}`, but catkin_package() has no CATKIN_DEPENDS",
-            "name the packages that the headers and libraries need",
-        ),
-        "messages": Text(
-            "the messages use those of `{subject}`, but `{subject}` is not in CATKIN_DEPENDS",
-            "add `{subject}` to CATKIN_DEPENDS of catkin_package()",
-        ),
     },
 )
 def missing_export(view: TargetView, package: Package):
-    if package.build.catkin_package is not None and not package.build.finds_declared:
-        yield from _list_of_messages(view, package)
-        yield from _list_of_catkin_headers(view, package)
     ament = read_ament_exports(view, package)
     if ament is not None:
         seen: set[str] = set()
@@ -103,18 +90,13 @@ def _list_linked(view: TargetView, package: Package, ament: AmentExports, seen: 
 def _collect_passed_on_doubts(view: TargetView, package: Package, target, link, name: str) -> tuple[Doubt, ...]:
     if is_only_loaded(view, package) and not package.linked.public_headers:
         return (Doubt.UNCOMPILED,)  # without headers nobody links it
-    if _comes_with_client_library(view, name):
+    if view.roles.comes_with_client_library(name):
         return (Doubt.DISPENSABLE,)
     other = view.workspace.packages.get(name)
     by_target = link.how == "link" or (
         other is not None and any(e.how == "ament_export_targets" for e in other.build.exports)
     )
     return () if by_target and links_without(view, package, target, name) else (Doubt.DISTURBS,)
-
-
-def _comes_with_client_library(view: TargetView, name: str) -> bool:
-    """True for what comes along with the client library: dependants that build a node find it all the same."""
-    return name in view.list_transitive(("rclcpp" if view.target.ros == 2 else "roscpp",))
 
 
 def _list_included(view: TargetView, package: Package, ament: AmentExports, seen: set[str]) -> Iterator[Diagnostic]:
@@ -132,51 +114,7 @@ def _list_included(view: TargetView, package: Package, ament: AmentExports, seen
         # What the distro does not bring lies in a folder of its own there too.
         overlaid = name in view.workspace.packages or view.target.find_version(name) is None
         apart = overlaid or not shares_one_folder(view)
-        missed = apart and needed and not loaded and not _comes_with_client_library(view, name)
+        missed = apart and needed and not loaded and not view.roles.comes_with_client_library(name)
         doubts = (Doubt.DISTURBS, missed or Doubt.DISPENSABLE)
         data = {"header": need.subject}
         yield Diagnostic(need.at, name, package.name, data, "include", doubts, together=_ONCE)
-
-
-def _list_of_messages(view: TargetView, package: Package):
-    """Packages of messages that the package's own are made of, and that catkin_package() does not hand on."""
-    named = {e.item for e in package.build.exports if e.how in ("catkin_depends", "system_depends")}
-    if any("$" in name for name in named):
-        return
-    reach = view.roles.list_found_with(named)
-    for made in package.build.generated:
-        if made.how != "catkin" or not made.offered or not view.is_sure(made.conditions):
-            continue
-        owners = _find_field_owners(package, made.files)
-        for name, at in made.dependencies:
-            if "$" not in name and name not in reach and name in owners:
-                reach |= {name}
-                doubt = Doubt.DISPENSABLE if _comes_with_client_library(view, name) else Doubt.DISTURBS
-                yield Diagnostic(at, name, package.name, kind="messages", doubts=(doubt,), together=_ONCE)
-
-
-def _find_field_owners(package: Package, files: Collection[str]) -> set[str]:
-    """The other packages of whose messages the fields in these files are, and those of actions are made."""
-    owners = {
-        find_field_owner(package, field.type)
-        for interface in package.linked.interfaces
-        if interface.path in files
-        for section in interface.definition.sections
-        for field in section.fields
-    }
-    implied = {"actionlib_msgs", "std_msgs"} if any(file.endswith(".action") for file in files) else set()
-    return (owners | implied) - {"", package.name}
-
-
-def _list_of_catkin_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
-    """A package of catkin that hands on no package at all, though headers of others are in what it exports."""
-    hows = {e.how for e in package.build.exports}
-    if not hows >= {"include_dirs", "libraries"} or hows & {"catkin_depends", "cfg_extras"}:
-        return
-    found = {f.name for f in package.build.found if f.how == "catkin"}
-    for need in view.sort_needs(package):
-        if need.how == "include" and need.public and need.certain and any(p.name in found for p in need.providers):
-            data = {"header": need.subject}
-            at = package.build.catkin_package
-            yield Diagnostic(at, "CATKIN_DEPENDS", package.name, data, "catkin", (Doubt.DISTURBS,))
-            return

@@ -1,0 +1,92 @@
+"""missing-catkin-depends: CATKIN_DEPENDS of catkin_package() lacks a package that messages or headers need.
+
+What it does
+    Reports packages of whose messages those of a catkin package are made and that it does not name in CATKIN_DEPENDS,
+    and catkin packages that name none at all though their exported headers include those of other packages.
+
+Why it breaks
+    The package builds, and dependants do not get what its messages and headers include, unless they find it themselves.
+
+Severity
+    warning; note for messages of packages that come along with roscpp.
+
+Example
+    generate_messages(DEPENDENCIES geometry_msgs)
+    catkin_package(CATKIN_DEPENDS message_runtime)
+
+Use instead
+    catkin_package(CATKIN_DEPENDS geometry_msgs message_runtime)
+
+Not reported
+    What a package in CATKIN_DEPENDS or DEPENDS brings in turn.
+"""
+
+from collections.abc import Collection, Iterator
+
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from .unlisted_field_package import find_field_owner
+
+_ONCE = (Together("not exported"),)
+
+
+@rule(
+    severity="warning",
+    group="missing-export",
+    texts={
+        "headers": Text(
+            "an exported header includes `{header}`, but catkin_package() has no CATKIN_DEPENDS",
+            "name the packages that the headers and libraries need",
+        ),
+        "messages": Text(
+            "the messages use those of `{subject}`, but `{subject}` is not in CATKIN_DEPENDS",
+            "add `{subject}` to CATKIN_DEPENDS of catkin_package()",
+        ),
+    },
+)
+def missing_catkin_depends(view: TargetView, package: Package):
+    if package.build.catkin_package is not None and not package.build.finds_declared:
+        yield from _list_of_messages(view, package)
+        yield from _list_of_headers(view, package)
+
+
+def _list_of_messages(view: TargetView, package: Package):
+    """Packages of messages that the package's own are made of, and that catkin_package() does not hand on."""
+    named = {e.item for e in package.build.exports if e.how in ("catkin_depends", "system_depends")}
+    if any("$" in name for name in named):
+        return
+    reach = view.roles.list_found_with(named)
+    for made in package.build.generated:
+        if made.how != "catkin" or not made.offered or not view.is_sure(made.conditions):
+            continue
+        owners = _find_field_owners(package, made.files)
+        for name, at in made.dependencies:
+            if "$" not in name and name not in reach and name in owners:
+                reach |= {name}
+                doubts = (not view.roles.comes_with_client_library(name) or Doubt.DISPENSABLE,)
+                yield Diagnostic(at, name, package.name, kind="messages", doubts=doubts, together=_ONCE)
+
+
+def _find_field_owners(package: Package, files: Collection[str]) -> set[str]:
+    """The other packages of whose messages the fields in these files are, and those of actions are made."""
+    owners = {
+        find_field_owner(package, field.type)
+        for interface in package.linked.interfaces
+        if interface.path in files
+        for section in interface.definition.sections
+        for field in section.fields
+    }
+    implied = {"actionlib_msgs", "std_msgs"} if any(file.endswith(".action") for file in files) else set()
+    return (owners | implied) - {"", package.name}
+
+
+def _list_of_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """A package of catkin that hands on no package at all, though headers of others are in what it exports."""
+    hows = {e.how for e in package.build.exports}
+    if not hows >= {"include_dirs", "libraries"} or hows & {"catkin_depends", "cfg_extras"}:
+        return
+    found = {f.name for f in package.build.found if f.how == "catkin"}
+    for need in view.sort_needs(package):
+        if need.how == "include" and need.public and need.certain and any(p.name in found for p in need.providers):
+            at, data = package.build.catkin_package, {"header": need.subject}
+            yield Diagnostic(at, "CATKIN_DEPENDS", package.name, data, "headers")
+            return
