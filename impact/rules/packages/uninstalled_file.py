@@ -1,16 +1,12 @@
-"""uninstalled-file: a file that is started or opened where the package is installed is not installed.
+"""uninstalled-file: a file that is opened where the package is installed is not installed.
 
 What it does
-    Compares the install rules of CMake, or data_files of setup.py, with the launch files, scripts and data that launch
-    files and scripts of the workspace start or open in the package's share folder, and with the folder `launch` of
-    packages of ROS 2, and of ROS 1 where other folders are installed. Reports packages of catkin that compile and
-    install nothing, and nodes in Python of packages that install no program.
+    Compares the install rules of CMake, or data_files of setup.py, with the launch files and data that launch files and
+    scripts of the workspace open in the package's share folder, and with the folder `launch` of packages of ROS 2, and
+    of ROS 1 where other folders are installed. Reports packages of catkin that compile and install nothing.
 
 Why it breaks
     Everything works from the source tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
-
-Severity
-    warning, since in a workspace that is never installed all of this works.
 
 Example
     install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})         # and a launch file opens config/robot.yaml
@@ -26,7 +22,6 @@ import posixpath
 import re
 from collections.abc import Iterator
 
-from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, rule
 from .data_files import list_copied
 from .install_rules import is_installed, list_places, list_references, read_installs
@@ -35,12 +30,8 @@ _OPENED = "`{file}` is opened through the package's share folder but is not inst
 _LAUNCHED = "`{file}` cannot be launched: the folder `{subject}` is not installed"
 _INSTALL_FOLDER = "install(DIRECTORY {subject} DESTINATION {share})"
 _ADD_FOLDER = "add `('{share}/{subject}', glob('{subject}/*'))` to data_files"
-_INSTALL_PROGRAM = "install(PROGRAMS ... DESTINATION lib/${{PROJECT_NAME}})"
-_PROGRAM = {
-    "script": "`{subject}` is started by a launch file or script but is not installed",
-    "node": "`{subject}` is a node, but no rule installs it",
-    "beside": "`{subject}` is not installed, but other programs in its folder are",
-}
+_FOLDERS = (Together("folder not installed", few=3),)
+_DATA = ("launch", "urdf", "meshes", "robots", "worlds")
 
 
 @rule(
@@ -59,13 +50,10 @@ _PROGRAM = {
         ),
         "launch": Text(_LAUNCHED, _INSTALL_FOLDER),
         "launch, data_files": Text(_LAUNCHED, _ADD_FOLDER),
-        **{kind: Text(text, _INSTALL_PROGRAM) for kind, text in _PROGRAM.items()},
-        **{f"{kind}, catkin": Text(text, "catkin_install_python(PROGRAMS ...)") for kind, text in _PROGRAM.items()},
     },
 )
 def uninstalled_file(view: TargetView, package: Package):
     opened = list_references(view, package, "file", "place")
-    started = list_references(view, package, "executable")
     installs = read_installs(view, package)
     if installs is None:
         if copied := list_copied(package):
@@ -74,12 +62,6 @@ def uninstalled_file(view: TargetView, package: Package):
         yield from _list_nothing(package, opened)
     else:
         yield from _list_opened(package, installs, opened)
-        yield from _list_scripts(package, installs, started)
-
-
-_ONCE = (Together("not installed"),)
-_FOLDERS = (Together("folder not installed", few=3),)
-_DATA = ("launch", "urdf", "meshes", "robots", "worlds")
 
 
 def _list_nothing(package: Package, opened: set[str]) -> Iterator[Diagnostic]:
@@ -159,39 +141,3 @@ def _list_launch_folders(package: Package, installs) -> Iterator[tuple[str, str]
         if use.role == "run" and path in files and (own if catkin else _LAUNCH.search(path)):
             yield "launch", package.strip_path(path)
             return
-
-
-# Folders where programs of packages lie, and modules that programs import to be nodes.
-_OF_PROGRAMS = frozenset(("bin", "nodes", "scripts"))
-_OF_NODES = frozenset(("rclpy", "rospy", "rqt_gui"))
-
-
-def _list_scripts(package: Package, installs, scripts: set[str]) -> Iterator[Diagnostic]:
-    """Scripts that no rule installs: those that a launch file starts, that lie beside programs which are installed, or
-    that are nodes: of ROS 2, which starts none from the source space, or of a package without other programs."""
-    programs = [item for i in installs if i.kind == "programs" for item in i.items]
-    nodes = _list_nodes(package, installs)
-    folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
-    for path in (*package.linked.scripts, *package.linked.shells):
-        name, folder = posixpath.basename(path), posixpath.dirname(path)
-        beside = folder in folders and folder != package.path and "." not in name and find_folder_role(name) is None
-        node = path in nodes
-        if (name in scripts or beside or node) and name not in others and not is_installed(installs, path):
-            kind = "script" if name in scripts else "beside" if beside else "node"
-            if package.build_type == "catkin" and path not in package.linked.shells:
-                kind = f"{kind}, catkin"
-            yield Diagnostic(At(path, 1), name, package.name, kind=kind, together=_ONCE)
-
-
-def _list_nodes(package: Package, installs) -> frozenset[str]:
-    """The nodes in Python of a package that installs something: all of ROS 2, and of ROS 1, where a launch file in the
-    source space starts them as well, those of a package that makes and installs no program at all.
-    install_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.
-    """
-    made = any(t.kind == "executable" for t in package.build.targets)
-    has_programs = made or any(i.kind == "programs" or i.executable for i in installs)
-    if not installs or (has_programs and package.build.ament_package is None):
-        return frozenset()
-    nodes = {use.at.path for use in package.linked.imports if use.module.partition(".")[0] in _OF_NODES}
-    inside = {path: package.strip_path(path) for path in package.linked.scripts if path in nodes}
-    return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_PROGRAMS and find_folder_role(i) is None)

@@ -1,0 +1,72 @@
+"""uninstalled-script: a script that is started where the package is installed is not installed.
+
+What it does
+    Reports scripts that no install rule of CMake takes: those that launch files or scripts of the workspace start, that
+    lie beside installed programs, and nodes in Python: of ROS 2, and of packages of ROS 1 that install no program.
+
+Why it breaks
+    Everything works from the source tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
+
+Example
+    install(PROGRAMS scripts/drive DESTINATION lib/${PROJECT_NAME})     # and a launch file starts scripts/steer
+
+Use instead
+    install(PROGRAMS scripts/drive scripts/steer DESTINATION lib/${PROJECT_NAME})
+
+Not reported
+    Modules that other scripts import, and tools of packages that install no program.
+"""
+
+import posixpath
+
+from ...model.package import find_folder_role
+from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, rule
+from .install_rules import is_installed, list_references, read_installs
+
+_ONCE = (Together("not installed"),)
+_OF_CATKIN = "catkin_install_python(PROGRAMS ...)"
+# Folders where programs of packages lie, and modules that programs import to be nodes.
+_OF_PROGRAMS = frozenset(("bin", "nodes", "scripts"))
+_OF_NODES = frozenset(("rclpy", "rospy", "rqt_gui"))
+
+
+@rule(
+    severity="warning",
+    group="uninstalled-file",
+    texts={
+        "script": Text("`{subject}` is started by a launch file or script but is not installed", "{command}"),
+        "node": Text("`{subject}` is a node, but no rule installs it", "{command}"),
+        "beside": Text("`{subject}` is not installed, but other programs in its folder are", "{command}"),
+    },
+)
+def uninstalled_script(view: TargetView, package: Package):
+    installs = read_installs(view, package)
+    if not installs and (installs is None or (package.build_type == "catkin" and not package.build.targets)):
+        return  # uninstalled-file tells of a package that installs nothing at all
+    scripts = list_references(view, package, "executable")
+    programs = [item for i in installs if i.kind == "programs" for item in i.items]
+    nodes = _list_nodes(package, installs)
+    folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
+    for path in (*package.linked.scripts, *package.linked.shells):
+        name, folder = posixpath.basename(path), posixpath.dirname(path)
+        beside = folder in folders and folder != package.path and "." not in name and find_folder_role(name) is None
+        node = path in nodes
+        if (name in scripts or beside or node) and name not in others and not is_installed(installs, path):
+            kind = "script" if name in scripts else "beside" if beside else "node"
+            of_catkin = package.build_type == "catkin" and path not in package.linked.shells
+            data = {"command": _OF_CATKIN if of_catkin else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"}
+            yield Diagnostic(At(path, 1), name, package.name, data, kind, together=_ONCE)
+
+
+def _list_nodes(package: Package, installs) -> frozenset[str]:
+    """The nodes in Python of a package that installs something: all of ROS 2, and of ROS 1, where a launch file in the
+    source space starts them as well, those of a package that makes and installs no program at all.
+    install_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.
+    """
+    made = any(t.kind == "executable" for t in package.build.targets)
+    has_programs = made or any(i.kind == "programs" or i.executable for i in installs)
+    if not installs or (has_programs and package.build.ament_package is None):
+        return frozenset()
+    nodes = {use.at.path for use in package.linked.imports if use.module.partition(".")[0] in _OF_NODES}
+    inside = {path: package.strip_path(path) for path in package.linked.scripts if path in nodes}
+    return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_PROGRAMS and find_folder_role(i) is None)
