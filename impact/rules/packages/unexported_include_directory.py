@@ -3,8 +3,7 @@
 What it does
     Reports ament packages that install headers but export neither include directories nor a target, where they install
     a library too and another package of the workspace includes the headers, or where headers are all that they build
-    and install; that export a target without the folder of its headers; packages that export only the include
-    directories of a library which nothing in the package links or loads; and packages of headers alone, or of catkin
+    and install; that export a target without the folder of its headers; and packages of headers alone, or of catkin
     with a library, whose exported headers include a system library outside the compiler's default path that they do not
     export.
 
@@ -22,11 +21,10 @@ Not reported
     Packages that ament_auto exports, or that find the library in a file of CONFIG_EXTRAS.
 """
 
-import posixpath
 from collections.abc import Iterator
 
 from ...model.cmake.links import list_exported_targets
-from ..vocabulary import Diagnostic, Doubt, Need, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Need, Package, TargetView, Text, rule
 from .ament_exports import AmentExports, exports_something, read_ament_exports
 from .include_folders import OFF_PATH
 
@@ -43,14 +41,6 @@ from .include_folders import OFF_PATH
             "`{subject}` is exported without the folder of its installed headers",
             "target_include_directories({subject} ... $<INSTALL_INTERFACE:include/${{PROJECT_NAME}}>)",
         ),
-        "library": Text(
-            "the headers of `{subject}` are exported, but the library is not, so dependants cannot link it",
-            "call ament_export_targets() or ament_export_libraries()",
-        ),
-        "catkin library": Text(
-            "the headers of `{subject}` are exported, but the library is not, so dependants cannot link it",
-            "add it to LIBRARIES of catkin_package()",
-        ),
         "include directory": Text(
             "an installed header includes `{header}`, but the include directory of `{subject}` is not exported",
             "export its package, or its include directories",
@@ -59,24 +49,18 @@ from .include_folders import OFF_PATH
 )
 def unexported_include_directory(view: TargetView, package: Package):
     yield from _list_nothing(view, package)
-    of_catkin = package.build.catkin_package is not None and not package.build.finds_declared
-    if of_catkin:
-        yield from _list_of_catkin(view, package)
+    yield from _list_of_catkin(view, package)
     ament = read_ament_exports(view, package)
     if ament is not None:
         yield from _list_off_path(view, package, ament)
         yield from _list_without_folder(view, package, ament)
-    if ament is not None or of_catkin:
-        yield from _list_without_library(view, package)
 
 
 def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Headers that are installed, with a library or alone, and nothing that tells dependants where."""
     first = package.build.ament_package
     exports = package.build.exports
-    if exports_something(exports):
-        return
-    if not package.linked.public_headers or package.build.finds_declared or first is None:
+    if first is None or package.build.finds_declared or exports_something(exports):
         return
     installed = package.build.installed_targets
     alone = _has_headers_alone(package)
@@ -88,8 +72,7 @@ def _list_nothing(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     own_base = any(e.how == "plugin_description" and e.context == package.name for e in exports)
     if package.name not in view.workspace.includers and not own_base and not alone:
         return
-    subject = "ament_export_include_directories"
-    yield Diagnostic(first, subject, package.name, kind="nothing", doubts=(Doubt.DISTURBS,))
+    yield Diagnostic(first, "ament_export_include_directories", package.name, kind="nothing")
 
 
 def _list_without_folder(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
@@ -107,7 +90,7 @@ def _list_without_folder(view: TargetView, package: Package, ament: AmentExports
     compiled = {name for path, names in package.linked.source_targets if path in headers for name in names}
     for target in targets:
         if (target.name in compiled or target.kind == "interface") and view.is_sure(target.conditions):
-            yield Diagnostic(target.at, target.name, package.name, kind="folder", doubts=(Doubt.DISTURBS,))
+            yield Diagnostic(target.at, target.name, package.name, kind="folder")
             return
 
 
@@ -118,36 +101,6 @@ def _has_headers_alone(package: Package) -> bool:
         return False
     places = [i.destination.lstrip("/").partition("/")[0] for i in build.installs]
     return bool(places) and all(place == "include" for place in places)
-
-
-def _list_without_library(view: TargetView, package: Package) -> Iterator[Diagnostic]:
-    """Libraries that nothing in the package links or loads, and whose headers alone are exported."""
-    exports = package.build.exports
-    folders = tuple(f"{posixpath.normpath(e.item)}/" for e in exports if e.how in _OF_FOLDERS)
-    if not folders or package.build.unresolved or package.linked.registered or package.linked.plugins:
-        return
-    if any(e.how in _OFFERS or "$" in e.item for e in exports):
-        return
-    catkin = package.build.catkin_package is not None
-    if catkin and package.name in view.workspace.includers:
-        return  # unexported-header looks at those who include them
-    public = [p for p, _ in package.linked.source_targets if p.startswith(folders)] if catkin else ()
-    offered = frozenset(public or package.linked.public_headers)
-    linked = {link.item for link in package.build.target_links}
-    headers = {name for path, names in package.linked.source_targets if path in offered for name in names} - linked
-    # Those who find a package of catkin in the devel space ask for no install rule.
-    made = headers if catkin else headers & package.build.installed_targets
-    for target in package.build.targets:
-        if target.kind == "library" and target.name in made and view.is_sure(target.conditions):
-            kind = "catkin library" if catkin else "library"
-            yield Diagnostic(target.at, target.name, package.name, kind=kind, doubts=(Doubt.DISTURBS,))
-
-
-# What tells dependants about a library, or loads it.
-_OFFERS = frozenset(
-    {"ament_export_targets", "ament_export_libraries", "cfg_extras", "component", "libraries", "plugin_description"}
-)
-_OF_FOLDERS = frozenset({"ament_export_include_directories", "include_dirs"})
 
 
 def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> Iterator[Diagnostic]:
@@ -162,7 +115,7 @@ def _list_off_path(view: TargetView, package: Package, ament: AmentExports) -> I
 def _list_of_catkin(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """System libraries off the compiler's path that exported headers of a catkin package with a library include."""
     exports = package.build.exports
-    if not package.build.catkin_package or any("$" in e.item for e in exports):
+    if not package.build.catkin_package or package.build.finds_declared or any("$" in e.item for e in exports):
         return
     if not {"include_dirs", "libraries"} <= {e.how for e in exports}:
         return
@@ -184,5 +137,4 @@ def _list_missed(view: TargetView, package: Package, needs: list[Need], reach: f
             continue
         if not view.is_met(need.providers, reach):
             seen.add(name)
-            data = {"header": need.subject}
-            yield Diagnostic(need.at, name, package.name, data, "include directory", (Doubt.DISTURBS,))
+            yield Diagnostic(need.at, name, package.name, {"header": need.subject}, "include directory")
