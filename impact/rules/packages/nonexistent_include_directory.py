@@ -60,11 +60,11 @@ def _list_directories(view: TargetView, package: Package):
         if export.item.startswith("/") or export.item in made:
             continue
         item = posixpath.normpath(export.item)
-        inside = package.strip_path(item) if package.path and item.startswith(package.path + "/") else item
-        path = posixpath.normpath(posixpath.join(package.path, inside))
-        if inside.startswith("..") or not is_absent(view, package, path):
-            continue
-        yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, {"directory": inside}, "directory")
+        if package.path and not item.startswith(f"{package.path}/"):
+            continue  # of another folder of the workspace, or outside of it
+        if not item.startswith("..") and is_absent(view, package, item):
+            data = {"directory": package.strip_path(item)}
+            yield Diagnostic(export.at, "INCLUDE_DIRS", package.name, data, "directory")
 
 
 def _list_without_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]:
