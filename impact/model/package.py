@@ -711,14 +711,20 @@ class PackageJoin:
 
         targets = {path: role[2] for path, role in roles.items() if role[2]}
         sources = {path: targets.get(path, ()) for path in self.cpp if not is_header(path)}
-        if len(set(sources.values())) < 2:
+        if len(set(sources.values())) < 2 or self.build.unresolved:
             return
 
         def list_included(path: str) -> Collection[str]:
             # What nothing compiles may belong to something that is not built here.
             return {to for to, i in self.resolved.get(path, ()) if to is not None and not i.conditions}
 
-        yield from list_own_calls(sources, list_included, self.list_words, lambda paths: self.look(paths, "called_cpp"))
+        find_linked = cache(self.build.find_linked)
+
+        def may_lack(path: str, other: str) -> bool:
+            return any(each.isdisjoint(sources[other]) for each in filter(None, map(find_linked, sources[path])))
+
+        declared = partial(self.look, kind="called_cpp")
+        yield from list_own_calls(sources, list_included, self.list_words, may_lack, declared)
 
     def list_installed_headers(self) -> list[str]:
         folders, single = [], set()

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from ..targets.providers.library import find_default_standard, get_year
 from ..targets.version import is_at_least
-from .cmake.links import list_reached_targets, resolve_package
+from .cmake.links import resolve_package
 from .package import NameUse
 from .view import TargetView
 from .workspace import Package
@@ -22,7 +22,7 @@ def find_standards(view: TargetView, package: Package) -> dict[str, int]:
     for target in targets.values():
         year = get_year(target.standard) if target.standard else 0
         others: set[str] = set()
-        for own in list_reached_targets(targets, [target.name], _PASSING_ON):
+        for own in package.build.list_reached_targets([target.name], _PASSING_ON):
             if own.public_standard:
                 year = max(year, get_year(own.public_standard))
             others.update(resolve_package(link.item) for link in own.links if link.how in _PASSING_ON)

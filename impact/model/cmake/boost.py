@@ -11,7 +11,7 @@ from ..view import TargetView
 from ..workspace import Package
 from .build import BuildTarget
 from .catkin_links import list_bringing, list_linked
-from .links import is_opaque, list_linked_items, resolve_package
+from .links import is_opaque, resolve_package
 
 
 class LinkedBoost(NamedTuple):
@@ -33,7 +33,7 @@ def list_asked_components(package: Package) -> Set[str] | None:
 @cache_in_derived
 def find_linked_boost(view: TargetView, package: Package, target: str, asked: Set[str]) -> LinkedBoost | None:
     """What a target is linked to, itself or through targets of its package; None when that cannot be seen."""
-    items = list_linked_items(package, target)
+    items = package.build.list_linked_items(target)
     if items is None:
         return None
     components: set[str] = set()

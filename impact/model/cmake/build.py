@@ -1,11 +1,15 @@
 """The CMake of one package, interpreted across files: what is found, built, linked, generated, installed, exported."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 import msgspec
 
+from ....edges.reach import walk
 from ...facts.condition import Condition
+
+LINKING = ("link", "ament", "objects")
+"""How targets are given what they are linked to."""
 
 
 class At(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -311,6 +315,36 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def may_add_targets(self) -> bool:
         """Whether what is not read may add targets and set variables."""
         return bool(self.unresolved) or self.builds_others or any(target.name.endswith("()") for target in self.targets)
+
+    def list_linked_items(self, target: str, hows: Container[str] | None = LINKING) -> set[str] | None:
+        """All that a target is linked to, itself and through targets of its package; None where that cannot be told.
+        hows: what counts, with None all that it is given."""
+        items = {link.item for link in self.links}
+        for own in self.list_reached_targets((target, *items), hows):
+            if own.kind in ("unknown", "external", "fetched", "imported"):
+                return None
+            items.update(link.item for link in own.links if hows is None or link.how in hows)
+        return items
+
+    def find_linked(self, target: str) -> set[str] | None:
+        """A target with all that it is linked to, and the targets that this has other names for; None where that cannot
+        be told."""
+        items = self.list_linked_items(target)
+        if items is None:
+            return None
+        return {target, *items, *(one.alias_of for one in self.targets if one.name in items)}
+
+    def list_reached_targets(self, names: Iterable[str], hows: Container[str] | None = None) -> Iterator[BuildTarget]:
+        """Targets, by name, and those that they are given in turn. hows: what counts, all when None."""
+        targets = {one.name: one for one in self.targets}
+
+        def list_linked(name: str) -> Iterator[str]:
+            own = targets.get(name)
+            if own is not None:
+                yield own.alias_of
+                yield from (link.item for link in own.links if hows is None or link.how in hows)
+
+        return (targets[name] for name in walk(names, list_linked) if name in targets)
 
     def list_paths(self) -> Iterator[WrittenPath]:
         """The paths of the tree that it reads, compiles, links, searches and installs."""

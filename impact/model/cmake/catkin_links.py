@@ -13,7 +13,7 @@ from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ..view import TargetView
 from ..workspace import Package
-from .links import is_opaque, list_linked_items, resolve_package
+from .links import is_opaque, resolve_package
 
 # What is linked or exported beside packages of ROS, and brings no part of OpenCV or Boost along. Kept by hand: of the
 # Ubuntu releases of ROS 1 no index of dependencies is stored (apt.json.zst begins with Debian 11).
@@ -83,7 +83,7 @@ _INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
 def list_linked(package: Package, target: str) -> set[str] | None:
     """All that a target is linked to, itself and through targets of its package; None where that cannot be told, as of
     all that a manifest declares, of which some may be known nowhere."""
-    items = list_linked_items(package, target)
+    items = package.build.list_linked_items(target)
     if items is None or ("${catkin_LIBRARIES}" in items and package.build.finds_declared):
         return None
     return None if any(map(is_opaque, items)) else items

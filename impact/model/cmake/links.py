@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator
 from functools import lru_cache
 
 from ....edges.memory import cache_in_derived
@@ -42,35 +42,6 @@ def may_hide(item: str, name: str) -> bool:
     if not name.lower().startswith(before):
         return False
     return ("::" in plain[-1] and not after) or name.lower().endswith(after)
-
-
-_LINKING = ("link", "ament", "objects")
-
-
-def list_linked_items(package: Package, target: str, hows: Container[str] | None = _LINKING) -> set[str] | None:
-    """All that a target is linked to, itself and through targets of its package; None where that cannot be told. hows:
-    what counts, with None all that it is given."""
-    targets = {one.name: one for one in package.build.targets}
-    items = {link.item for link in package.build.links}
-    for own in list_reached_targets(targets, (target, *items), hows):
-        if own.kind in ("unknown", "external", "fetched", "imported"):
-            return None
-        items.update(link.item for link in own.links if hows is None or link.how in hows)
-    return items
-
-
-def list_reached_targets(
-    targets: Mapping[str, BuildTarget], names: Iterable[str], hows: Container[str] | None = None
-) -> Iterator[BuildTarget]:
-    """Targets of a package, by name, and those of it that they are given in turn. hows: what counts, all when None."""
-
-    def list_linked(name: str) -> Iterator[str]:
-        own = targets.get(name)
-        if own is not None:
-            yield own.alias_of
-            yield from (link.item for link in own.links if hows is None or link.how in hows)
-
-    return (targets[name] for name in walk(names, list_linked) if name in targets)
 
 
 def list_exported_targets(package: Package) -> Iterator[BuildTarget]:
@@ -139,7 +110,7 @@ def find_brought(view: TargetView, package: Package, target: str) -> tuple[froze
     """What comes along with all that a target is given, and the items that may stand for something else; None where
     that cannot be told."""
     build = package.build
-    items = list_linked_items(package, target, None)
+    items = package.build.list_linked_items(target, None)
     if items is None:
         return None
     # Targets of the package's own interfaces bring along the packages that these rest on.

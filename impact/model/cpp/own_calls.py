@@ -15,12 +15,14 @@ def list_own_calls(
     sources: Mapping[str, Collection[str]],
     included: Callable[[str], Collection[str]],
     spoken: Callable[[str], frozenset[str]],
+    may_lack: Callable[[str, str], bool],
     declared: Callable[[Collection[str]], Mapping[str, CalledCpp]],
 ) -> Iterator[tuple[str, str, str]]:
     """Source, the other source that defines a function which it seems to use, and that function, `Class::function`.
 
     sources: the targets of each source; none where nothing compiles it. included: the files of the package that a file
-    includes itself. spoken: all words of a file. declared: what each of some sources defines and calls."""
+    includes itself. spoken: all words of a file. may_lack: whether a target of the first source may have no part in the
+    second. declared: what each of some sources defines and calls."""
     own_header = {path: next((h for h in included(path) if _get_stem(h) == _get_stem(path)), "") for path in sources}
     beside = group_pairs((header, path) for path, header in own_header.items() if header)
     reach = Reach(lambda path: (included(path), ()))
@@ -34,7 +36,7 @@ def list_own_calls(
         for header in reach.list_names(reached):
             # What comes from far counts where the file names the class that the header is called after.
             if header in direct or stems[header] in words:
-                pairs += [(path, other) for other in beside[header] if not set(targets) <= set(sources[other])]
+                pairs += [(path, other) for other in beside[header] if may_lack(path, other)]
     known = declared(sorted({path for pair in pairs for path in pair}))
     for path, other in sorted(pairs):
         if path not in known or other not in known:

@@ -28,7 +28,6 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.cmake.installed import list_copied_files
-from ...model.cmake.links import list_linked_items
 from ...model.package import IncludeUse
 from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
@@ -116,7 +115,7 @@ def _list_unlinked(view: TargetView, package: Package, headers: ParameterHeaders
         if headers.owner.get(library) != package.name or not view.is_sure(include.conditions):
             continue
         for name in include.targets:
-            items = list_linked_items(package, name) if (name, library) not in seen else None
+            items = package.build.list_linked_items(name) if (name, library) not in seen else None
             if items is None or library in items or any("$" in item and "::" not in item for item in items):
                 continue
             if any(one.alias_of == library and one.name in items for one in targets.values()):

@@ -28,7 +28,7 @@ Not reported
 from collections.abc import Iterable, Iterator
 
 from ...facts.condition import Condition
-from ...model.cmake.links import is_linked_otherwise, list_linked_items
+from ...model.cmake.links import is_linked_otherwise
 from ...targets.symbol import Availability, Symbol
 from ..vocabulary import (
     At,
@@ -140,7 +140,7 @@ def _list_emptied(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             offer = view.offers.find_package(name) if name not in view.workspace.may_have else None
             if offer is None or not view.is_sure(link.conditions) or not offer.exports_targets_alone:
                 continue
-            items = list_linked_items(package, target.name)
+            items = package.build.list_linked_items(target.name)
             if items is None or is_linked_otherwise(view, name, items):
                 continue
             seen.add(link.item)

@@ -27,7 +27,7 @@ import re
 from collections.abc import Iterator
 
 from ...model.cmake.build import Install
-from ...model.cmake.links import list_linked_items, resolve_package
+from ...model.cmake.links import resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .dependants import list_compiled_elsewhere
 from .install_rules import is_installed, list_references, read_installs
@@ -135,7 +135,7 @@ def _list_programs(view: TargetView, package: Package, installs) -> Iterator[Dia
         if target.kind != "executable" or place is None:
             continue
         node = view.target.ros == 2 and "rclcpp" in {
-            resolve_package(item) for item in list_linked_items(package, target.name) or ()
+            resolve_package(item) for item in package.build.list_linked_items(target.name) or ()
         }
         if not node and (target.output_name or target.name) not in started:
             continue

@@ -29,7 +29,6 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.cmake.installed import collect_installed_headers
-from ...model.cmake.links import list_linked_items
 from ...model.package import IncludeUse
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 
@@ -127,7 +126,7 @@ def _is_unlinked(package: Package, include: IncludeUse, library: str) -> bool:
     """Whether a program whose own source includes a header links nothing that is called like its library."""
     for target in package.build.targets:
         if target.kind == "executable" and target.name in include.targets and include.at.path in target.sources:
-            items = list_linked_items(package, target.name)
+            items = package.build.list_linked_items(target.name)
             if items is not None and not any(library in item for item in items):
                 return True
     return False

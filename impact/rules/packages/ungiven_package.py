@@ -28,7 +28,7 @@ Not reported
 import re
 from collections.abc import Iterable, Iterator
 
-from ...model.cmake.links import find_brought, is_opaque, list_linked_items, may_hide, resolve_package
+from ...model.cmake.links import find_brought, is_opaque, may_hide, resolve_package
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .include_folders import OFF_PATH, collect_folder_doubts, shares_one_folder
 
@@ -102,7 +102,7 @@ def _list_off_path(
         if not name or name in seen:
             continue
         for target in including:
-            items = list_linked_items(package, target, None)
+            items = package.build.list_linked_items(target, None)
             if items is None or not view.is_sure(targets[target].conditions):
                 continue
             items = {item for item in (*items, *everywhere) if item not in targets}

@@ -17,7 +17,7 @@ Not reported
     Targets that are given something that cannot be seen; libraries.
 """
 
-from ...model.cmake.links import is_opaque, list_linked_items
+from ...model.cmake.links import is_opaque
 from ...model.package import IncludeUse
 from ...targets.platform import strip_separators
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
@@ -54,7 +54,7 @@ def unlinked_beside(view: TargetView, package: Package):
         if len(users) < 2:
             continue
         for name in users.keys() - links.keys():
-            links[name] = list_linked_items(package, name) if name in targets else None
+            links[name] = package.build.list_linked_items(name) if name in targets else None
         own = {n for n in users if any(word in strip_separators(item) for item in links[n] or ())}
         for name, include in users.items():
             target, items = targets.get(name), links[name]

@@ -24,7 +24,7 @@ Not reported
 
 from collections.abc import Collection
 
-from ...model.cmake.links import list_linked_items, resolve_package
+from ...model.cmake.links import resolve_package
 from ...targets.platform import strip_separators
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 
@@ -50,7 +50,7 @@ def unlinked_own_library(view: TargetView, package: Package):
     for target in package.build.targets:
         for source in target.sources:
             compiling.setdefault(source, []).append(target.name)
-    links = {name: list_linked_items(package, name) for name in targets} if package.linked.own_calls else {}
+    links = {name: package.build.list_linked_items(name) for name in targets} if package.linked.own_calls else {}
     known = {name for f in package.build.found for name in (f.name, f.prefix)} | {"catkin"}
     seen = set()
     for source, other, function in package.linked.own_calls:
@@ -66,7 +66,7 @@ def unlinked_own_library(view: TargetView, package: Package):
             items = links[name]
             if items is None or any("$" in item and resolve_package(item) not in known for item in items):
                 continue
-            reached = {name, *items, *(targets[n].alias_of for n in items & targets.keys())}
+            reached = package.build.find_linked(name) or ()
             words = [strip_separators(item) for item in items]
             if not definers.isdisjoint(reached) or any(strip_separators(n) in one for n in libraries for one in words):
                 continue
