@@ -273,7 +273,8 @@ class WorkspaceOnTarget:
     @cached_property
     def own_modules(self) -> frozenset[str]:
         """Top-level Python modules that packages of the workspace bring, or may bring."""
-        found = {name.removesuffix("_py") for name in self.workspace.packages} | self.workspace.may_have
+        found = {name.removesuffix("_py") for name in self.workspace.packages} | self.workspace.unread_names
+        found.update(self.workspace.packages)
         for package in self.workspace:
             found |= find_python_packages(package.linked.files)
         return frozenset(found)
@@ -430,7 +431,7 @@ class WorkspaceOnTarget:
             p.kind == "system" for p in self.find_header(path)
         ):
             return Availability(symbol, "removed", target.platform, form="platform")
-        owners = [p.name for p in self.find_header(path) if p.kind == "ros" and p.name not in self.workspace.may_have]
+        owners = [p.name for p in self.find_header(path) if p.kind == "ros" and not self.may_have(p.name)]
         if not owners or any(p.kind != "ros" for p in self.find_header(path)):
             return None
         lacking = [(name, version) for name in owners if (version := target.find_version(name)) is not None]
@@ -507,10 +508,23 @@ class WorkspaceOnTarget:
         """What of released packages and platform libraries is there."""
         return Availabilities(self.target, self.offers, self.providers, self.horizons)
 
+    def may_have(self, name: str) -> bool:
+        """Whether the workspace has a package, or may have it in a folder that was not read."""
+        return name in self.workspace.packages or self.may_be_unread(name)
+
+    @cache_method
+    def may_be_unread(self, name: str) -> bool:
+        """Whether a folder of the workspace that was not read may hold a package: a submodule most likely holds what is
+        called after it, or comes from a repository that is called as it is, in a version of its own."""
+        unread = self.workspace.unread_names
+        if any(is_called_after(name, folder) for folder in unread):
+            return True
+        return bool(unread) and not unread.isdisjoint(self.target.list_repositories(name))
+
     def find_availability(self, symbol: Symbol, conditions: Iterable[Condition] = ()) -> Availability:
         """How the target stands to something outside the workspace; what the workspace brings itself is there. What is
         to come counts where a use under these conditions does on that horizon too."""
-        if symbol.kind != "component" and not self.workspace.may_have.isdisjoint(symbol.packages):
+        if symbol.kind != "component" and any(map(self.may_have, symbol.packages)):
             return Availability(symbol, "present")
         return self.availabilities.find_on_horizon(symbol, lambda ahead: self.is_active_on(ahead, conditions))
 
@@ -535,7 +549,7 @@ class WorkspaceOnTarget:
     def may_concern(self, package: Package, head: str, path: str, language: str = "") -> bool:
         """True when a file can mean a changed package by a name: the package declares or includes something of it, and
         the workspace does not hold it in a version of its own. head: the changed package. language: of the name."""
-        if head in self.workspace.may_have:
+        if self.may_have(head):
             return False
         if path.endswith(".py") or language == "python":
             return True
@@ -798,6 +812,15 @@ class WorkspaceOnTarget:
             names = dict.fromkeys((head, head.replace("_", "-")))
             found += [Provider("system", f"python3-{name}-pip", name, False) for name in names]
         return tuple(found)
+
+
+# Letters of a folder's name by which a package is called after it.
+_SHORTEST = 3
+
+
+def is_called_after(name: str, folder: str) -> bool:
+    """Whether a package is called after a folder of this name, which most likely holds it."""
+    return len(folder) >= _SHORTEST and name.startswith(folder.replace("-", "_"))
 
 
 def _list_installed_with(dependencies: Iterable[ReleasedDependency] | None) -> tuple[str, ...]:

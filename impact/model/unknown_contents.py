@@ -47,11 +47,6 @@ def _find_stems(wanted: str) -> tuple[str, str]:
     return re.sub(r"[^a-z]", "", first), re.split(r"[^a-z]", wanted.lower())[0]
 
 
-def is_called_after(name: str, folder: str) -> bool:
-    """Whether a package is called after a folder of this name, which most likely holds it."""
-    return len(folder) >= _SHORTEST and name.startswith(folder.replace("-", "_"))
-
-
 class UnknownContents:
     """What may be there for the packages of a workspace on one target although nobody is known to have it."""
 
@@ -119,10 +114,6 @@ class UnknownContents:
         space = strip_separators(name.partition("::")[0])
         along = self._view.list_transitive(f.name for f in package.build.found if f.how == "find_package")
         return any(space in strip_separators(one) for one in along if self._view.is_package(one))
-
-    def is_of_submodule(self, name: str) -> bool:
-        """Whether a package is called after a folder of the workspace that was not read, which most likely holds it."""
-        return any(is_called_after(name, folder) for folder in self._view.workspace.unread_names)
 
     def list_opaque(self, package: Package) -> tuple[str, ...]:
         """Declared keys whose contents and own dependencies are not known, since no archive of the platform has them

@@ -212,14 +212,8 @@ class Workspace:
 
     @cached_property
     def unread_names(self) -> frozenset[str]:
-        """Names of folders that were not read: a submodule most likely holds the package that it is called after, in a
-        version of its own."""
+        """Names of folders that were not read, such as submodules that are not checked out."""
         return frozenset(path.rpartition("/")[2] for path in self.unread)
-
-    @cached_property
-    def may_have(self) -> frozenset[str]:
-        """Names of its packages, and of those that folders which were not read are called after."""
-        return self.unread_names.union(self.packages)
 
     def is_unread(self, path: str) -> bool:
         """Whether a file or folder was not read, lies in a folder that was not, or holds such ones."""

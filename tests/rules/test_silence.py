@@ -1162,7 +1162,14 @@ def test_distutils_is_brought_back_by_setuptools(module, severity, tmp_path, cac
     assert found == [(severity, module)]
 
 
-@pytest.mark.parametrize(("folder", "expected"), [("external/cv_bridge", []), ("external/vision", ["error"])])
+@pytest.mark.parametrize(
+    ("folder", "expected"),
+    [
+        ("external/cv_bridge", []),
+        ("external/vision_opencv", []),  # the repository that releases cv_bridge
+        ("external/vision", ["error"]),
+    ],
+)
 def test_a_submodule_that_is_not_checked_out_has_the_package_that_it_is_called_after(folder, expected, tmp_path):
     files = ament(
         "find_package(cv_bridge REQUIRED)\nadd_executable(look look.cpp)\n"
@@ -1185,6 +1192,21 @@ def test_a_submodule_that_is_not_checked_out_has_packages_that_are_called_after_
         (tmp_path / name).write_text(text)
     report = check(tmp_path, Options(targets=("jazzy",), cache=tmp_path / "cache", jobs=1))
     assert [finding.severity for finding in report.findings if finding.rule == "unreleased-package"] == expected
+
+
+@pytest.mark.parametrize(("folder", "expected"), [("audio_common", []), ("audio", ["warning"])])
+def test_launch_files_start_what_a_submodule_that_is_not_checked_out_may_have(folder, expected, tmp_path):
+    launch = (
+        '<launch><include file="$(find-pkg-share sound_play)/launch/soundplay_node.launch"/>'
+        '<node pkg="sound_play" exec="soundplay_node.py"/></launch>'
+    )
+    files = ament("install(FILES a.launch.xml DESTINATION share/${PROJECT_NAME})", **{"a_launch_xml": launch})
+    files["a.launch.xml"] = files.pop("a_launch.xml", launch)
+    files[".gitmodules"] = f'[submodule "sound"]\n\tpath = {folder}\n\turl = https://example.org/s.git\n'
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    report = check(tmp_path, Options(targets=("dashing",), cache=tmp_path / "cache", jobs=1))
+    assert [finding.severity for finding in report.findings if finding.rule == "removed-executable"] == expected
 
 
 @pytest.mark.parametrize("folder", ["external/our_gimbal", "external/drivers"])

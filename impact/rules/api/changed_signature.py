@@ -99,7 +99,7 @@ def _diagnose_use(use: UnservedUse, package: Package) -> Diagnostic | Upcoming:
 
 
 def _find_row(view: TargetView, label: str) -> Availability | None:
-    rows = (row for row in view.find_reviewed("use", label) if row.package not in view.workspace.may_have)
+    rows = (row for row in view.find_reviewed("use", label) if not view.may_have(row.package))
     return next((row for row in rows if row.state != "upcoming" or row.package not in _COMPILER), None)
 
 

@@ -112,7 +112,7 @@ def find_gone_package(
     launch files that are no longer used."""
     if view.target.ros == 1 or use.role == "test":
         return
-    if not view.is_package(upstream) or upstream in view.workspace.packages:
+    if not view.is_package(upstream) or view.may_have(upstream):
         return
     if view.is_available(upstream) or view.underlaid or view.is_private(upstream):
         return

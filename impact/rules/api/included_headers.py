@@ -90,7 +90,7 @@ class IncludedHeaders:
         """The reviewed row on a path that the target lacks. rows: all on that path, by their state."""
         view = self._view
         row = rows.get("removed")
-        if row is not None and row.package in view.workspace.unread_names:
+        if row is not None and view.may_have(row.package):
             return None
         if row is not None and not view.has_nested_header(row.package, row.symbol.name):
             return row

@@ -137,7 +137,7 @@ def _list_emptied(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             name = link.item.removeprefix("${").removesuffix("_LIBRARIES}")
             if link.how != "link" or link.item != f"${{{name}_LIBRARIES}}" or link.item in seen:
                 continue
-            offer = view.offers.find_package(name) if name not in view.workspace.may_have else None
+            offer = view.offers.find_package(name) if not view.may_have(name) else None
             if offer is None or not view.is_sure(link.conditions) or not offer.exports_targets_alone:
                 continue
             items = package.build.list_linked_items(target.name)

@@ -65,7 +65,7 @@ def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterato
             continue
         rows = {row.state: row for row in reversed(view.find_reviewed("package", name)) if row.form == form}
         later = rows.get("upcoming")
-        if later is not None and name not in view.workspace.may_have and view.target.find_version(name) is not None:
+        if later is not None and not view.may_have(name) and view.target.find_version(name) is not None:
             if later.horizon is not None and view.is_active_on(later.horizon, conditions):
                 seen.add(name)
                 data = {"distro": later.horizon.name, "replacement": later.replacement}

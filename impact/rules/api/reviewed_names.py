@@ -41,4 +41,4 @@ class ReviewedNames:
         """The rows on a name that say that it is in one of these states."""
         # What the workspace itself brings is as it brings it, whatever a release did.
         rows = self._view.find_reviewed(kind, name)
-        return [row for row in rows if row.state in states and row.package not in self._view.workspace.may_have]
+        return [row for row in rows if row.state in states and not self._view.may_have(row.package)]

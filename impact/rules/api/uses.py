@@ -45,7 +45,7 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
     for use in package.linked.cpp_api:
         if use.package not in near or use.name in own or not view.applies(use.conditions):
             continue
-        if use.package in view.workspace.may_have:
+        if view.may_have(use.package):
             continue
         if _is_of_another(use.name.partition("::")[0], use.package, near):
             continue  # a name of that package, which this one took over for a while
@@ -58,7 +58,7 @@ def list_cpp_uses(view: TargetView, package: Package) -> Iterable[UnservedUse]:
         if use.how == "override" and (found.state == "present" or says_override(use.given, use.arguments)):
             overridden.add((extract_class(use.given, use.arguments), use.name))
     for use, found in unserved:
-        if found.form == "unmatched" and not view.workspace.may_have.isdisjoint(found.symbol.packages):
+        if found.form == "unmatched" and any(map(view.may_have, found.symbol.packages)):
             continue  # a base class may be another there
         if _is_silent(use, found) and (extract_class(use.given, use.arguments), use.name) in overridden:
             continue  # another of that name overrides, or is to

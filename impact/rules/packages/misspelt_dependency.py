@@ -48,7 +48,7 @@ def misspelt_dependency(view: TargetView, package: Package):
     for name, at, _ in list_unknown(view, package):
         intended = find_intended(view, package, name)
         if intended is None:
-            if name in BUILD_TOOLS and not view.unknown_contents.is_of_submodule(name):
+            if name in BUILD_TOOLS and not view.may_be_unread(name):
                 yield Diagnostic(at, name, package.name, kind="build type", fix=(Remove(at.path, name),))
             continue
         kind, names = intended

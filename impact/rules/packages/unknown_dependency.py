@@ -25,8 +25,8 @@ Not reported
 
 import re
 
+from ...model.on_target import is_called_after
 from ...model.package import BUILD_TOOLS
-from ...model.unknown_contents import is_called_after
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .unresolved_names import find_intended, list_unknown
 from .used_names import list_used_names, shows_uses, stands_in_cmake
@@ -59,7 +59,7 @@ _KEY = re.compile(r"python3?-[a-z0-9.+-]+|lib[a-z0-9.+-]+-dev|[a-z0-9.+-]+-pip|\
 )
 def unknown_dependency(view: TargetView, package: Package):
     for name, at, _ in list_unknown(view, package):
-        of_submodule = view.unknown_contents.is_of_submodule(name)
+        of_submodule = view.may_be_unread(name)
         if not of_submodule and (name in BUILD_TOOLS or find_intended(view, package, name) is not None):
             continue
         unread = view.workspace.outside.unread_submodules

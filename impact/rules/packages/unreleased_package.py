@@ -47,7 +47,7 @@ def unreleased_package(view: TargetView, package: Package):
             continue  # removed-package or renamed-package says so
         if not target.was_ever_released(name) or view.is_private(name) or view.find_successor(name):
             continue
-        if view.unknown_contents.is_of_submodule(name):
+        if view.may_be_unread(name):
             continue
         seen.add(name)
         used = any(

@@ -33,7 +33,7 @@ _MESSAGE = "rosdep has no rule for `{subject}` on {platform}"
 def unresolvable_key(view: TargetView, package: Package):
     target = view.target
     for name, at, resolution in list_unresolved(view, package):
-        if resolution is not None or view.unknown_contents.is_of_submodule(name) or target.was_ever_released(name):
+        if resolution is not None or view.may_be_unread(name) or target.was_ever_released(name):
             continue
         if target.knows_key(name) and target.has_rosdep_rules():
             similar = next(iter(target.find_replacement_keys(name)), "")

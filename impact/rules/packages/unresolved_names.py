@@ -39,7 +39,7 @@ def list_unresolved(view: TargetView, package: Package) -> Iterable[UnresolvedNa
             continue
         seen.add(name)
         if not view.is_private(name):
-            resolution = None if view.unknown_contents.is_of_submodule(name) else view.target.resolve(name)
+            resolution = None if view.may_be_unread(name) else view.target.resolve(name)
             yield UnresolvedName(name, view.find_place(package, dependency), resolution)
 
 
@@ -57,7 +57,7 @@ _MADE = frozenset(("executable", "library", "interface", "module"))
 @cache_in_derived
 def find_intended(view: TargetView, package: Package, name: str) -> IntendedName | None:
     """What was meant by a name that nobody knows; None where that is not known."""
-    if view.unknown_contents.is_of_submodule(name):
+    if view.may_be_unread(name):
         return None
     if installing := find_installing(view, package, name):
         return IntendedName("installing", (installing,))

@@ -468,6 +468,16 @@ class DistroTarget:
         return frozenset(name for (name,) in rows)
 
     @cache_method
+    def list_repositories(self, package: str) -> frozenset[str]:
+        """Names of the repositories that have released a package in some distro."""
+        rows = self._data.fetch(
+            "SELECT DISTINCT n.name FROM home h JOIN package p ON p.id = h.package"
+            " JOIN repository n ON n.id = h.repository WHERE p.name = ?",
+            (package,),
+        )
+        return frozenset(name for (name,) in rows)
+
+    @cache_method
     def holds(self, condition: str) -> bool:
         """Whether a manifest condition such as `$ROS_VERSION == 2` holds here. One that cannot be read holds not."""
         here = Environment(self.distro, str(self.ros), (self.python_major, 0))
