@@ -4,7 +4,8 @@ What it does
     Reports imports and uses of names that the target's version of the providing package, or of Python itself, does not
     have, and an earlier or later version of it has: modules, what is imported from them, attributes, and members of
     objects whose class shows; and imports of names, and constants of classes, that no version of the package has
-    anywhere. What each version has was read from its sources, of Python's standard library from typeshed's stubs.
+    anywhere, or has in other modules alone. What each version has was read from its sources, of Python's standard
+    library from typeshed's stubs.
 
 Why it breaks
     Python raises ImportError or AttributeError when the line is reached; where it is an import, when the program or

@@ -150,9 +150,11 @@ class PythonOffers:
 
     def _check_imported(self, offer: PackageOffer, use: PythonUse) -> Availability | None:
         """A name that is imported from a module that is there, or taken of a class that is, and that no version knows
-        anywhere."""
+        anywhere, or knows in other modules alone."""
         module, _, word = use.name.rpartition(".")
-        if word in offer.history.python_words or offer.stored in offer.line.approximate:
+        if offer.stored in offer.line.approximate:
+            return None
+        if word in offer.history.python_words and not self._has_never_had(offer, use.name, offer.place):
             return None
         if not offer.exact and offer.place + 1 == len(offer.line.versions):
             return None  # newer than all that were read, and may have got it
