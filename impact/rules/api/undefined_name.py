@@ -48,10 +48,12 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
         "module": Text("the package has no module `{subject}`", "correct the module path in the import"),
         "module of another": Text("`{owner}` has no module `{subject}`", "correct the module path in the import"),
         "itself": Text(
-            "`from {module} import *` in `{module}` itself gives nothing in Python 3", "write `from .{module} import *`"
+            "`from {subject} import *` in `{subject}` itself gives nothing in Python 3[[ ({horizon})]]",
+            "write `from .{subject} import *`",
         ),
         "beside": Text(
-            "`{subject}` is a module of the same package, where Python 3 does not look for it", "write `.{subject}`"
+            "`{subject}` is a module of the same package, where Python 3[[ ({horizon})]] does not look for it",
+            "write `.{subject}`",
         ),
         "unlisted": Text(
             "`{subject}` is imported, but setup() does not install this Python package",
@@ -63,8 +65,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
 def undefined_name(view: TargetView):
     for package in view:
         for use, name in _list_uses(view, package):
-            if name == BESIDE:
-                yield from _find_beside(view, package, use)
+            if _is_of_python2(use, name):
                 continue
             if name == UNLISTED:
                 if use.role == "run":
@@ -75,25 +76,18 @@ def undefined_name(view: TargetView):
             kind = "imported" if use.module else "module" if "." in name.lstrip(".") else "undefined"
             if kind != "undefined" and _may_be_of_another(view, package, use.module or name):
                 continue
-            if name == "*":
-                if view.target.python_major >= 3:
-                    doubts = (*_collect_import_doubts(view, use), Doubt.LATE)
-                    yield Diagnostic(use.at, use.module, package.name, {"module": use.module}, "itself", doubts)
-            elif use.module or not _is_of_python2(name):
-                # A module that is not there has, by its first name, to be one of the package.
-                own = kind != "module" or name.partition(".")[0] in package.linked.modules
-                doubts = (*_collect_import_doubts(view, use), own or Doubt.AMBIGUOUS)
-                # Whoever looks at the first in a file sees the others; wrong imports are mended one by one.
-                together = (Together(use.at.path if kind == "undefined" else f"{use.at.path} {name}"),)
-                yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
+            # A module that is not there has, by its first name, to be one of the package.
+            own = kind != "module" or name.partition(".")[0] in package.linked.modules
+            doubts = (*_collect_import_doubts(view, use), own or Doubt.AMBIGUOUS)
+            # Whoever looks at the first in a file sees the others; wrong imports are mended one by one.
+            together = (Together(use.at.path if kind == "undefined" else f"{use.at.path} {name}"),)
+            yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
         yield from _find_lacking_elsewhere(view, package)
 
     def find(package: Package, target: DistroTarget) -> Iterator[RejectedUse]:
         for use, name in _list_uses(view, package):
-            if not use.module and _is_of_python2(name):
-                yield RejectedUse(
-                    use, name.lstrip("."), "python 2", doubts=_collect_doubts(use), conditions=use.conditions
-                )
+            if _is_of_python2(use, name):
+                yield from _find_refused(view, package, use, name)
 
     yield from report_refused(view, find)
 
@@ -104,12 +98,16 @@ def _list_uses(view: TargetView, package: Package) -> Iterator[tuple[ImportUse, 
             yield use, use.names[0]
 
 
-def _find_beside(view: TargetView, package: Package, use: ImportUse) -> Iterator[Diagnostic]:
-    """An import of a module by its bare name that only Python 2 takes from the folder of the importing one."""
-    head = use.module.partition(".")[0]
-    if view.target.python_major >= 3 and not _may_be_of_another(view, package, head):
-        doubts = _collect_import_doubts(view, use)
-        yield Diagnostic(use.at, head, package.name, {"module": use.module}, "beside", doubts)
+def _find_refused(view: TargetView, package: Package, use: ImportUse, name: str) -> Iterator[RejectedUse]:
+    """What Python 2 alone accepts: its builtins and methods, and imports of a module by its bare name, or of all of it,
+    that it takes from the folder of the importing one."""
+    doubts, head = _collect_doubts(use), use.module.partition(".")[0]
+    if name not in (BESIDE, "*"):
+        yield RejectedUse(use, name.lstrip("."), "python 2", doubts=doubts, conditions=use.conditions)
+    elif not _may_be_of_another(view, package, head if name == BESIDE else use.module):
+        kind, subject = ("beside", head) if name == BESIDE else ("itself", use.module)
+        late = (Doubt.LATE,) if name == "*" else ()
+        yield RejectedUse(use, subject, kind, doubts=(*doubts, *late), conditions=use.conditions)
 
 
 def _may_be_of_another(view: TargetView, package: Package, module: str) -> bool:
@@ -143,8 +141,10 @@ def _collect_import_doubts(view: TargetView, use: ImportUse) -> tuple[Doubt | bo
     return (*list_place_doubts(view, use.role), *_collect_doubts(use), use.role != "test" or Doubt.TEST)
 
 
-def _is_of_python2(name: str) -> bool:
-    return name in PYTHON2_BUILTINS or name.startswith(".")
+def _is_of_python2(use: ImportUse, name: str) -> bool:
+    """Whether Python 2 alone accepts a use: a name, or an import from the folder of the importing module."""
+    of_name = not use.module and (name in PYTHON2_BUILTINS or name.startswith("."))
+    return of_name or name in (BESIDE, "*")
 
 
 def _collect_doubts(use: ImportUse) -> tuple[Doubt, ...]:
