@@ -2,16 +2,17 @@
 
 What it does
     Compares what a package exports with what is there: libraries that no command makes or that are not installed,
-    system libraries under a name whose variables nothing sets, and packages of ament_export_dependencies() that nobody
-    has, declares or looks for.
+    system libraries under a name whose variables nothing sets, and in ament_export_dependencies() targets, and packages
+    that nobody has, declares or looks for.
 
 Why it breaks
     Every package that finds it stops: the exported configuration names a library that was never built, or finds a
     package that nobody has.
 
 Severity
-    error for a library of its own that catkin_package() exports and no command makes, and for a library that is
-    exported and not installed; warning where dependants are not linked to it, for a package that nobody has, or a
+    error for a library of its own that catkin_package() exports and no command makes, for a library that is exported
+    and not installed, and for targets among dependencies where another package of the workspace finds this one;
+    warning for other such targets, where dependants are not linked to a library, for a package that nobody has, or a
     misspelt name in DEPENDS; note for other names in DEPENDS.
 
 Example
@@ -30,9 +31,10 @@ from collections.abc import Iterator
 
 from ...model.misspelling import SpellingIndex
 from ...targets.providers.library import list_variables
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .ament_exports import read_ament_exports
 
+_TARGETS = (Together("targets as packages"),)
 _UNSET = "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEPENDS exports nothing"
 
 
@@ -56,6 +58,10 @@ _UNSET = "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEP
             "the exported library `{subject}` is never built, so dependants are not linked to it",
             "export what the package builds, or drop it",
         ),
+        "target": Text(
+            "ament_export_dependencies() is given the target `{subject}`, so find_package({package}) stops",
+            "name the package that has it instead",
+        ),
         "no package": Text(
             "package `{subject}` is neither known nor declared, so find_package({package}) stops",
             "leave it out of ament_export_dependencies",
@@ -65,6 +71,7 @@ _UNSET = "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEP
 def nonexistent_export(view: TargetView, package: Package):
     if package.build.catkin_package is not None:
         yield from _list_of_catkin(view, package)
+    yield from _list_targets_as_packages(view, package)
     ament = read_ament_exports(view, package)
     if ament is not None:
         yield from _list_of_ament(view, package, ament.exports)
@@ -140,6 +147,20 @@ def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diag
             yield Diagnostic(export.at, item, package.name, kind="not built", doubts=(Doubt.DISTURBS,))
 
 
+def _list_targets_as_packages(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """Targets among the packages that dependants are to find."""
+    for export in package.build.exports:
+        if export.how == "ament_export_dependencies" and "::" in export.item and view.is_sure(export.conditions):
+            doubts = (_is_surely_found(view, package) or Doubt.DISTURBS,)
+            yield Diagnostic(export.at, export.item, package.name, {}, "target", doubts, together=_TARGETS)
+
+
+def _is_surely_found(view: TargetView, package: Package) -> bool:
+    """Whether another package of the workspace looks for this one in any case."""
+    others = (other for other in view.list_built() if other.name != package.name)
+    return any(f.name == package.name and view.is_sure(f.conditions) for other in others for f in other.build.found)
+
+
 def _list_unknown_packages(view: TargetView, package: Package, dependencies: frozenset[str]) -> Iterator[Diagnostic]:
     """Packages that dependants look for and nothing else speaks of."""
     if package.build.unresolved:
@@ -147,7 +168,7 @@ def _list_unknown_packages(view: TargetView, package: Package, dependencies: fro
     known = {package.name, *view.collect_declared(package), *(f.name for f in package.build.found)}
     known |= {*view.workspace.find_modules, *(i for r in package.build.installs if r.kind == "export" for i in r.items)}
     near = SpellingIndex(known)
-    for name in sorted(dependencies - known):
+    for name in sorted(name for name in dependencies - known if "::" not in name):
         if view.is_package(name) or view.find_cmake(name) or view.is_private(name) or view.target.knows_key(name):
             continue  # what has the name of a system package may bring it
         if near.find_nearest(name) or any(name.startswith(first) and name[len(first) :] in known for first in known):
