@@ -1,16 +1,16 @@
 """misplaced-install: an install rule puts headers, modules, programs or components where nobody looks for them.
 
 What it does
-    Reports a folder `include` that is installed into another `include`, headers that are installed under another folder
-    name than code includes them by, nodes outside of `lib/` and the package's name, registered components outside of
-    `lib`, and install folders of a Python version other than the target's.
+    Reports a folder `include` that is installed into another `include` or below it, headers that are installed under
+    another folder name than code includes them by, nodes outside of `lib/` and the package's name, registered
+    components outside of `lib`, and install folders of a Python version other than the target's.
 
 Why it breaks
     The package itself builds. But dependants do not find its headers, rosrun or ros2 run its programs, Python its
     modules, or component containers its library, which they load from `lib`.
 
 Severity
-    error where another package of the workspace compiles such a header; warning otherwise.
+    error where dependants of an ament package miss such a header; warning otherwise.
 
 Example
     install(DIRECTORY include DESTINATION include)
@@ -37,8 +37,8 @@ from .install_rules import is_installed, list_references, read_installs
     group="missing-install",
     texts={
         "doubled": Text(
-            "the folder `include` is installed into `include`, so headers end up in include/include",
-            "write `include/` with a slash at its end",
+            "the folder `include` is installed into `{destination}`, so headers end up in {destination}/include",
+            "write `{instead}` with a slash at its end",
         ),
         "renamed": Text(
             "headers that are included as `{name}/...` are installed into `{destination}`",
@@ -72,8 +72,12 @@ def _list_headers(view: TargetView, package: Package, installs) -> Iterator[Diag
         for item in install.items if install.kind == "directory" and include else ():
             # How others include what lies outside of the workspace is not known.
             folder = _FOLDER.search(item) if "$" not in item else None
-            if tail == "" and root[-1:] in ("", "/") and item.rpartition("/")[2] == "include":
-                kind, subject, lost, data = "doubled", "include", item, {}
+            if tail[:1] in ("", "/") and root[-1:] in ("", "/") and item.rpartition("/")[2] == "include":
+                kind, subject, lost, place = "doubled", "include", item, install.destination.rstrip("/")
+                if any(exported.rstrip("/").endswith(f"{place}/include") for exported in _list_exported(view, package)):
+                    continue
+                instead = f"include{tail.rstrip('/')}/" if package.build_type == "catkin" else "include/"
+                data = {"destination": place, "instead": instead}
             elif folder is not None and not root and tail.count("/") == 1 and tail != f"/{folder[1]}":
                 kind, subject, lost = "renamed", install.destination, item.rstrip("/").removesuffix(folder[1])
                 data = {"name": folder[1], "destination": subject, "place": f"include/{folder[1]}"}
@@ -89,14 +93,19 @@ def _list_headers(view: TargetView, package: Package, installs) -> Iterator[Diag
 _FOLDER = re.compile(r"(?:^|/)include/([\w-]+)/\Z")
 
 
+def _list_exported(view: TargetView, package: Package) -> list[str]:
+    """The folders that dependants search for headers."""
+    exported = [e.item for e in package.build.exports if "include" in e.how and view.is_sure(e.conditions)]
+    return [*exported, *(place for target in package.build.targets for place in target.installed_includes)]
+
+
 def _is_lost(view: TargetView, package: Package, install, folder: str) -> bool:
     """True when another package of the workspace compiles a header of the folder, or the package exports the place
-    where its headers should lie, and no other rule installs them there."""
-    if not view.is_sure(install.conditions) or package.build.unresolved:
+    where its headers should lie, and no other rule installs them there; not of catkin, whose devel space has them."""
+    if not view.is_sure(install.conditions) or package.build.unresolved or package.build.catkin_package is not None:
         return False
-    exported = [e.item for e in package.build.exports if "include" in e.how and view.is_sure(e.conditions)]
-    exported.extend(place for target in package.build.targets for place in target.installed_includes)
-    if any("$" in item or item.rstrip("/").endswith("include/include") for item in exported):
+    exported = _list_exported(view, package)
+    if any("$" in item for item in exported):
         return False
     others = [i for i in package.build.installs if i is not install and i.kind in ("directory", "files")]
     start = posixpath.normpath(folder) + "/"

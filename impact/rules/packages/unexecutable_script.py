@@ -1,11 +1,12 @@
 """unexecutable-script: a script is installed so that it cannot be executed.
 
 What it does
-    Reports scripts that install(FILES) or install(DIRECTORY) copies without execute permission, and installed programs
-    whose first line names `python` where the target has `python3` alone (Ubuntu focal, Debian bullseye and later).
+    Reports scripts that install(FILES) or install(DIRECTORY) copies without execute permission, and programs whose
+    first line names `python` where the target has `python3` alone (Ubuntu focal, Debian bullseye and later): installed
+    ones, and in ROS 1 those that a launch file starts where they lie.
 
 Why it breaks
-    The package itself builds. But rosrun, ros2 run or a launch file cannot start the installed script.
+    The package itself builds. But rosrun, ros2 run or a launch file cannot start the script.
 
 Severity
     error for scripts that are installed among programs, and for nodes in Python (ROS 1); warning otherwise.
@@ -25,11 +26,13 @@ import re
 from collections.abc import Iterator
 
 from ...model.cmake.installed import list_copied_files
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
-from .install_rules import read_installs
+from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, Together, rule
+from .install_rules import is_installed, list_references, read_installs
 
-_OTHER_INTERPRETER = "`{subject}` is to be run by `python`, which {platform} does not have, and is installed as it is"
+_OTHER_INTERPRETER = "`{subject}` is to be run by `python`, which {platform} does not have, and is {installed}"
 _ONE_LINE = (Together("interpreter"),)
+# Who runs such where they lie may have the command by other means, and has it for all of them.
+_BY_OTHER_MEANS = (Together("command python", everywhere=True),)
 # Folders for programs, as install rules name them.
 _OF_PROGRAMS = re.compile(r"(^|/)(bin|lib)(/|$)|_BIN_DESTINATION")
 # Scripts that other programs run, as data.
@@ -53,9 +56,10 @@ _WITHOUT_PLAIN = 8
     },
 )
 def unexecutable_script(view: TargetView, package: Package):
-    installs = read_installs(view, package) or ()
-    yield from _list_not_executable(view, package, installs)
-    yield from _list_plain(view, package, installs)
+    installs = read_installs(view, package)
+    if installs is not None:
+        yield from _list_not_executable(view, package, installs)
+        yield from _list_plain(view, package, installs)
 
 
 def _list_not_executable(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
@@ -66,8 +70,10 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
     nodes = {i.at.path for i in package.linked.imports if i.module == "rospy" and view.target.ros == 1}
     for install in installs:
         among_programs = _OF_PROGRAMS.search(install.destination)
-        if install.kind == "directory" and not install.executable and among_programs:
-            copied = [path for path, _ in list_copied_files(install, "", package.linked.files) if path in scripts]
+        if install.kind == "directory" and not install.executable:
+            # Elsewhere than among programs lies much that nobody starts.
+            those = scripts if among_programs else nodes.intersection(package.linked.scripts)
+            copied = [path for path, _ in list_copied_files(install, "", package.linked.files) if path in those]
         elif install.kind == "files":
             copied = [path for item in install.items if (path := posixpath.normpath(item)) in package.linked.scripts]
         else:
@@ -90,18 +96,24 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
 
 
 def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
-    """Programs that ask for `python`, where there is none and nothing writes another interpreter into their copies."""
-    target = view.target
+    """Programs that ask for `python`, where there is none and nothing writes another interpreter into their copies, or
+    into those that a launch file starts where they lie, as of ROS 1."""
+    target, catkin = view.target, package.build_type == "catkin"
     if target.python_major < 3 or target.python < _WITHOUT_PLAIN:
         return
-    kind = "interpreter, catkin" if package.build_type == "catkin" else "interpreter"
+    plain = [p for p in package.linked.plain_scripts if posixpath.basename(p) not in package.linked.interpreted]
+    found = {}
     for install in installs:
         programs = install.kind == "programs" or (install.kind == "directory" and install.executable)
-        if not programs or install.rewritten or not _OF_PROGRAMS.search(install.destination):
-            continue
-        for path, _ in list_copied_files(install, "", package.linked.files):
-            name = posixpath.basename(path)
-            if path in package.linked.plain_scripts and name not in package.linked.interpreted:
-                data = {"platform": target.platform}
-                doubts = (Doubt.LATE, view.is_sure(install.conditions) or Doubt.CONDITIONAL)
-                yield Diagnostic(install.at, name, package.name, data, kind, doubts, together=_ONE_LINE)
+        if programs and not install.rewritten and _OF_PROGRAMS.search(install.destination):
+            copied = (path for path, _ in list_copied_files(install, "", package.linked.files) if path in plain)
+            found.update((path, (install.at, "installed as it is", install.conditions, _ONE_LINE)) for path in copied)
+    started = list_references(view, package, "executable") if catkin else ()
+    for path in plain:
+        if posixpath.basename(path) in started and not is_installed(installs, path):
+            found[path] = At(path, 1), "not installed", (), _BY_OTHER_MEANS
+    for path, (at, how, conditions, together) in found.items():
+        data = {"platform": target.platform, "installed": how}
+        doubts = (Doubt.LATE, view.is_sure(conditions) or Doubt.CONDITIONAL)
+        kind = "interpreter, catkin" if catkin else "interpreter"
+        yield Diagnostic(at, posixpath.basename(path), package.name, data, kind, doubts, together=together)
