@@ -2,8 +2,8 @@
 
 What it does
     Compares the install rules of CMake with what the package offers: executables that launch files start, or beside
-    others that are installed, or of a package that installs no target at all, and libraries that are exported, linked
-    by installed ones, or named as plugins.
+    others that are installed, libraries that are exported, linked by installed ones, or named as plugins, and programs
+    and libraries of a package that installs no target at all.
 
 Why it breaks
     Everything works from the build tree (catkin's devel space, symlinked installs), and the installed robot lacks it.
@@ -20,14 +20,14 @@ Use instead
     install(TARGETS tcp_socket_node udp_socket_node ...)
 
 Not reported
-    Tests, examples and benchmarks; static libraries; packages without CMake; packages of ROS 1 that install no target
-    and were never released.
+    Tests, examples and benchmarks; static libraries that other targets link; packages without CMake; packages of ROS 1
+    that install no target and were never released.
 """
 
 import posixpath
 import re
 
-from ...model.cmake.build import is_for_tests
+from ...model.cmake.build import BuildTarget, is_for_tests
 from ...model.package import find_folder_role
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .install_rules import is_installed, list_references, read_installs
@@ -80,7 +80,7 @@ def missing_install(view: TargetView, package: Package):
             t.name in installed for t in package.build.targets if t.kind == "executable"
         ):
             why = "program"
-        elif target.kind == "executable" and not installed and _is_to_be_installed(view, package, installs):
+        elif not installed and not _is_used(package, target) and _is_to_be_installed(view, package, installs):
             why = "nothing"
         if why and (why == "started" or not _is_aside(package, target)):
             # Who finds a package that exports a library stops where the library is neither a target nor installed.
@@ -97,6 +97,17 @@ def _is_to_be_installed(view: TargetView, package: Package, installs) -> bool:
     if package.build.unresolved or any("$" in item for install in installs for item in install.items):
         return False
     return view.target.ros == 2 or view.target.was_ever_released(package.name)
+
+
+def _is_used(package: Package, target: BuildTarget) -> bool:
+    """Whether a library is of use without an install rule, as targets link it that are no tests, or nonexistent-export
+    tells that it is exported."""
+    if target.kind == "executable":
+        return False
+    names = {target.name, *(t.name for t in package.build.targets if t.alias_of == target.name)}
+    links = (link for t in package.build.targets if not is_for_tests(t.conditions) for link in t.links)
+    exported = (e.item for e in package.build.exports if e.how == "ament_export_libraries")
+    return not names.isdisjoint((*(link.item for link in links if link.how != "order"), *exported))
 
 
 def _is_started(view: TargetView, package: Package, name: str) -> bool:
