@@ -1196,12 +1196,8 @@ def test_a_submodule_that_is_not_checked_out_has_packages_that_are_called_after_
 
 @pytest.mark.parametrize(("folder", "expected"), [("audio_common", []), ("audio", ["warning"])])
 def test_launch_files_start_what_a_submodule_that_is_not_checked_out_may_have(folder, expected, tmp_path):
-    launch = (
-        '<launch><include file="$(find-pkg-share sound_play)/launch/soundplay_node.launch"/>'
-        '<node pkg="sound_play" exec="soundplay_node.py"/></launch>'
-    )
-    files = ament("install(FILES a.launch.xml DESTINATION share/${PROJECT_NAME})", **{"a_launch_xml": launch})
-    files["a.launch.xml"] = files.pop("a_launch.xml", launch)
+    launch = '<launch><node pkg="sound_play" exec="soundplay_node.py"/></launch>'
+    files = ament("install(FILES a.launch.xml DESTINATION share/${PROJECT_NAME})", a_launch_xml=launch)
     files[".gitmodules"] = f'[submodule "sound"]\n\tpath = {folder}\n\turl = https://example.org/s.git\n'
     for name, text in files.items():
         (tmp_path / name).write_text(text)
