@@ -120,6 +120,11 @@ FOUND = [
     ("if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/none)\nfind_package(A)\nendif()", []),
     ("if(EXISTS /opt/x)\nfind_package(A)\nendif()", ["A [EXISTS /opt/x]"]),
     ("set(v X)\nif(A)\nset(v Y)\nelse()\nfind_package(${v})\nendif()", ["X [!A]"]),
+    ("if(X)\nset(v a)\nelse()\nset(v b)\nendif()\nif(${v} STREQUAL b)\nfind_package(A)\nendif()",
+     ["A [${v} STREQUAL b]"]),
+    ("set(v a)\nif(DEFINED ENV{ROS_DISTRO})\nset(v $ENV{ROS_DISTRO})\nendif()\n"
+     "if(\"${v}\" STREQUAL b)\nfind_package(A)\nendif()",
+     ["A [$ENV{ROS_DISTRO} STREQUAL b]"]),
     ("if(X)\nif(NOT X)\nfind_package(A)\nelse()\nfind_package(B)\nendif()\nendif()", ["B [X]"]),
     ("if(NOT X)\nif(NOT X)\nfind_package(A)\nelse()\nfind_package(B)\nendif()\nendif()", ["A [NOT X]"]),
     ("if(NOT X)\nif(X)\nfind_package(A)\nelse()\nfind_package(B)\nendif()\nendif()", ["B [NOT X]"]),

@@ -178,6 +178,7 @@ class Interpreter:
         self.catkin_destinations = False  # catkin's folders are set
         self.before_catkin_destinations: tuple[str, ...] = ()
         self.maybe_set: set[str] = set()  # arguments of commands of which nothing is known
+        self.replaced: set[str] = set()  # references whose value another branch replaces
         self.renamed: set[str] = set()  # what find_package(x NAMES ...) calls its variables after
         self.refused: dict[RefusedName, None] = {}
         self.asked: dict[str, None] = {}
@@ -565,23 +566,35 @@ class Interpreter:
             if template.kind == LITERAL:
                 tokens.extend(self.make_literal_token(item, template.quoted) for item in template.words)
                 continue
-            if template.kind == REFERENCE:
+            if template.kind in (REFERENCE, QUOTED_REFERENCE):
                 value = self.resolve_reference(template)
-                if not value.sure and value.defined:  # differing branches: one token, which nobody relies upon
-                    tokens.append(tests.Token(value.text or f"${{{template.name}}}", False, False, False))
-                else:
+                if not value.sure and value.defined:
+                    text = self.choose_tested(value) or f"${{{template.name}}}"
+                    tokens.append(tests.Token(text, template.quoted, False, False))
+                    continue
+                if template.kind == REFERENCE:
                     tokens.extend(tests.Token(item, False, item.sure, False) for item in value.words if item)
-                continue
+                    continue
             for item in self.expand_one(template):
                 tokens.append(tests.Token(item, template.quoted, item.sure, False))
         return tokens
+
+    def choose_tested(self, value: CMakeValue) -> str:
+        """What a test reads of a value that is not sure; of those that differing branches leave, the one that a target
+        knows, if any: the others stand for it where it is not set."""
+        if value.chosen == value.words:
+            return value.text
+        known = next(filter(_ROS_ENVIRONMENT.search, value.words), "")
+        self.replaced.add(known)
+        return known
 
     def make_literal_token(self, item: Word, quoted: bool) -> tests.Token:
         """An argument of if() without a reference. A variable that holds an environment variable stands for it, which
         is known on a target."""
         held = None if quoted else self.lookup("", item)
-        if held is not None and not held.sure and len(held.words) == 1 and held.text.startswith("$ENV{"):
-            return tests.Token(held.text, False, False, False)
+        text = self.choose_tested(held) if held is not None and not held.sure else ""
+        if text.startswith("$ENV{") and ";" not in text:
+            return tests.Token(text, False, False, False)
         return tests.Token(item, quoted, True, True)
 
     def run_foreach(self, block: Block) -> int:
@@ -998,7 +1011,7 @@ class Interpreter:
         tests_around = [test, *(held.text for held in self.conditions)]
         for name in dict.fromkeys(_ROS_ENVIRONMENT.findall(test)):
             asks = re.compile(rf'DEFINED ENV\{{{name}\}}|(?:NOT )?\$ENV\{{{name}\}}(?: STREQUAL "")?\Z')
-            if not self.silent and not any(map(asks.search, tests_around)):
+            if not self.silent and f"$ENV{{{name}}}" not in self.replaced and not any(map(asks.search, tests_around)):
                 self.uses[CMakeUse("environment", name, self.locate(at), "", self.conditions)] = None
 
     def find_alike(self, name: str) -> str:
