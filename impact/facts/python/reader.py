@@ -11,7 +11,7 @@ from ..condition import UNDECIDED, Condition
 from ..place import Problem, Reference
 from .bound import PYTHON2_BUILTINS, PYTHON2_METHODS
 from .constants import MORE
-from .text import CHILD_FIELDS, SourceText, format_dotted, list_caught_exceptions, list_parameters
+from .text import CHILD_FIELDS, SourceText, format_dotted, gives_up, list_caught_exceptions, list_parameters
 from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, join_dotted, make_field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
 
@@ -379,12 +379,16 @@ class PythonReader(ObjectUses, SourceText):
         caught = list_caught_exceptions(node.handlers)
         covers_import = not caught.isdisjoint(IMPORT_ERRORS)
         covers_use = covers_import or not caught.isdisjoint(_NAME_ERRORS)
+        # Whoever gives up where something is missing needs it.
+        survived = list_caught_exceptions(handler for handler in node.handlers if not gives_up(handler.body))
+        in_try = None if survived.isdisjoint(IMPORT_ERRORS) else TRY
+        used_in_try = in_try if survived.isdisjoint(_NAME_ERRORS) else TRY
         # An except for TypeError expects that a call is refused, and nothing else of what is looked for here.
         outside = self.call_conditions
         refusal = "TypeError" in caught and not covers_use
         self.call_conditions = (*outside, TRY) if refusal else outside
         first, before = len(self.ways), self.scope.objects
-        self.walk_under(node.body, TRY if covers_import else None, TRY if covers_use else None)
+        self.walk_under(node.body, in_try, used_in_try)
         done = self.ways[-1]
         # Handlers run after any part of the body.
         self.scope.objects = {name: type_ if done.get(name) == type_ else "" for name, type_ in before.items()}
@@ -399,7 +403,7 @@ class PythonReader(ObjectUses, SourceText):
             self.walk_under(handler.body, EXCEPT if covers_import else None, instead if covers_use else None)
         self.call_conditions = outside
         self.scope.objects = done
-        self.walk_under(node.orelse, TRY if covers_import else None, TRY if covers_use else None)
+        self.walk_under(node.orelse, in_try, used_in_try)
         self.ways[first] = self.ways.pop()
         self.merge(first)
         self.walk_all(node.finalbody)

@@ -103,6 +103,22 @@ def list_caught_exceptions(handlers: Iterable[ast.ExceptHandler]) -> set[str]:
     return caught
 
 
+_EXITS = frozenset(("exit", "quit", "sys.exit", "os._exit"))
+
+
+def gives_up(body: Sequence[ast.stmt]) -> bool:
+    """True for what always ends the program, or raises an error: a test that is skipped goes on."""
+    if any(isinstance(node, (ast.Return, ast.Break, ast.Continue)) for one in body for node in ast.walk(one)):
+        return False
+    last = body[-1]
+    if isinstance(last, ast.Expr) and isinstance(last.value, ast.Call):
+        return format_dotted(last.value.func) in _EXITS
+    if not isinstance(last, ast.Raise):
+        return False
+    raised = last.exc.func if isinstance(last.exc, ast.Call) else last.exc
+    return raised is None or format_dotted(raised).endswith(("Error", "Exception", "Exit"))
+
+
 class SourceText:
     """The text that a syntax tree was made from, by lines."""
 
