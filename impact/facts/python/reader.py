@@ -728,6 +728,8 @@ class PythonReader(ObjectUses, SourceText):
                 self.launch_defaults[name] = default
         elif "package" in keywords:
             self.add_launched_node(keywords)
+        elif function == "Node" and len(node.args) > 1 and format_dotted(node.func).startswith("roslaunch."):
+            self.add_launched_node({"package": node.args[0], "executable": node.args[1]})
         elif function in _COMMAND_CALLS:
             self.add_command(node, keywords)
         elif function == "FindExecutable":
@@ -800,11 +802,13 @@ class PythonReader(ObjectUses, SourceText):
                 self.refer_to("package", package[0], "", given[0], conditional or package[1])
 
     def add_launched_node(self, keywords: dict) -> None:
-        """Node(package=, executable=), ComposableNode(package=, plugin=) and everything that looks like them."""
+        """Node(package=, executable=), ComposableNode(package=, plugin=), everything that looks like them, and
+        roslaunch.core.Node(package, node_type) of ROS 1."""
         package = self.find_package_name(keywords["package"])
         if package is None:
             return
-        executable = keywords.get("executable") or keywords.get("node_executable") or keywords.get("exec_name")
+        named = map(keywords.get, ("executable", "node_executable", "exec_name", "node_type"))
+        executable = next(filter(None, named), None)
         plugin = keywords.get("plugin") or keywords.get("node_plugin")
         name = self.find_text(executable or plugin) if executable or plugin else None
         kind, at = ("executable" if executable else "plugin"), executable or plugin
