@@ -7,7 +7,7 @@ of the workspace bring.
 
 import re
 
-from ...model.package import is_called_example
+from ...model.package import find_folder_role, is_called_example
 from ..vocabulary import Doubt, Need, Package, TargetView
 from .dependants import list_compiled_elsewhere
 
@@ -86,7 +86,10 @@ def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, nam
     and who wants both has it; who tries an example out sees what it lacks."""
     if is_called_example(need.at.path):
         return (Doubt.EXAMPLE,)
-    if need.role == "run" and view.roles.comes_with_launch(name, need.at.path):
+    # A launch file that is called like a test, and does not lie among tests, may be started by hand.
+    folder = package.strip_path(need.at.path).rpartition("/")[0]
+    by_hand = need.role == "run" or (need.role == "test" and find_folder_role(f"{folder}/") is None)
+    if by_hand and view.roles.comes_with_launch(name, need.at.path):
         return (Doubt.DISPENSABLE,)
     if view.is_circular(package, name):
         return (Doubt.DISPENSABLE,)

@@ -19,8 +19,8 @@ Severity
     along. warning: environment variables, tests of ROS 1, imports, launch files, installed headers that nothing here
     compiles, or where a dependency is known nowhere and may bring it (a package named like an interface package may
     provide interfaces). note: conditional code, examples (installed ones too, in what they import and start),
-    documentation, files that nothing compiles, and all but the first of more than five imports (in ROS 1, of several),
-    or packages that launch files start, which a package does not declare.
+    documentation, files that nothing compiles, and all but the first of more than five imports, or packages that launch
+    files start, which a package does not declare (in ROS 1, of several that `desktop_full` or the workspace has).
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -34,13 +34,25 @@ Not reported
     provide (they are counted as unresolved), unless the form of the use says that a package is meant.
 """
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Together, limit_severity, make_sort_key, rule
+from ..vocabulary import (
+    SEVERITIES,
+    Diagnostic,
+    Doubt,
+    Need,
+    Package,
+    TargetView,
+    Together,
+    limit_severity,
+    make_sort_key,
+    rule,
+)
 from .clean_machine import ASKED, collect_missing_doubts
 from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, make_texts
 
-_FEW = {1: 1, 2: 5}
-"""So many undeclared imports, or packages that launch files start, are each reported, by the generation of ROS: who
-runs ROS 1 has most of it at hand, and its manifests were rarely complete."""
+_FEW = 5
+"""So many undeclared imports, or packages that launch files start, are each reported."""
+_DESKTOP = ("desktop_full",)
+"""What who runs ROS 1 has at hand, whose manifests were rarely complete. Source: REP 150."""
 _NOWHERE, _CONDITION = ", nowhere", ", condition"
 
 
@@ -62,13 +74,9 @@ _NOWHERE, _CONDITION = ", nowhere", ", condition"
 def undeclared_package(view: TargetView, package: Package):
     missing = find_undeclared(view, package).missing
     # Of more things that a package runs with and does not declare, the first is reported, best such as the target has.
-    firsts = [(min(needs, key=make_sort_key), name) for name, needs in missing.items()]
-    firsts.sort(key=lambda first: (not view.is_available(first[1]), make_sort_key(first[0])))
-    for first, name in firsts:
-        doubts = collect_missing_doubts(view, package, first, name)
-        # Launch files and modules are used one by one, and whoever declares the first looks for the others.
-        cause = "import" if first.how == "import" and view.target.ros > 1 else "started"
-        at_run_time = () if first.how in (*ASKED, "include") else (Together(cause, few=_FEW[view.target.ros]),)
+    firsts = [(*_find_gravest(view, package, name, needs), name) for name, needs in missing.items()]
+    firsts.sort(key=lambda first: (not view.is_available(first[2]), make_sort_key(first[0])))
+    for first, doubts, name in firsts:
         condition = next((d.condition for d in package.manifest.dependencies if d.name == name and d.condition), "")
         if condition and "$ROS_" not in condition:
             doubts = (*doubts, Doubt.CONDITIONAL)  # whoever uses it may set the variable
@@ -82,5 +90,20 @@ def undeclared_package(view: TargetView, package: Package):
             find_kind(first, _CONDITION if condition else "" if known else _NOWHERE),
             doubts,
             fix=declare_need(view, package, first, name) if limit_severity(*doubts) != "note" and not condition else (),
-            together=at_run_time,
+            together=_find_together(view, first, name),
         )
+
+
+def _find_gravest(view: TargetView, package: Package, name: str, needs: list[Need]) -> tuple[Need, tuple[Doubt, ...]]:
+    """The need of a package that is surest to break, with what speaks against an error there."""
+    found = [(need, collect_missing_doubts(view, package, need, name)) for need in sorted(needs, key=make_sort_key)]
+    return max(found, key=lambda one: SEVERITIES.index(limit_severity(*one[1])))
+
+
+def _find_together(view: TargetView, need: Need, name: str) -> tuple[Together, ...]:
+    """Launch files and modules are used one by one, and whoever declares the first looks for the others."""
+    if need.how in (*ASKED, "include"):
+        return ()
+    if view.target.ros == 1 and (name in view.workspace.packages or name in view.list_transitive(_DESKTOP)):
+        return (Together("at hand"),)
+    return (Together("import" if need.how == "import" else "started", few=_FEW),)
