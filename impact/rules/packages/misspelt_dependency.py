@@ -3,7 +3,8 @@
 What it does
     Reports names in a manifest that neither rosdep nor any distro knows, where a key installs the package of Debian,
     CMake or pkg-config that is called so, where the name is one edit away from a known one, is that of a repository
-    whose packages are called after it, of a target of the package itself, or of a build type.
+    whose packages are called after it, of a target of the package itself, of a module of Python's standard library that
+    the package imports, or of a build type.
 
 Why it breaks
     `rosdep install` stops with "Cannot locate rosdep definition for [x]", and bloom refuses to release the package.
@@ -30,12 +31,18 @@ from ...model.package import BUILD_TOOLS
 from ..vocabulary import Diagnostic, Doubt, Package, Remove, TargetView, Text, rule
 from .unresolved_names import find_intended, list_unknown, replace_name
 
+_NEEDLESS = ("standard library", "target")
+"""What a name stands for that is not to be declared."""
+
 
 @rule(
     group="unresolvable-key",
     texts={
         "misspelt": Text("`{subject}` is neither a package nor a rosdep key", "declare `{replacement}`"),
         "system package": Text("`{subject}` is a system package, not a rosdep key", "declare `{replacement}`"),
+        "standard library": Text(
+            "`{subject}` is a module of Python's standard library, not a package or rosdep key", "remove it"
+        ),
         "target": Text("`{subject}` is a target of `{package}`, not a package or rosdep key", "remove it"),
         "repository": Text(
             "`{subject}` is neither a package nor a rosdep key, but {packages} are packages",
@@ -56,11 +63,11 @@ def misspelt_dependency(view: TargetView, package: Package):
         data = {"replacement": replacement, "packages": names[:2]}
         doubts = (Doubt.AMBIGUOUS,) if kind in ("target", "related") else ()
         fix = ()
-        if kind == "target":
+        if kind in _NEEDLESS:
             fix = (Remove(at.path, name),)
         elif kind == "installing" or (kind == "near" and _is_surely_meant(name, replacement)):
             fix = replace_name(view, package, name, replacement)
-        if kind not in ("target", "repository"):
+        if kind not in (*_NEEDLESS, "repository"):
             kind = "system package" if kind == "installing" and view.target.find_keys(name) else "misspelt"
         yield Diagnostic(at, name, package.name, data, kind, doubts, fix)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
+from ...targets.providers.stdlib import was_ever_in_stdlib
 from ...targets.target import Resolution
 from ..vocabulary import At, Package, Remove, Replace, TargetView
 
@@ -20,10 +21,10 @@ class UnresolvedName(NamedTuple):
 
 
 class IntendedName(NamedTuple):
-    """What was meant by a name that is neither a package nor a key. kind: `installing` (a key that installs what the
-    name stands for), `target` (a target of the package that declares it), `near` (a slip of a known name),
-    `repository` (packages that are called after it), `related` (the one name that it may stand for, or a package of the
-    workspace with another ending)."""
+    """What was meant by a name that is neither a package nor a key. kind: `standard library` (a module of it that the
+    package imports), `installing` (a key that installs what the name stands for), `target` (a target of the package
+    that declares it), `near` (a slip of a known name), `repository` (packages that are called after it), `related` (the
+    one name that it may stand for, or a package of the workspace with another ending)."""
 
     kind: str
     names: tuple[str, ...]
@@ -59,6 +60,8 @@ def find_intended(view: TargetView, package: Package, name: str) -> IntendedName
     """What was meant by a name that nobody knows; None where that is not known."""
     if view.may_be_unread(name):
         return None
+    if was_ever_in_stdlib(name) and any(item.module.partition(".")[0] == name for item in package.linked.imports):
+        return IntendedName("standard library", (name,))
     if installing := find_installing(view, package, name):
         return IntendedName("installing", (installing,))
     if any(made.name == name and made.kind in _MADE for made in package.build.targets):
