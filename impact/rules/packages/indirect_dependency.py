@@ -15,7 +15,8 @@ Use instead
     <depend>geometry_msgs</depend>
 
 Not reported
-    What only happens to be installed (dependency-by-chance reports it), tests, examples and conditional code.
+    What only happens to be installed (dependency-by-chance reports it), what whoever starts launch files has, tests,
+    examples and conditional code.
 """
 
 from ..vocabulary import Diagnostic, Need, Package, TargetView, make_sort_key, rule
@@ -46,9 +47,20 @@ def indirect_dependency(view: TargetView, package: Package):
 def _find_first(view: TargetView, package: Package, name: str, needs: list[Need]) -> Need | None:
     """The first direct use of a ROS package that is sure to be met."""
     used = [need for need in needs if need.how in _USED and need.role in ("build", "run") and need.certain]
-    direct = (need for need in used if need.required and need.subject not in _TOOLS and need.providers[0].kind == "ros"
-              and (need.providers[0].sure or view.generates_header(need.providers[0].name, need.subject)))  # fmt: skip
+    direct = (need for need in used if need.required and need.subject not in _TOOLS and _is_named(view, need))
     first = min(direct, key=make_sort_key, default=None)
     if first is None or is_chance(view, package, first, name) or view.is_circular(package, name):
         return None
+    if first.role == "run" and view.roles.comes_with_launch(name, first.at.path):
+        return None
     return first
+
+
+def _is_named(view: TargetView, need: Need) -> bool:
+    """Whether what is used is sure to be of a package of ROS: its own, an interface that it generates, or a module
+    called like it."""
+    first = need.providers[0]
+    if first.kind != "ros":
+        return False
+    module = need.how == "import" and need.subject.partition(".")[0] == first.name
+    return first.sure or module or view.generates_header(first.name, need.subject)
