@@ -104,7 +104,10 @@ def missing_find_package(view: TargetView, package: Package):
         ros = need.providers[0].kind == "ros"
         stems = {strip_to_letters(p.name) for p in need.providers} | {strip_to_letters(need.subject.split("/")[0])}
         near_by = sought if ros else linked
-        if any(a in b or b in a for a in stems for b in near_by if len(a) > 2 and len(b) > 2):
+        # A library may be found by a part of its name, or a longer one; a package whose headers are called so has one.
+        called = ros and name == need.subject.partition("/")[0]
+        parts = () if called else ((a, b) for a in stems for b in near_by if len(a) > 2 and len(b) > 2)
+        if not stems.isdisjoint(near_by) or any(a in b or b in a for a, b in parts):
             continue
         header_only = ros and view.target.ros == 1 and find_included_interface(view, need.subject) is not None
         named = {p.name for p in need.providers}
