@@ -19,8 +19,8 @@ Severity
     along. warning: environment variables, tests of ROS 1, imports, launch files, installed headers that nothing here
     compiles, or where a dependency is known nowhere and may bring it (a package named like an interface package may
     provide interfaces). note: conditional code, examples (installed ones too, in what they import and start),
-    documentation, files that nothing compiles, and all but the first of more than five imports, or packages that launch
-    files start, which a package does not declare (in ROS 1, of several that `desktop_full` or the workspace has).
+    documentation, files that nothing compiles, and all but the first of more than five imports (in ROS 1, of several),
+    or packages that launch files start, which a package does not declare.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -49,10 +49,9 @@ from ..vocabulary import (
 from .clean_machine import ASKED, collect_missing_doubts
 from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, make_texts
 
-_FEW = 5
-"""So many undeclared imports, or packages that launch files start, are each reported."""
-_DESKTOP = ("desktop_full",)
-"""What who runs ROS 1 has at hand, whose manifests were rarely complete. Source: REP 150."""
+_FEW = {1: 1, 2: 5}
+"""So many undeclared imports, or packages that launch files start, are each reported, by the generation of ROS: who
+runs ROS 1 has most of it at hand, and its manifests were rarely complete."""
 _NOWHERE, _CONDITION = ", nowhere", ", condition"
 
 
@@ -90,7 +89,7 @@ def undeclared_package(view: TargetView, package: Package):
             find_kind(first, _CONDITION if condition else "" if known else _NOWHERE),
             doubts,
             fix=declare_need(view, package, first, name) if limit_severity(*doubts) != "note" and not condition else (),
-            together=_find_together(view, first, name),
+            together=_find_together(view, first),
         )
 
 
@@ -100,10 +99,9 @@ def _find_gravest(view: TargetView, package: Package, name: str, needs: list[Nee
     return max(found, key=lambda one: SEVERITIES.index(limit_severity(*one[1])))
 
 
-def _find_together(view: TargetView, need: Need, name: str) -> tuple[Together, ...]:
+def _find_together(view: TargetView, need: Need) -> tuple[Together, ...]:
     """Launch files and modules are used one by one, and whoever declares the first looks for the others."""
     if need.how in (*ASKED, "include"):
         return ()
-    if view.target.ros == 1 and (name in view.workspace.packages or name in view.list_transitive(_DESKTOP)):
-        return (Together("at hand"),)
-    return (Together("import" if need.how == "import" else "started", few=_FEW),)
+    cause = "import" if need.how == "import" and view.target.ros > 1 else "started"
+    return (Together(cause, few=_FEW[view.target.ros]),)
