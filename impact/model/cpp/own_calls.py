@@ -23,7 +23,9 @@ def list_own_calls(
     sources: the targets of each source; none where nothing compiles it. included: the files of the package that a file
     includes itself. spoken: all words of a file. may_lack: whether a target of the first source may have no part in the
     second. declared: what each of some sources defines and calls."""
-    own_header = {path: next((h for h in sorted(included(path)) if _get_stem(h) == _get_stem(path)), "") for path in sources}
+    own_header = {
+        path: min((h for h in included(path) if _get_stem(h) == _get_stem(path)), default="") for path in sources
+    }
     beside = group_pairs((header, path) for path, header in own_header.items() if header)
     reach = Reach(lambda path: (included(path), ()))
     with_source, stems = reach.combine_bits(beside), {header: _normalise(_get_stem(header)) for header in beside}
