@@ -6,7 +6,7 @@ Source: the CMake files of those packages, and the ament_cmake user documentatio
 import posixpath
 
 from .blocks import CommandCall
-from .build import At, DependencyCall, FoundPackage, GeneratedInterfaces
+from .build import At, DependencyCall, FoundPackage, GeneratedInterfaces, WrittenPath
 from .find import set_catkin_destinations
 from .interpreter import SOURCES, Interpreter, handles, stands_in_for
 from .names import make_name_set
@@ -124,6 +124,7 @@ def generate_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -
         text = posixpath.join(base, rest) if separator else str(item)
         path = run.resolve_tree_path(wrap(text, item.at))
         files.append(path)
+        run.message_files.append(WrittenPath(path, "read", call.name, run.locate(item.at), run.conditions))
     wanted = tuple((str(item), run.locate(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
     run.generated.append(
         GeneratedInterfaces(

@@ -249,7 +249,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     a toolchain has not chosen one. standard_by_flag: by -std= flags alone, so that CMake adds what linked targets ask
     for only where the compiler's default is lower. project_by_variable: its CMakeLists.txt calls targets after
     ${PROJECT_NAME} rather than by the project's name. macros: what is given to the compiler with -D. message_files:
-    (path, at) of add_message_files and friends. unresolved: (place, reason) of what could not be told. files: the CMake
+    what generators of interfaces are given. unresolved: (place, reason) of what could not be told. files: the CMake
     files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
     a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
@@ -277,7 +277,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     unresolved: tuple[tuple[At, str], ...] = ()
     files: tuple[str, ...] = ()
     standard_by_flag: bool = False
-    message_files: tuple[tuple[str, At], ...] = ()
+    message_files: tuple[WrittenPath, ...] = ()
     project_by_variable: bool = False
     standards: tuple[tuple[int, At, tuple[Condition, ...]], ...] = ()
     macros: tuple[DefinedMacro, ...] = ()
@@ -350,6 +350,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         """The paths of the tree that it reads, compiles, links, searches and installs."""
         for read in self.read_elsewhere:
             yield WrittenPath(read.path, "read", read.command, read.at, read.conditions)
+        yield from self.message_files
         for target in self.targets:
             guarded = dict(target.guarded)
             for path in target.sources if target.kind in ("executable", "library", "module", "test") else ():

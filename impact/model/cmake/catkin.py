@@ -7,7 +7,7 @@ import posixpath
 
 from ...facts.condition import Condition
 from .blocks import CommandCall
-from .build import At, GeneratedInterfaces
+from .build import At, GeneratedInterfaces, WrittenPath
 from .find import set_catkin_destinations
 from .interpreter import Interpreter, handles
 from .names import make_name_set
@@ -101,11 +101,11 @@ def add_interface_files(run: Interpreter, call: CommandCall, args: list[Word]) -
         relative = run.make_relative(run.resolve(folder))
         hits = run.glob(posixpath.join(relative, f"*.{kind}"), False) if relative is not None else []
         for path in sorted(hits):
-            run.message_files[(path, run.locate(call.at))] = None
+            run.message_files.append(WrittenPath(path, "read", call.name, run.locate(call.at), run.conditions))
         return
     for item in files:
         path = run.resolve_tree_path(wrap(posixpath.join(folder, item), item.at))
-        run.message_files[(path, run.locate(item.at))] = None
+        run.message_files.append(WrittenPath(path, "read", call.name, run.locate(item.at), run.conditions))
 
 
 _GENERATORS = ("cpp", "py", "lisp", "eus", "nodejs")
@@ -120,7 +120,7 @@ def generate_messages(run: Interpreter, call: CommandCall, args: list[Word]) -> 
     given = group_by_keyword(args, frozenset({"DEPENDENCIES", "LANGS"}))
     package = run.installed_name
     target = f"{package}_generate_messages"
-    files = tuple(path for path, _ in run.message_files)
+    files = tuple(file.path for file in run.message_files if file.by in _MESSAGE_FOLDERS)
     wanted = tuple((str(item), run.locate(item.at)) for item in split_words(given.get("DEPENDENCIES", [])))
     run.generated.append(GeneratedInterfaces("catkin", target, files, wanted, run.locate(call.at), run.conditions))
     run.ensure_target(target, "generated", call.at)

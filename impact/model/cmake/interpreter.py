@@ -31,6 +31,7 @@ from .build import (
     Install,
     ReadFile,
     RefusedName,
+    WrittenPath,
     is_for_tests,
 )
 from .drafts import TargetDraft, Targets
@@ -187,7 +188,7 @@ class Interpreter:
         self.ament_package: At | None = None
         self.unresolved: dict[tuple[At, str], None] = {}
         self.files: dict[str, None] = {}
-        self.message_files: dict[tuple[str, At], None] = {}
+        self.message_files: list[WrittenPath] = []
         self.read_elsewhere: dict[ReadFile, None] = {}
 
     def run(self) -> Build:

@@ -92,8 +92,9 @@ def _list_reviewed(
 
 
 def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterator[Diagnostic | Upcoming]:
-    """What the stored versions of the packages that are found do not export alike."""
+    """What the stored versions of the packages that are found, or come along with these, do not export alike."""
     found = dict.fromkeys(one.name for one in package.build.found if one.how != "pkg_check_modules")
+    brought, owners = view.list_transitive(found), view.providers.commands.get(view.target.ros, {})
     own = {target.name for one in view.workspace for target in one.build.targets}
     places: dict[tuple[str, str], tuple[At, bool, tuple[Condition, ...]]] = {}
     for name, at, conditions, kind in names:
@@ -107,7 +108,10 @@ def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterat
         if key not in places or (certain and not places[key][1]):
             places[key] = at, certain, conditions
     for (kind, name), (at, certain, conditions) in places.items():
-        packages = [name.partition("::")[0]] if kind == "target" else list(found)
+        if kind == "target":
+            packages = [name.partition("::")[0]]
+        else:
+            packages = [*found, *brought.intersection(owners.get(name, "").split())]
         lost = find_missing(view, kind, name, packages, conditions)
         if lost is None:
             continue

@@ -1,8 +1,8 @@
 """nonexistent-path: a build or a launch file reads a file that does not exist or is not part of a release.
 
 What it does
-    Reports files that neither exist nor are made by the build: sources of targets, files given to test commands, files
-    that include() and add_subdirectory() read, and launch files, parameter files and robot descriptions that a launch
+    Reports files that neither exist nor are made by the build: sources of targets, files given to test commands and to
+    the generator of interfaces, files that include() and add_subdirectory() read, and launch files, parameter files and robot descriptions that a launch
     file opens in the share folder of a package of the workspace. Also reports paths in CMake that exist only in some
     places: outside the package's folder (`../common.cmake`), in a user's home folder, below `${CMAKE_SOURCE_DIR}` as if
     the build always started in a folder above the package, and libraries linked by the folder that some system has them
@@ -83,6 +83,7 @@ def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]
 
 
 _LIBRARY = re.compile(r"/(?:usr|opt|lib)/.+\.(?:so[\d.]*|a)\Z")
+_READ = (".cmake", ".txt", ".msg", ".srv", ".action", ".idl")
 _HOME = re.compile(r"(?:/home|/Users)/[\w.-]+/|/root/|[A-Za-z]:[/\\]")
 
 
@@ -105,7 +106,7 @@ def _find_fault(view: TargetView, package: Package, use: WrittenPath) -> tuple[s
             return "", ""
         return "outside", posixpath.relpath(path, package.path or ".")
     file = posixpath.join(path, "CMakeLists.txt") if use.by in ("add_subdirectory", "subdirs") else path
-    if use.how == "install" or (use.how == "read" and not file.endswith((".cmake", ".txt"))):
+    if use.how == "install" or (use.how == "read" and not file.endswith(_READ)):
         return "", ""
     folder = posixpath.dirname(path)
     if use.how == "source" and folder != package.path and folder not in package.folders:

@@ -7,6 +7,9 @@ What it does
 Why it breaks
     The interface does not exist: whoever includes its header, imports its type or embeds it in a message stops.
 
+Severity
+    error where a definition that is generated has a field of the type, or a target compiles its header; note otherwise.
+
 Example
     rosidl_generate_interfaces(${PROJECT_NAME} "msg/Sled.msg")      # and there is msg/Winch.msg
 
@@ -20,25 +23,53 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
+from ...model.workspace import is_interface_header
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
 _FOLDERS = frozenset({"msg", "srv", "action"})
 
 
 @rule(
-    severity="warning",
-    preview=True,
     group="missing-message-generation",
-    texts=Text("`{subject}` is not given to the generator of interfaces", "add it to the generator's files"),
+    texts={
+        "": Text("`{subject}` is not given to the generator of interfaces", "add it to the generator's files"),
+        "used": Text(
+            "`{subject}` is not given to the generator of interfaces, but `{by}` uses it",
+            "add it to the generator's files",
+        ),
+    },
 )
 def ungenerated_interface(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     made = [one for one in package.build.generated if one.how in ("rosidl", "catkin")]
-    given = {path for one in made for path in one.files} | {path for path, _ in package.build.message_files}
-    if not given or package.build.unresolved or any("$" in path or "*" in path for path in given):
+    given = {file.path for file in package.build.message_files}
+    if not made or not given or package.build.unresolved or any("$" in path or "*" in path for path in given):
         return
     names = {posixpath.basename(path).lower() for path in given}
     for interface in package.linked.interfaces:
         inside = package.strip_path(interface.path)
         folder, _, name = inside.partition("/")
         if folder in _FOLDERS and "/" not in name and name.endswith(f".{folder}") and name.lower() not in names:
-            yield Diagnostic(made[-1].at, inside, package.name, doubts=(Doubt.DISTURBS,))
+            by = next(_list_users(view, package, interface.name), "")
+            kind, doubts = ("used", ()) if by else ("", (Doubt.UNCHECKED,))
+            yield Diagnostic(made[-1].at, inside, package.name, {"by": by}, kind, doubts)
+
+
+def _list_users(view: TargetView, package: Package, name: str) -> Iterator[str]:
+    """The files that surely do not compile without an interface: definitions that are generated, and sources."""
+    given = {posixpath.basename(file.path) for file in package.build.message_files}
+    if not given.isdisjoint(f"{name}.{folder}" for folder in _FOLDERS):
+        return  # an interface of another kind with the same header in ROS 1
+    for user in view.list_built():
+        made = {path for one in user.build.generated if view.is_sure(one.conditions) for path in one.files}
+        types = {name} if user.name == package.name else set()
+        types.update((f"{package.name}/{name}", f"{package.name}/msg/{name}"))
+        for interface in user.linked.interfaces:
+            fields = (field for section in interface.definition.sections for field in section.fields)
+            if interface.path in made and any(field.type in types for field in fields):
+                yield interface.path
+        for use in user.linked.includes:
+            head, _, rest = use.path.partition("/")
+            if head == package.name and use.role == "build" and use.targets and view.is_sure(use.conditions):
+                own = any(header.endswith(f"/{use.path}") for header in package.linked.headers)
+                if is_interface_header(rest, (name,)) and not own:
+                    yield use.at.path
