@@ -505,6 +505,12 @@ def test_installs(source, expected):
     assert [(rule.kind, rule.items, rule.destination, rule.patterns) for rule in made] == expected
 
 
+@pytest.mark.parametrize("source", ["src/a", "src/a.cpp"])
+def test_cmake_adds_the_ending_of_a_source(source):
+    (target,) = build(f"add_executable(x {source})", {"pkg/src/a.cpp": ""}).targets
+    assert target.sources == ("pkg/src/a.cpp",)
+
+
 EXPORTS = [
     (
         "catkin_package(INCLUDE_DIRS include LIBRARIES l CATKIN_DEPENDS a b DEPENDS EIGEN3 CFG_EXTRAS x.cmake)",

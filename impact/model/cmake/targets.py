@@ -1,5 +1,6 @@
 """What is built: libraries, executables, custom targets, and what is given to them."""
 
+import posixpath
 import re
 
 from ...conditions.cmake import parse_constant
@@ -93,8 +94,13 @@ def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None
                 objects = wrap(part.partition(":")[2].rstrip(">"), part.at, part.conditions, part.sure)
                 add_links(run, draft, [objects], "objects")
             elif part:
-                draft.add_source(run.resolve_tree_path(part), run.merge_with(part))
+                path = run.resolve_tree_path(part)
+                tried = (path + ending for ending in _ENDINGS if "." not in posixpath.basename(path))
+                draft.add_source(next(filter(run.exists, tried), path), run.merge_with(part))
 
+
+# What CMake adds to the name of a source that does not exist, as far as it is code of C or C++.
+_ENDINGS = (".c", ".C", ".c++", ".cc", ".cpp", ".cxx", ".cu", ".h", ".hh", ".hpp")
 
 @handles("target_sources", least=1)
 def add_target_sources(run: Interpreter, call: CommandCall, args: list[Word]) -> None:

@@ -111,9 +111,8 @@ def _find_fault(view: TargetView, package: Package, use: WrittenPath) -> tuple[s
     folder = posixpath.dirname(path)
     if use.how == "source" and folder != package.path and folder not in package.folders:
         return "", ""  # generators make folders of their own
-    name = posixpath.basename(file)
-    if "." not in name and (name.isupper() or any(other.startswith(f"{file}.") for other in package.files)):
-        return "", ""  # CMake tries the endings of sources; capitals are keywords
+    if posixpath.basename(file).isupper():
+        return "", ""  # a keyword
     return (use.how, package.strip_path(path)) if is_absent(view, package, file) else ("", "")
 
 
