@@ -58,9 +58,7 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
     name = path.rpartition("/")[2]
     if not re.fullmatch(r"[\w./+-]+\.(?:h|hh|hpp|hxx|H)", path) or name in _list_file_names(view):
         return False
-    if calls_unmodelled(build) or any(made.rstrip("/").endswith(name) or made.endswith("/") for made in build.made):
-        return False
-    if any(t.kind in ("custom", "external", "fetched", "unknown") for t in build.targets) or view.workspace.unread:
+    if may_be_made(package, name) or view.workspace.unread:
         return False
     searched = (*(item for item, _ in build.include_dirs), *(link.item for link in build.target_links))
     if any(item.startswith(("/", "~", "$ENV{")) for item in searched):
@@ -70,6 +68,14 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
     passed = (link.item for link in build.target_links if link.how == "ament")
     direct = {*view.collect_declared(package), *(one.name for one in build.found), *passed}
     return path.startswith(".") or all(_has_known_headers(view, one) for one in direct)
+
+
+def may_be_made(package: Package, name: str) -> bool:
+    """Whether configuring or building may write a file of this name."""
+    build = package.build
+    if calls_unmodelled(build) or any(made.rstrip("/").endswith(name) or made.endswith("/") for made in build.made):
+        return True
+    return any(target.kind in ("custom", "external", "fetched", "unknown") for target in build.targets)
 
 
 def _has_known_headers(view: TargetView, name: str) -> bool:

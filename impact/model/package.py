@@ -301,6 +301,9 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     distros: tuple[tuple[str, DistroFile], ...] = ()
     # Each requirements.txt, with its path.
     requirements: tuple[tuple[str, RequirementsFile], ...] = ()
+    # Includes in compiled files that headers of the package are called like, in folders that no target searches, each
+    # with such a header.
+    unsearched: tuple[tuple[IncludeUse, str], ...] = ()
 
 
 BUILD_TOOLS = ("ament_cmake_auto", "ament_cmake", "ament_python", "catkin")
@@ -623,6 +626,7 @@ class PackageJoin:
             settings=tuple(self.list_settings(parameters, launches)),
             distros=tuple(distros),
             requirements=tuple(requirements),
+            unsearched=tuple(self.list_unsearched(roles)),
         )
 
     def find_included_file(self, include: str, includer: str) -> str | None:
@@ -651,11 +655,11 @@ class PackageJoin:
         return head != self.name and head in self.home and path.removesuffix(include).rstrip("/") not in self._folders
 
     @cached_property
-    def _folders(self) -> Container[str]:
+    def _folders(self) -> frozenset[str]:
         """The folders that targets are given to search for headers."""
         items = [item for item, _ in self.build.include_dirs]
         items += [link.item for link in self.build.target_links if link.how == "include"]
-        return {posixpath.normpath(item).removeprefix(".") for item in items}
+        return frozenset(posixpath.normpath(item).removeprefix(".") for item in items)
 
     def compute_roles(self) -> dict[str, tuple[str, bool, tuple[str, ...], tuple[Condition, ...]]]:
         """For every C++ file that something reaches: role, public, the targets that compile it, their conditions."""
@@ -735,6 +739,22 @@ class PackageJoin:
                 single.update(rule.items)
         headers = filter(is_header, self.cpp)
         return [p for p in headers if p in single or any(not f or p.startswith(f"{f}/") for f in folders)]
+
+    def list_unsearched(self, roles) -> Iterator[tuple[IncludeUse, str]]:
+        """As LinkedPackage.unsearched."""
+        for path, (role, public, targets, conditions) in roles.items():
+            for to, include in self.resolved.get(path, ()) if targets else ():
+                beside = posixpath.join(posixpath.dirname(path), include.path)
+                if to is None or include.path.startswith(".") or to in (posixpath.normpath(beside), f"{to[:-3]}.in"):
+                    continue
+                ending = f"/{include.path}"
+                same = (f"/{file.removesuffix('.in')}" for file in self.by_name[posixpath.basename(include.path)])
+                roots = {one.removesuffix(ending).lstrip("/") for one in same if one.endswith(ending)}
+                if not roots.isdisjoint(self._folders):
+                    continue
+                around = conditions + self.macros.resolve_conditions(include.conditions, targets)
+                at = At(path, include.line, include.column)
+                yield IncludeUse(include.path, at, role, public, around, targets, angled=include.angled), to
 
     def collect_sources(self, roles):
         includes: list[IncludeUse] = []

@@ -21,9 +21,11 @@ def note_macro(run: Interpreter, item: Word, target: str) -> None:
 
 
 def note_flag(run: Interpreter, item: Word) -> None:
-    """Collects a definition among the options for everything; other options are passed over."""
+    """Collects a definition or an include directory among options; others are passed over."""
     if item.startswith("-D"):
         note_macro(run, item, "")
+    elif item.startswith("-I"):
+        run.include_dirs[(run.resolve_tree_path(item[2:]), run.locate(item.at))] = None
 
 
 def note_flag_macros(run: Interpreter, text: str) -> None:

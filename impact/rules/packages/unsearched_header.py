@@ -1,0 +1,62 @@
+"""unsearched-header: an include names a header of the package, in a folder that no target searches.
+
+What it does
+    Looks for the folders of headers of the package itself, as an include writes them, among those that its targets are
+    given to search, and beside the file that includes them.
+
+Why it breaks
+    The compiler stops: "No such file or directory".
+
+Severity
+    error; warning in tests, and where not all folders that targets search are known.
+
+Example
+    #include "lift.h"                           // which is include/winch/lift.h, and include_directories(include)
+
+Use instead
+    #include "winch/lift.h"
+
+Not reported
+    Headers of the same path that something else has, or that may be made; includes under conditions that may not hold;
+    packages of which it is not known what their CMake code does; workspaces with folders that were not read.
+"""
+
+import re
+
+from ...model.absent_headers import may_be_made
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
+
+_OF_PACKAGE = re.compile(r"\$\{\w+_INCLUDE_?(?:DIRS?|PATH)\}")
+
+
+@rule(
+    group="removed-header",
+    texts=Text(
+        "`{subject}` is `{header}`, but no target of `{package}` searches its folder",
+        "[[include `{replacement}`, or ]]add the folder to the include directories",
+    ),
+)
+def unsearched_header(view: TargetView, package: Package):
+    build, seen = package.build, set()
+    if not package.linked.unsearched or build.unresolved or not build.project or view.workspace.unread:
+        return
+    searched = [path for path in build.list_paths() if path.how == "include"]
+    known = not any("$" in one.path and not _OF_PACKAGE.fullmatch(one.path) for one in searched)
+    for include, header in package.linked.unsearched:
+        path, place = include.path, (include.at.path, include.path)
+        if place in seen or not view.is_sure(include.conditions) or may_be_made(package, path.rpartition("/")[2]):
+            continue
+        if view.workspace.provides_header(path) != [package.name] or _has_another(view, package, path):
+            continue
+        seen.add(place)
+        inside = f"/{header}".rpartition("/include/")
+        data = {"header": package.strip_path(header), "replacement": inside[2] if inside[1] else ""}
+        doubts = (*list_place_doubts(view, include.role), known or Doubt.INCOMPLETE)
+        yield Diagnostic(include.at, path, package.name, data, doubts=doubts)
+
+
+def _has_another(view: TargetView, package: Package, path: str) -> bool:
+    """Whether something else that a package is built with may have a header of the same path."""
+    others = [one for one in view.providers.find_header(path) if one.name != package.name]
+    around = view.build_environment(package)
+    return any(one.kind != "ros" or one.name in around for one in others)
