@@ -51,8 +51,6 @@ class Target(DistroTarget):
 class Workspace(SimpleNamespace):
     """A workspace of the package dock."""
 
-    may_have = frozenset(("dock",))
-
     def __iter__(self):
         return iter(())
 
@@ -63,7 +61,12 @@ REVIEWED = Availabilities(Target(), cast(Offers, OFFERS), ahead=())
 NAMES = ReviewedNames(
     cast(
         TargetView,
-        SimpleNamespace(find_reviewed=REVIEWED.find_reviewed, workspace=Workspace(), machine=MACHINE),
+        SimpleNamespace(
+            find_reviewed=REVIEWED.find_reviewed,
+            workspace=Workspace(),
+            machine=MACHINE,
+            may_have=lambda name: name == "dock",
+        ),
     )
 )
 

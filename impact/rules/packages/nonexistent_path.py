@@ -2,11 +2,11 @@
 
 What it does
     Reports files that neither exist nor are made by the build: sources of targets, files given to test commands and to
-    the generator of interfaces, files that include() and add_subdirectory() read, and launch files, parameter files and robot descriptions that a launch
-    file opens in the share folder of a package of the workspace. Also reports paths in CMake that exist only in some
-    places: outside the package's folder (`../common.cmake`), in a user's home folder, below `${CMAKE_SOURCE_DIR}` as if
-    the build always started in a folder above the package, and libraries linked by the folder that some system has them
-    in (`/usr/lib/libompl.so`).
+    the generator of interfaces, files that include() and add_subdirectory() read, and launch files, parameter files and
+    robot descriptions that a launch file opens in the share folder of a package of the workspace. Also reports paths in
+    CMake that exist only in some places: outside the package's folder (`../common.cmake`), in a user's home folder,
+    below `${CMAKE_SOURCE_DIR}` as if the build always started in a folder above the package, and libraries linked by
+    the folder that some system has them in (`/usr/lib/libompl.so`).
 
 Why it breaks
     CMake stops: "Cannot find source file", "could not find requested file". A release contains only the package's

@@ -31,7 +31,9 @@ _HELP = "export `<build_type>{replacement}</build_type>`"
 @rule(
     group="invalid-manifest",
     texts={
-        "no setup": Text("`{package}` has the build type `{subject}`, but no setup.py", "add setup.py[[, or write `{replacement}`]]"),
+        "no setup": Text(
+            "`{package}` has the build type `{subject}`, but no setup.py", "add setup.py[[, or write `{replacement}`]]"
+        ),
         "none": Text("package.xml exports no build type, so `{package}` is built as a package of catkin", _HELP),
     },
 )
