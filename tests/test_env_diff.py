@@ -27,6 +27,7 @@ find_package(cv_bridge REQUIRED)
 find_package(OpenCV 9 REQUIRED)
 add_library(eye a.cpp b.cpp)
 target_link_libraries(eye cv_bridge::cv_bridge opencv_core)
+install(TARGETS eye DESTINATION lib)
 ament_package()
 """,
     "a.cpp": "#include <cv_bridge/cv_bridge.h>\n#include <opencv2/core.hpp>\n",

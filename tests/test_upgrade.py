@@ -38,6 +38,8 @@ def package(name: str, *depends: str, cmake: str = "", **sources: str) -> dict[s
     if built and depends:
         linked = " ".join(f"{each}::{each}" for each in depends if each != "zoom")
         built += f"target_link_libraries({name} {linked})\n"
+    if built:
+        built += f"install(TARGETS {name} DESTINATION lib)\n"
     declared = "".join(f"  <depend>{each}</depend>\n" for each in depends)
     return {
         f"{name}/package.xml": MANIFEST.format(name, declared),

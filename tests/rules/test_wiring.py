@@ -336,7 +336,7 @@ ROWS = {
             ),
         },
         ("sled/CMakeLists.txt", "${CATKIN_GLOBAL_INCLUDE_DESTINATION}/runner", "${CATKIN_PACKAGE_INCLUDE_DESTINATION}"),
-        ("error", "CATKIN_PACKAGE_INCLUDE_DESTINATION"),
+        ("warning", "CATKIN_PACKAGE_INCLUDE_DESTINATION"),
     ),
     "headers that another package compiles, installed in their place": Row(
         "missing-install",

@@ -8,7 +8,7 @@ Why it breaks
     The interface does not exist: whoever includes its header, imports its type or embeds it in a message stops.
 
 Severity
-    error where a definition that is generated has a field of the type, or a target compiles its header; note otherwise.
+    warning where a definition that is generated has a field of the type, or a target compiles its header; note otherwise.
 
 Example
     rosidl_generate_interfaces(${PROJECT_NAME} "msg/Sled.msg")      # and there is msg/Winch.msg
@@ -30,6 +30,8 @@ _FOLDERS = frozenset({"msg", "srv", "action"})
 
 
 @rule(
+    severity="warning",
+    preview=True,
     group="missing-message-generation",
     texts={
         "": Text("`{subject}` is not given to the generator of interfaces", "add it to the generator's files"),
