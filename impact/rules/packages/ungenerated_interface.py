@@ -8,7 +8,8 @@ Why it breaks
     The interface does not exist: whoever includes its header, imports its type or embeds it in a message stops.
 
 Severity
-    warning where a definition that is generated has a field of the type, or a target compiles its header; note otherwise.
+    warning where a definition that is generated has a field of the type, or a target compiles its header; note
+    otherwise.
 
 Example
     rosidl_generate_interfaces(${PROJECT_NAME} "msg/Sled.msg")      # and there is msg/Winch.msg
