@@ -127,7 +127,7 @@ def walk(start: Iterable[Name], leads: Callable[[Name], Iterable[Name]]) -> Iter
             waiting.extend(leads(name))
 
 
-class Closures:
+class TransitiveNames:
     """Everything that names lead to, themselves included, kept name by name. leads: where a name leads to."""
 
     def __init__(self, leads: Callable[[str], Iterable[str]]):

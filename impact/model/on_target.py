@@ -12,7 +12,7 @@ from msgspec import structs
 
 from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
-from ...edges.reach import Closures, Reach, walk
+from ...edges.reach import Reach, TransitiveNames, walk
 from ..conditions import Environment, evaluate_all
 from ..config import Config
 from ..facts.condition import Condition
@@ -45,6 +45,8 @@ _INSTALLED_WITH = frozenset({"exec", "build_export", "buildtool_export"})
 _BUILT_WITH = frozenset({"build", "buildtool", "build_export", "buildtool_export", "exec", "test", "doc"})
 
 
+SHORTEST_NAME = 3
+"""Letters of a name by which something else is called after it."""
 # How packages are called (REP 144).
 PACKAGE = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)+\Z")
 # How packages of interfaces are called.
@@ -78,8 +80,8 @@ class WorkspaceOnTarget:
         # Names of the packages that rules are to report on, all when None.
         self.part: frozenset[str] | None = None
         # By name, it and what comes along with it, and with what may come along.
-        self._whole = Closures(self.list_installed_with)
-        self._widest = Closures(self._list_possibly_with)
+        self._whole = TransitiveNames(self.list_installed_with)
+        self._widest = TransitiveNames(self._list_possibly_with)
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
         self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
         self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
@@ -273,8 +275,8 @@ class WorkspaceOnTarget:
     @cached_property
     def own_modules(self) -> frozenset[str]:
         """Top-level Python modules that packages of the workspace bring, or may bring."""
-        found = {name.removesuffix("_py") for name in self.workspace.packages} | self.workspace.unread_names
-        found.update(self.workspace.packages)
+        names = self.workspace.packages
+        found = {*names, *(name.removesuffix("_py") for name in names), *self.workspace.unread_names}
         for package in self.workspace:
             found |= find_python_packages(package.linked.files)
         return frozenset(found)
@@ -814,13 +816,9 @@ class WorkspaceOnTarget:
         return tuple(found)
 
 
-# Letters of a folder's name by which a package is called after it.
-_SHORTEST = 3
-
-
 def is_called_after(name: str, folder: str) -> bool:
     """Whether a package is called after a folder of this name, which most likely holds it."""
-    return len(folder) >= _SHORTEST and name.startswith(folder.replace("-", "_"))
+    return len(folder) >= SHORTEST_NAME and name.startswith(folder.replace("-", "_"))
 
 
 def _list_installed_with(dependencies: Iterable[ReleasedDependency] | None) -> tuple[str, ...]:

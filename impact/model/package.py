@@ -744,10 +744,13 @@ class PackageJoin:
         """As LinkedPackage.unsearched."""
         for path, (role, public, targets, conditions) in roles.items():
             for to, include in self.resolved.get(path, ()) if targets else ():
-                beside = posixpath.join(posixpath.dirname(path), include.path)
-                if to is None or include.path.startswith(".") or to in (posixpath.normpath(beside), f"{to[:-3]}.in"):
-                    continue
                 ending = f"/{include.path}"
+                if to is None or include.path.startswith(".") or to.endswith(".in"):
+                    continue
+                if f"/{to}".removesuffix(ending).lstrip("/") in self._folders:
+                    continue  # as most are, so that no other file is looked at
+                if to == posixpath.normpath(posixpath.join(posixpath.dirname(path), include.path)):
+                    continue
                 same = (f"/{file.removesuffix('.in')}" for file in self.by_name[posixpath.basename(include.path)])
                 roots = {one.removesuffix(ending).lstrip("/") for one in same if one.endswith(ending)}
                 if not roots.isdisjoint(self._folders):

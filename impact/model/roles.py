@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ...edges.memory import cache_method
-from ...edges.reach import Closures, walk
+from ...edges.reach import TransitiveNames, walk
 from .on_target import WorkspaceOnTarget
 from .workspace import Package
 
@@ -37,8 +37,8 @@ class Roles:
 
     def __init__(self, view: WorkspaceOnTarget):
         self._view = view
-        self._by_cmake = Closures(lambda name: (*self.list_exports(name), *self.list_tools(name)))
-        self._by_promises = Closures(lambda name: (*self.list_exports(name), *self.list_promises(name)))
+        self._by_cmake = TransitiveNames(lambda name: (*self.list_exports(name), *self.list_tools(name)))
+        self._by_promises = TransitiveNames(lambda name: (*self.list_exports(name), *self.list_promises(name)))
 
     @cache_method
     def list_at_hand(self, package: Package, role: str) -> frozenset[str]:

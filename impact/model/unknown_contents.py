@@ -15,7 +15,7 @@ from ...edges.memory import cache_method
 from ..targets.platform import strip_separators
 from ..targets.target import Provider
 from .cmake.names import MODULES
-from .on_target import INTERFACES, WorkspaceOnTarget
+from .on_target import INTERFACES, SHORTEST_NAME, WorkspaceOnTarget
 from .workspace import Package
 
 # What makes interfaces and runs with them.
@@ -24,8 +24,6 @@ _WITH_INTERFACES = (
 )  # fmt: skip
 # How CMake finds packages whose configurations find others in turn.
 FINDING = ("find_package", "catkin", "declared", "ament_lint_auto")
-_SHORTEST = 3
-"""Letters of a name by which something else is called after it."""
 _IN_BUILD = re.compile(r"\$\{(?:CMAKE|PROJECT)(?:_CURRENT)?_BINARY_DIR\}/")
 # Folders that are not called after what they hold.
 _PLAIN_FOLDERS = frozenset(("include", "src", "lib"))
@@ -36,8 +34,8 @@ def _may_be_called_after(name: str, wanted: str) -> bool:
     called after all of the library's name; a release of many may be called after its beginning."""
     whole, stem = _find_stems(wanted)
     if name.endswith("_vendor"):
-        return len(whole) >= _SHORTEST and whole in name.replace("_", "")
-    return len(stem) >= _SHORTEST and stem in name
+        return len(whole) >= SHORTEST_NAME and whole in name.replace("_", "")
+    return len(stem) >= SHORTEST_NAME and stem in name
 
 
 @lru_cache(maxsize=4096)
@@ -170,7 +168,7 @@ class UnknownContents:
         names = {part for path in (*unread, *filled) for part in path.removeprefix(folder).split("/")}
         names.update(downloads, *(re.split(r"[-_]", name) for name in downloads))
         first = (re.match(r"[a-z0-9]+", name.lower()) for name in names - _PLAIN_FOLDERS)
-        return tuple({one.group() for one in first if one and len(one.group()) >= _SHORTEST})
+        return tuple({one.group() for one in first if one and len(one.group()) >= SHORTEST_NAME})
 
     @cache_method
     def _list_opaque_along(self, names: frozenset[str]) -> tuple[str, ...]:

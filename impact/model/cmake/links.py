@@ -110,7 +110,7 @@ def find_brought(view: TargetView, package: Package, target: str) -> tuple[froze
     """What comes along with all that a target is given, and the items that may stand for something else; None where
     that cannot be told."""
     build = package.build
-    items = package.build.list_linked_items(target, None)
+    items = build.list_linked_items(target, None)
     if items is None:
         return None
     # Targets of the package's own interfaces bring along the packages that these rest on.

@@ -105,6 +105,7 @@ def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None
 # What CMake adds to the name of a source that does not exist, as far as it is code of C or C++.
 _ENDINGS = (".c", ".C", ".c++", ".cc", ".cpp", ".cxx", ".cu", ".h", ".hh", ".hpp")
 
+
 @handles("target_sources", least=1)
 def add_target_sources(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_target_sources(), FILE_SET forms included."""
