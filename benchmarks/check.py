@@ -10,9 +10,9 @@ largest of these processes.
     previews   no facts are known, and preview rules are asked too: those on the message flow need more facts of code
     again      the same, when nothing has changed since
     header     a comment in a shared header was changed (the one that most packages of the workspace include)
-    include    an include was added to that header, so that everything is judged anew
+    include    an include was added to that header, so that the packages that have to do with it are judged anew
     macro      a comment in a CMake file that packages give their dependants was changed
-    call       a find_package was added to its first macro, so that who calls it is joined and everything is judged anew
+    call       a find_package was added to its first macro, so that who calls it is joined and everything judged anew
 Anchors: reading the C++ and CMake bytes, parsing them with tree-sitter (if tree_sitter and tree_sitter_cpp are
 installed), and catkin_lint on the ROS 1 workspace (if it is installed), which reads CMake and manifests only.
 """

@@ -11,11 +11,13 @@ from pathlib import Path
 
 import pytest
 import rule_cases
-from rosimpact.impact.analysis import result_cache as memo
+from msgspec import structs
+from rosimpact.impact.analysis import run_rules
 from rosimpact.impact.analysis.check import check
 from rosimpact.impact.analysis.session import Options, open_workspace
 from rosimpact.impact.model import tracked_names as watch
 from rosimpact.impact.model import workspace
+from rosimpact.impact.model.package import _INWARD, is_header
 from rosimpact.impact.model.view import TargetView
 from rosimpact.impact.model.workspace import Package, Workspace
 from rosimpact.impact.rules.rule import load_rules
@@ -250,10 +252,22 @@ JUDGED = [
 def test_rules_run_only_when_a_digest_changed(ws, run, monkeypatch, edit, anew):
     run(ws, "kept")
     edit(ws)
-    ran = []
-    monkeypatch.setattr(memo, "store_results", lambda store, view, *rest: ran.append(view.target.name))
+    ran = record_groups(monkeypatch)
     run(ws, "kept")
-    assert ran == (["jazzy", "humble"] if anew else [])
+    assert [target for target, _ in ran] == (["jazzy", "humble"] if anew else [])
+
+
+def record_groups(monkeypatch) -> list[tuple[str, tuple[str, ...]]]:
+    """The targets and groups of packages that rules are run on from now on."""
+    ran: list[tuple[str, tuple[str, ...]]] = []
+    run_in_parts = run_rules._run_in_parts
+
+    def record(opened, rules, fresh, *rest):
+        ran.extend((opened.views[place].target.name, opened.workspace.groups[at]) for place, at in fresh)
+        return run_in_parts(opened, rules, fresh, *rest)
+
+    monkeypatch.setattr(run_rules, "_run_in_parts", record)
+    return ran
 
 
 def test_names_to_look_out_for_are_gathered_once(ws, run, monkeypatch):
@@ -292,6 +306,85 @@ def test_rules_per_target_see_nothing_but_digests(case, cache, monkeypatch):
             bare = Workspace(digests, unseen, ros, unseen, unseen, unread=unread, outside=outside)  # type: ignore[arg-type]
             again = TargetView(bare, view.target, view.providers, view.config)
             assert [list(rule.run(again)) for rule in rules] == whole
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_rules_per_target_see_nothing_of_the_code_of_other_groups(case, cache, monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    monkeypatch.setenv("ROSIMPACT_CACHE", str(cache))
+    monkeypatch.setattr(workspace, "_SMALL_GROUP", 1)
+    rules = [rule for rule in load_rules().values() if rule.scope == "target"]
+    options, tree = Options(targets=("jazzy", "noetic"), cache=cache), rule_cases.MemoryTree(case.files)
+    with open_workspace("case", options, tree=tree) as opened:
+        known = opened.workspace
+        for group in known.groups if len(known.groups) > 1 else ():
+            linked = [
+                each.linked
+                if each.name in group
+                else structs.replace(
+                    each.linked, names=tuple(n for n in each.linked.names if is_header(n.at.path)), **_INWARD
+                )
+                for each in known
+            ]
+            less = Workspace(
+                *(linked, known.discovered, known.ros, known.extraction, known.read),
+                unread=known.unread,
+                outside=known.outside,
+            )
+            for view in opened.views:
+                again = TargetView(less, view.target, view.providers, view.config)
+                view.part = again.part = frozenset(group)
+                assert [list(rule.run(again)) for rule in rules] == [list(rule.run(view)) for rule in rules]
+
+
+def add_lone(ws: Path) -> None:
+    """Adds a package that has to do with no other."""
+    for name in ("package.xml", "CMakeLists.txt", "include/tip/tip.hpp"):
+        path = ws / "lone" / name.replace("tip", "lone")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text((ws / "tip" / name).read_text().replace("tip", "lone"))
+
+
+def test_an_edit_of_code_has_the_rules_run_on_its_group_alone(ws, run, monkeypatch):
+    monkeypatch.setattr(workspace, "_SMALL_GROUP", 1)
+    add_lone(ws)
+    run(ws, "kept")
+    replaced("hand/include/hand/hand.hpp", "int", "#include <nowhere/nothing.hpp>\nint")(ws)
+    ran = record_groups(monkeypatch)
+    assert run(ws, "kept") == run(ws, "fresh")
+    kept, fresh = ran[:2], ran[2:]
+    assert [group for _, group in kept] == [("arm", "hand", "hand_msgs", "tip")] * 2
+    assert {group for _, group in fresh} == {("arm", "hand", "hand_msgs", "tip"), ("lone",)}
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "new"),
+    [
+        ("lone/package.xml", "<export>", "<depend>tip</depend><export>"),
+        ("lone/CMakeLists.txt", "ament_package()", "find_package(tip)\nament_package()"),
+        ("lone/CMakeLists.txt", "ament_package()", "find_package(grip)\nament_package()"),
+        ("lone/include/lone/lone.hpp", "int lone();", "#include <tip/tip.hpp>\n"),
+        ("lone/include/lone/lone.hpp", "int lone();", "#include <tip/gone.hpp>\n"),
+        ("tip/include/tip/nail.hpp", "int nail();", '#include "lone.hpp"\n'),
+        ("lone/setup_it.py", "", "import hand_tools\n"),
+        ("lone/launch/all.launch.py", "", "launch_ros.actions.Node(package='arm', executable='arm')\n"),
+        ("lone/msg/Part.msg", "", "hand_msgs/Touch where\n"),
+    ],
+)
+def test_a_package_is_of_the_group_of_what_it_names(ws, monkeypatch, tmp_path, path, old, new):
+    monkeypatch.setattr(workspace, "_SMALL_GROUP", 1)
+    add_lone(ws)
+
+    def list_groups() -> list[tuple[str, ...]]:
+        with open_workspace(ws, Options(targets=("jazzy",), cache=tmp_path / "facts")) as opened:
+            return list(opened.workspace.groups)
+
+    assert list_groups() == [("arm", "hand", "hand_msgs", "tip"), ("lone",)]
+    file = ws / path
+    file.parent.mkdir(exist_ok=True)
+    before = file.read_text() if file.exists() else ""
+    file.write_text(before.replace(old, new) if old else before + new)
+    assert list_groups() == [("arm", "hand", "hand_msgs", "lone", "tip")]
 
 
 def test_a_package_says_nothing_that_its_digest_does_not(ws, run, cache, tmp_path):

@@ -313,13 +313,18 @@ def test_a_package_that_ends_its_process_is_named_and_loses_no_other(tmp_path, m
     assert of_others(report) == of_others(whole)
 
 
+def names_of(opened, task):
+    """The packages that a task is about."""
+    return [name for group, start, end in task.slices for name in opened.workspace.groups[group][start:end]]
+
+
 @needs_fork
 def test_rules_that_end_their_process_on_a_package_are_named_and_lose_no_other(tmp_path, at_once, monkeypatch):
     ws = ring(tmp_path / "ws", 9)
     whole = check(ws, Options(("jazzy",), jobs=1, cache=tmp_path / "one"))
 
-    def of_link_4(opened, rules, packages, task):
-        return "link_4" in packages[task[1] : task[2]]
+    def of_link_4(opened, rules, task, failed):
+        return "link_4" in names_of(opened, task)
 
     monkeypatch.setattr(judge, "_run_part", _dying_on(judge._run_part, of_link_4))
     report = check(ws, Options(("jazzy",), jobs=2, cache=tmp_path / "two"))
@@ -340,9 +345,8 @@ def test_a_rule_that_comes_to_no_end_costs_its_package_alone(tmp_path, monkeypat
     whole = check(ws, Options(("jazzy",), cache=tmp_path / "one"))
     part = judge._run_part
 
-    def of_link_1(opened, rules, packages, task):
-        here = "link_1" in packages[task[1] : task[2]]
-        return part(opened, endless if here else rules, packages, task)
+    def of_link_1(opened, rules, task, failed):
+        return part(opened, endless if "link_1" in names_of(opened, task) else rules, task, failed)
 
     endless = [rule._replace(run=_endless) for rule in load_rules().values()]
     monkeypatch.setattr(judge, "_run_part", of_link_1)

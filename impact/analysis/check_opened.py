@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -259,11 +260,8 @@ def measure_coverage(
 ) -> AnalysisCoverage:
     """How much was read and resolved."""
     broken = {path for package in workspace for path, _, _ in package.linked.problems}
-    unresolved: dict[str, set[str]] = {}
-    for view in views:
-        for kind, names in view.unresolved.items():
-            unresolved.setdefault(kind, set()).update(names)
-    counts = {kind: len(names) for kind, names in sorted(unresolved.items()) if names}
+    unresolved = {(each.kind, each.name) for view in views for each in view.unresolved}
+    counts = dict(sorted(Counter(kind for kind, _ in unresolved).items()))
     cmake = sum(len(package.build.unresolved) for package in workspace)
     if cmake:
         counts["cmake"] = counts.get("cmake", 0) + cmake

@@ -5,7 +5,7 @@ A second run on unchanged files then judges nothing anew. Time plays no part: th
 
 import contextlib
 import hashlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import lru_cache
 
 import msgspec
@@ -16,7 +16,7 @@ from ..model import tracked_names as watch
 from ..model.cmake.build import At
 from ..model.flow.file_selection import compute_stamp
 from ..model.package import Watched
-from ..model.view import TargetView
+from ..model.view import TargetView, Unresolved
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
 from ..source_keys import compute_code_stamp
@@ -39,7 +39,7 @@ class _Stored(msgspec.Struct, frozen=True, array_like=True):
 
 class _Judgement(msgspec.Struct, frozen=True, array_like=True):
     diagnostics: tuple[_Stored, ...]
-    unresolved: dict[str, tuple[str, ...]]
+    unresolved: tuple[Unresolved, ...]
 
 
 def load_tracked_names(store: Store) -> Watched:
@@ -63,36 +63,21 @@ def _unpack_tracked(data: bytes) -> Watched:
     return structs.replace(known, fields=load_fields(), surfaces=load_shipped(), uses=index_uses)
 
 
-def make_results_key(view: TargetView, rules: Iterable[str]) -> bytes:
-    """The key of a view's judgement by these rules."""
-    found = hashlib.sha1(view.workspace.identity)
+def make_results_key(view: TargetView, rules: Iterable[str], group: Iterable[str]) -> bytes:
+    """The key of what these rules say of a group of packages, see Workspace.groups."""
+    workspace = view.workspace
+    found = hashlib.sha1(workspace.outline)
     config = view.config
     found.update(
         repr(
             (
                 *(compute_code_stamp(), view.target.compute_identity(), view.horizon, sorted(rules)),
                 *(config.private, config.installed, config.underlays, config.repos),
+                [(name, workspace.contents[name]) for name in group],
             )
         ).encode()
     )
     return found.digest()
-
-
-def load_results(store: Store, view: TargetView, rules: Sequence[str]) -> list[Yielded] | None:
-    """(rule, hit) of an earlier run on the same content, None when there was none. Fills the view's unresolved."""
-    found = load_yielded(store, make_results_key(view, rules))
-    if found is None:
-        return None
-    hits, unresolved = found
-    for kind, names in unresolved.items():
-        view.unresolved.setdefault(kind, set()).update(names)
-    return hits
-
-
-def store_results(store: Store, view: TargetView, rules: Sequence[str], diagnostics: Iterable[Yielded]) -> None:
-    """Keeps what the rules yielded for later runs."""
-    unresolved = {kind: tuple(sorted(names)) for kind, names in view.unresolved.items()}
-    store_yielded(store, make_results_key(view, rules), diagnostics, unresolved)
 
 
 def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterable[str]) -> bytes:
@@ -102,14 +87,14 @@ def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterabl
 
 
 def store_yielded(
-    store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: dict[str, tuple[str, ...]]
+    store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: Iterable[Unresolved] = ()
 ) -> None:
-    """Keeps what rules yielded, and names that were not resolved by their kind, for later runs."""
+    """Keeps what rules yielded, and what they could not resolve, for later runs."""
     stored = tuple(_Stored(rule, At(*one.place), one._replace(at=None)) for rule, one in diagnostics)
-    store.remember("judgement", encode_rows([(key, _Judgement(stored, unresolved))]))
+    store.remember("judgement", encode_rows([(key, _Judgement(stored, tuple(sorted(unresolved))))]))
 
 
-def load_yielded(store: Store, key: bytes) -> tuple[list[Yielded], dict[str, tuple[str, ...]]] | None:
+def load_yielded(store: Store, key: bytes) -> tuple[list[Yielded], tuple[Unresolved, ...]] | None:
     """What store_yielded() kept; None when there is none."""
     data = store.find_memo("judgement", key)
     if data is None:

@@ -2,12 +2,12 @@
 earlier run had the same input."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from itertools import groupby
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...edges import processes
 from ...edges.console import describe_unforeseen
-from ..model.view import TargetView
+from ...edges.groups import group_pairs
+from ..model.view import TargetView, Unresolved
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic, Rule
 from ..targets.snapshot import SnapshotError
@@ -31,13 +31,36 @@ _FILE_BYTES = 20 << 10
 _PACKAGE_MEMORY = 8 << 20
 # Stands for the place of a view where the message flow is meant.
 _FLOW = -1
-# What a process does at once: the rules of a family, on a view (its place), on packages from a number to another.
-_Task = tuple[int, int, int, str]
-_FLOW_TASK: _Task = (_FLOW, 0, 0, "")
-
 # (rule, why it failed) to the targets on which it did
 Crashes = dict[tuple[str, str], list[str]]
 
+
+class _Slice(NamedTuple):
+    """Packages of a group, from a number to another."""
+
+    group: int
+    start: int
+    end: int
+
+
+class _Task(NamedTuple):
+    """What a process does at once: the rules of a family, on a view (its place), on some packages."""
+
+    place: int
+    slices: tuple[_Slice, ...] = ()
+    family: str = ""
+
+
+class _Done(NamedTuple):
+    """What a task gives: what the rules yield, each with the place of its group; what its view did not resolve; and the
+    rules that failed."""
+
+    hits: list[tuple[int, Yielded]]
+    unresolved: set[Unresolved]
+    failures: Crashes
+
+
+_FLOW_TASK = _Task(_FLOW)
 
 def run_rules(
     opened: OpenedWorkspace, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None, jobs: int | None = None
@@ -95,14 +118,20 @@ def _run_remembered(
     """What rules yield on each target, by its name, and what flow_rules yield on the message flow: remembered from an
     earlier run where nothing changed. The rest is done side by side, since linking the flow is slow."""
     names = [rule.name for rule in rules]
-    found: dict[str, list[Yielded]] = {}
-    fresh = []
-    for place, view in enumerate(opened.views):
-        known = result_cache.load_results(opened.store, view, names)
-        if known is None:
-            fresh.append(place)
-        else:
-            found[view.target.name] = known
+    by_name = {rule.name: rule for rule in rules}
+    groups = opened.workspace.groups
+    # By the place of the view and of the group.
+    keys = {
+        (place, at): result_cache.make_results_key(view, names, group)
+        for place, view in enumerate(opened.views)
+        for at, group in enumerate(groups)
+    }
+    found: dict[tuple[int, int], list[Yielded]] = {}
+    for (place, at), key in keys.items():
+        if (known := result_cache.load_yielded(opened.store, key)) is not None:
+            found[place, at], unresolved = known
+            opened.views[place].unresolved.update(unresolved)
+    fresh = [each for each in keys if each not in found]
     key, on_flow = b"", None if flow_rules else []
     if flow_rules:
         key = result_cache.make_flow_key(opened.workspace, before, [rule.name for rule in flow_rules])
@@ -110,52 +139,68 @@ def _run_remembered(
         on_flow = known[0] if known is not None else None
     asked = flow_rules if on_flow is None else ()
     failed: Crashes = {}
-    for place, yielded in _run_in_parts(opened, rules, fresh, asked, before, crashed, failed, jobs):
+    for place, at, yielded in _run_in_parts(opened, rules, fresh, asked, before, crashed, failed, jobs):
         if place == _FLOW:
             on_flow = yielded
             if not failed:
-                result_cache.store_yielded(opened.store, key, yielded, {})
-            continue
-        view = opened.views[place]
-        by_name = {rule.name: rule for rule in rules}
-        found[view.target.name] = yielded = lower_repeats(drop_outweighed(yielded, by_name), by_name)
-        if not crashed:
-            result_cache.store_results(opened.store, view, names, yielded)
+                result_cache.store_yielded(opened.store, key, yielded)
+        else:
+            found[place, at] = yielded
+    if not crashed:
+        for place, at in fresh:
+            group = frozenset(groups[at])
+            unresolved = [each for each in opened.views[place].unresolved if each.package in group]
+            result_cache.store_yielded(opened.store, keys[place, at], found[place, at], unresolved)
     crashed.update(failed)
-    return found, on_flow or []
+    order = {name: number for number, name in enumerate((*names, *opened.workspace.packages))}
+    on_views = {}
+    for place, view in enumerate(opened.views):
+        yielded = [each for at in range(len(groups)) for each in found[place, at]]
+        yielded.sort(key=lambda each: (order[each[0]], order.get(each[1].package, -1)))
+        on_views[view.target.name] = lower_repeats(drop_outweighed(yielded, by_name), by_name)
+    return on_views, on_flow or []
 
 
 def _run_in_parts(
     opened: OpenedWorkspace,
     rules: Sequence[Rule],
-    places: Sequence[int],
+    fresh: Sequence[tuple[int, int]],
     flow_rules: Sequence[Rule],
     before: Workspace | None,
     crashed: Crashes,
     failed: Crashes,
     jobs: int,
-) -> Iterator[tuple[int, list[Yielded]]]:
-    """What the rules yield for these views, each with its place among them, and flow_rules on the message flow, with
-    _FLOW for a place; failed: receives those of them that failed."""
-    packages = list(opened.workspace.packages)
-    if not packages or not processes.may_fork():
-        for place in places:
-            yield place, list(_run_all(rules, opened.views[place], crashed))
+) -> Iterator[tuple[int, int, list[Yielded]]]:
+    """What the rules yield for each of these groups of packages, given by the places of its view and its own, with
+    these; and what flow_rules yield on the message flow, with _FLOW for a place. failed: receives those of them that
+    failed."""
+    groups = opened.workspace.groups
+    if not groups or not processes.may_fork():
+        for place, at in fresh:
+            whole = _Slice(at, 0, len(groups[at]))
+            hits = [
+                hit
+                for family in dict.fromkeys(rule.family for rule in rules)
+                for _, hit in _run_part(opened, rules, _Task(place, (whole,), family), crashed)
+            ]
+            yield place, at, hits
         if flow_rules:
-            yield _FLOW, _run_flow_part(opened, flow_rules, before, failed)
+            yield _FLOW, 0, _run_flow_part(opened, flow_rules, before, failed)
         return
-    if len(packages) * len(places) < _ALONE and not flow_rules:
+    places = group_pairs(fresh)
+    count = max((sum(len(groups[at]) for at in those) for those in places.values()), default=0)
+    if count * len(places) < _ALONE and not flow_rules:
         jobs = 1
     # A rule that does not end on a package must not stop the run: no rule runs in this process.
-    size = -(-len(packages) // -(-jobs // _JOBS_PER_PART))
+    size = -(-count // -(-jobs // _JOBS_PER_PART))
     asked = {rule.family for rule in rules}
     families = [*(each for each in _LONGEST if each in asked), *sorted(asked.difference(_LONGEST))]
     sizes = {family: -(-size // _PARTS_OF_LAST) if family == _LONGEST[-1] else size for family in families}
     parts = [
-        (place, at, min(at + sizes[family], len(packages)), family)
-        for place in places
+        _Task(place, slices, family)
+        for place, those in places.items()
         for family in families
-        for at in range(0, len(packages), sizes[family])
+        for slices in _cut([(at, len(groups[at])) for at in those], sizes[family])
     ]
     if flow_rules:
         from ..model.flow.workspace import get_flow
@@ -163,62 +208,74 @@ def _run_in_parts(
         get_flow(opened.workspace).jobs = jobs
     # The message flow takes longest.
     tasks = [_FLOW_TASK, *parts] if flow_rules else parts
-    done = {}
+    done: dict[_Task, Any] = {}
     if tasks:
         opened.store.close()  # no other process may go on with a connection of this one
-    for task, result in processes.run_forked(_run_task, tasks, jobs, opened, rules, packages, flow_rules, before):
+    for task, result in processes.run_forked(_run_task, tasks, jobs, opened, rules, flow_rules, before):
         if isinstance(result, processes.Died) and task != _FLOW_TASK:
-            result = _run_singly(opened, rules, packages, task)
+            result = _run_singly(opened, rules, task)
         done[task] = result
-    for place, tasks_of_view in groupby(parts, key=lambda task: task[0]):
-        view = opened.views[place]
-        yielded: dict[str, list[Yielded]] = {}
-        for task in tasks_of_view:
-            hits, unresolved, failures = done[task]
-            for name, hit in hits:
-                yielded.setdefault(name, []).append((name, hit))
-            for kind, unknown in unresolved.items():
-                view.unresolved.setdefault(kind, set()).update(unknown)
-            for failure in failures:
-                _record_failure(crashed, failure, view.target.name)
-        yield place, [each for rule in rules for each in yielded.get(rule.name, ())]
+    yielded: dict[tuple[int, int], list[Yielded]] = {each: [] for each in fresh}
+    for task in parts:
+        view = opened.views[task.place]
+        hits, unresolved, failures = done[task]
+        for at, hit in hits:
+            yielded[task.place, at].append(hit)
+        view.unresolved.update(unresolved)
+        for failure in failures:
+            _record_failure(crashed, failure, view.target.name)
+    yield from ((place, at, hits) for (place, at), hits in yielded.items())
     if flow_rules:
         result = done[_FLOW_TASK]
         if isinstance(result, processes.Died):
             failed[", ".join(rule.name for rule in flow_rules), f"the check of the message flow {result.why}"] = []
-            result = [], {}
-        failed.update(result[1])
-        yield _FLOW, result[0]
+            result = _Done([], set(), {})
+        failed.update(result.failures)
+        yield _FLOW, 0, [hit for _, hit in result.hits]
+
+
+def _cut(groups: Iterable[tuple[int, int]], size: int) -> Iterator[tuple[_Slice, ...]]:
+    """Groups of packages, each with how many it has, cut into pieces of `size` packages, which may be of several."""
+    piece: list[_Slice] = []
+    room = size
+    for group, count in groups:
+        start = 0
+        while start < count:
+            end = min(start + room, count)
+            piece.append(_Slice(group, start, end))
+            room -= end - start
+            start = end
+            if not room:
+                yield tuple(piece)
+                piece, room = [], size
+    if piece:
+        yield tuple(piece)
 
 
 def _run_task(
-    opened: OpenedWorkspace,
-    rules: Sequence[Rule],
-    packages: Sequence[str],
-    flow_rules: Sequence[Rule],
-    before: Workspace | None,
-    task: _Task,
-):
+    opened: OpenedWorkspace, rules: Sequence[Rule], flow_rules: Sequence[Rule], before: Workspace | None, task: _Task
+) -> _Done:
     """What a process does: a part of a view, or the message flow."""
+    failed: Crashes = {}
     if task == _FLOW_TASK:
-        failed: Crashes = {}
-        return _run_flow_part(opened, flow_rules, before, failed), failed
-    return _run_part(opened, rules, packages, task)
+        return _Done([(_FLOW, each) for each in _run_flow_part(opened, flow_rules, before, failed)], set(), failed)
+    return _Done(_run_part(opened, rules, task, failed), opened.views[task.place].unresolved, failed)
 
 
 def _run_part(
-    opened: OpenedWorkspace, rules: Sequence[Rule], packages: Sequence[str], task: _Task
-) -> tuple[list[Yielded], dict[str, set[str]], Crashes]:
-    """What rules yield for some packages on one view, what was not resolved, and the rules that failed."""
-    place, at, end, family = task
-    view = opened.views[place]
-    crashed: Crashes = {}
-    part = packages[at:end]
-    view.part = frozenset(part)
-    asked = [rule for rule in rules if rule.family == family]
-    processes.begin_part(0, _estimate_bytes(opened.workspace, part))
+    opened: OpenedWorkspace, rules: Sequence[Rule], task: _Task, failed: Crashes
+) -> list[tuple[int, Yielded]]:
+    """What rules yield for some packages on one view, each with its group. failed: receives the rules that failed."""
+    view, groups = opened.views[task.place], opened.workspace.groups
+    asked = [rule for rule in rules if rule.family == task.family]
+    found: list[tuple[int, Yielded]] = []
+    parts = [groups[group][start:end] for group, start, end in task.slices]
+    processes.begin_part(0, _estimate_bytes(opened.workspace, [name for part in parts for name in part]))
     try:
-        return list(_run_all(asked, view, crashed)), view.unresolved, crashed
+        for part, (group, *_) in zip(parts, task.slices, strict=True):
+            view.part = frozenset(part)
+            found += [(group, each) for each in _run_all(asked, view, failed)]
+        return found
     finally:
         view.part = None
 
@@ -229,28 +286,21 @@ def _estimate_bytes(workspace: Workspace, packages: Collection[str]) -> int:
     return (1 + len(packages)) * _PACKAGE_BYTES + files * _FILE_BYTES
 
 
-def _run_singly(
-    opened: OpenedWorkspace, rules: Sequence[Rule], packages: Sequence[str], task: _Task
-) -> tuple[list[Yielded], dict[str, set[str]], Crashes]:
-    """As _run_part, package by package, to name the package on which the rules end the process."""
-    place, at, end, family = task
-    singles = [(place, each, each + 1, family) for each in range(at, end)]
-    hits: list[Yielded] = []
-    unresolved: dict[str, set[str]] = {}
-    crashed: Crashes = {}
-    found = dict(processes.run_forked(_run_part, singles, 1, opened, rules, packages))
-    for single in singles:
-        result = found[single]
+def _run_singly(opened: OpenedWorkspace, rules: Sequence[Rule], task: _Task) -> _Done:
+    """As _run_task, package by package, to name the package on which the rules end the process."""
+    places = ((group, at) for group, start, end in task.slices for at in range(start, end))
+    singles = [task._replace(slices=(_Slice(group, at, at + 1),)) for group, at in places]
+    done = _Done([], set(), {})
+    for single, result in processes.run_forked(_run_task, singles, 1, opened, rules, (), None):
         if isinstance(result, processes.Died):
-            names = ", ".join(rule.name for rule in rules if rule.family == family)
-            failure = (names, f"the check of `{packages[single[1]]}` {result.why}")
-            crashed.setdefault(failure, [])
+            group, at, _ = single.slices[0]
+            names = ", ".join(rule.name for rule in rules if rule.family == task.family)
+            done.failures[names, f"the check of `{opened.workspace.groups[group][at]}` {result.why}"] = []
             continue
-        hits += result[0]
-        for kind, unknown in result[1].items():
-            unresolved.setdefault(kind, set()).update(unknown)
-        crashed.update(result[2])
-    return hits, unresolved, crashed
+        done.hits.extend(result.hits)
+        done.unresolved.update(result.unresolved)
+        done.failures.update(result.failures)
+    return done
 
 
 def _run_all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[Yielded]:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property, lru_cache
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from msgspec import structs
 
@@ -63,6 +63,14 @@ _UNCONFIGURED = Config()
 _LASTING = (frozenset, MappingProxyType)
 
 
+class Unresolved(NamedTuple):
+    """What a package uses and nobody is known to have. kind: cmake, include or import."""
+
+    package: str
+    kind: str
+    name: str
+
+
 class WorkspaceOnTarget:
     """One workspace on one target. providers answers for everything outside the workspace. asked: the distros of all
     targets of the same run, each of which has a view of its own."""
@@ -90,7 +98,7 @@ class WorkspaceOnTarget:
         self._own_headers = self._owned = 0
         # What others worked out about it, see cache_in_derived().
         self.derived: dict[Any, Any] = {}
-        self.unresolved: dict[str, set[str]] = {"include": set(), "cmake": set(), "import": set()}
+        self.unresolved: set[Unresolved] = set()
 
     def __iter__(self) -> Iterator[Package]:
         """Packages that are built on this target and that rules are to report on: all of them, or those of `part`."""

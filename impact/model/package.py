@@ -306,6 +306,25 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     unsearched: tuple[tuple[IncludeUse, str], ...] = ()
 
 
+# What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
+_INWARD = {
+    field.name: field.default
+    for field in msgspec.structs.fields(LinkedPackage)
+    if field.name in {
+        "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
+        "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
+        "settings", "testing", "python_offer",
+    }
+}  # fmt: skip
+
+
+def encode_outline(linked: LinkedPackage) -> bytes:
+    """What any package of the workspace may be asked about another one: all but what its code says, of which there are
+    the names in its headers alone. Raises UnicodeEncodeError for names that are no UTF-8."""
+    names = sorted({use.text for use in linked.names if is_header(use.at.path)})
+    return msgspec.msgpack.encode((msgspec.structs.replace(linked, names=(), **_INWARD), names))
+
+
 BUILD_TOOLS = ("ament_cmake_auto", "ament_cmake", "ament_python", "catkin")
 """Build types that ROS packages declare as tools; `ament_python` is no package."""
 

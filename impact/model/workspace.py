@@ -2,7 +2,8 @@
 
 A linked package is remembered by the content of everything it was joined from: the names of the package's files, their
 content ids, and those of CMake files of other packages that its CMake reads. Time plays no part in it. The identity of
-the workspace is made of the linked packages: an edit that changes none of them changes nothing that rules can see.
+the workspace is made of the linked packages: an edit that changes none of them changes nothing that rules can see. An
+edit of code is seen by the packages alone that have to do with the edited one, see `groups`.
 """
 
 from __future__ import annotations
@@ -12,17 +13,20 @@ import itertools
 import posixpath
 import re
 from bisect import bisect_left
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib import import_module
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
+from msgspec import structs
 
 from ...edges import processes
 from ...edges.groups import group_pairs
 from ...edges.limits import format_limits
 from ...edges.memory import cache_method
+from ...edges.reach import walk
 from ..facts.condition import Condition
 from ..facts.distros import ContainerFile, DistroFile
 from ..facts.extract import ExtractedFacts
@@ -40,7 +44,7 @@ from .cmake.interpreter import calls_unmodelled
 from .cpp.offered_headers import OfferedHeaders
 from .discovery import Discovered, PackagePlace, detect_generation, discover, find_manifest
 from .ignored import holds_ignored, is_ignored
-from .package import LinkedPackage, PackageJoin, Watched, build_type_of
+from .package import LinkedPackage, PackageJoin, Watched, build_type_of, encode_outline
 
 if TYPE_CHECKING:
     from ..targets.asked_versions import AskedVersions
@@ -181,6 +185,8 @@ class Workspace:
         whole: bool = True,
         unread: frozenset[str] = frozenset(),
         outside: FilesOutside | None = None,
+        outline: bytes = b"",
+        contents: Mapping[str, bytes] = MappingProxyType({}),
     ):
         self.packages = {d.name: Package(d) for d in packages}
         self.discovered, self.ros, self.extraction, self.read = discovered, ros, extraction, read
@@ -189,6 +195,8 @@ class Workspace:
         self.outside = outside or FilesOutside(discovered, extraction)
         # Differs whenever a linked package, their order or the generation does.
         self.identity = identity
+        # The same of what any package may be asked about the others, see encode_outline(), and each package's own.
+        self.outline, self.contents = outline, contents
         # False where a package could not be joined, or not be stored: the next run may tell otherwise.
         self.whole = whole
         # What later joins made of it, see cache_in_derived().
@@ -392,6 +400,48 @@ class Workspace:
         return found
 
 
+    @cached_property
+    def groups(self) -> tuple[tuple[str, ...], ...]:
+        """The packages, parted so that none has to do with one of another group: they name nothing of each other in
+        manifests, CMake, code or launch files. What the code of one says then changes nothing for the others. Small
+        groups that follow each other are put together."""
+        beside: dict[str, set[str]] = {name: set() for name in self.packages}
+        for package in self:
+            for name in self._list_named(package):
+                if name in beside:
+                    beside[package.name].add(name)
+                    beside[name].add(package.name)
+        groups: list[list[str]] = []
+        seen: set[str] = set()
+        for name in beside:
+            if name not in seen:
+                together = set(walk([name], beside.__getitem__))
+                seen |= together
+                if groups and len(groups[-1]) < _SMALL_GROUP:
+                    groups[-1].extend(each for each in beside if each in together)
+                else:
+                    groups.append([each for each in beside if each in together])
+        return tuple(map(tuple, groups))
+
+    def _list_named(self, package: Package) -> Iterator[str]:
+        """The names by which a package has to do with others of the workspace."""
+        linked = package.linked
+        yield from (dependency.name for dependency in package.manifest.dependencies)
+        for found in package.build.found:
+            yield from (found.name, self.provides_cmake.get(found.name, ""))
+        for path in {include.path for include in linked.includes}:
+            yield from (path.partition("/")[0], *self.provides_header(path))
+        for module in {item.module.partition(".")[0] for item in linked.imports}:
+            yield from (module, *self.modules.get(module, ()))
+        yield from (use.reference.package for use in linked.references)
+        for interface in linked.interfaces:
+            yield from (
+                field.type.partition("/")[0] for section in interface.definition.sections for field in section.fields
+            )
+
+
+# Packages of a group that is not put together with the next.
+_SMALL_GROUP = 16
 # Headers that macros of CMake make under these names.
 _OFTEN_MADE = frozenset(("visibility_control.h", "visibility_control.hpp", "version.h", "version.hpp", "export.h"))
 _CONFIGURATION = re.compile(r"(.+?)-?[Cc]onfig\.cmake(?:\.in)?$")
@@ -466,9 +516,12 @@ def link(
     linker = _Linker(tree, extraction, discovered, ros, watched, jobs or processes.count_cores(), asked)
     linked = linker.link_packages(store)
     outside = FilesOutside(discovered, extraction)
-    linker.identity.update(outside.identity)
-    identity = linker.identity.digest()
-    return Workspace(linked, discovered, ros, extraction, tree.read, identity, linker.whole, linker.unread, outside)
+    for found in (linker.identity, linker.outline):
+        found.update(outside.identity)
+    return Workspace(
+        *(linked, discovered, ros, extraction, tree.read, linker.identity.digest(), linker.whole, linker.unread),
+        *(outside, linker.outline.digest(), linker.contents),
+    )
 
 
 def _list_conditional(manifest: Manifest) -> dict[str, Condition]:
@@ -492,13 +545,21 @@ class _Stale(NamedTuple):
     headers: dict[str, str]
 
 
+class _Head(msgspec.Struct, frozen=True, array_like=True):
+    """What is remembered beside a linked package. read: what other packages' files say that it rests on, the content
+    ids of CMake files, and headers as OfferedHeaders describes them. outline: a digest of encode_outline()."""
+
+    read: dict[str, str]
+    outline: bytes
+
+
 class _Joined(NamedTuple):
-    """A linked package, the same encoded (empty where its names cannot be), and, encoded, what other packages' files
-    say that it rests on: the content ids of CMake files, and headers as OfferedHeaders describes them (None: not to be
-    stored)."""
+    """A linked package, the same encoded (empty where its names cannot be), the digest of its outline, and its _Head,
+    encoded (None: not to be stored)."""
 
     linked: LinkedPackage
     packed: bytes | memoryview
+    outline: bytes
     head: bytes | None
 
 
@@ -513,8 +574,8 @@ _INTERFACES = frozenset(("msg", "srv", "action", "idl"))
 def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, _Stale | None]], path: str):
     """What a process of its own does with a folder of tasks: a _Joined, with the package in one form only."""
     processes.begin_part(0, _JOIN_BYTES + len(linker.paths_of[path]) * _JOIN_BYTES_OF_FILE)
-    linked, packed, head = linker.join_one(*tasks[path])
-    return None if packed else linked, packed, head
+    joined = linker.join_one(*tasks[path])
+    return joined._replace(linked=None) if joined.packed else joined
 
 
 def _detect_build_type(build: Build, declared: str) -> str:
@@ -551,6 +612,8 @@ class _Linker:
         self.code = f"{compute_source_key(__name__)} {make_overall_version()}"
         self.unread = frozenset(problem.path for problem in (*extraction.problems, *tree.skipped))
         self.identity = hashlib.sha1(f"{self.code} {ros} {sorted(self.unread)}".encode("utf-8", "backslashreplace"))
+        self.outline = self.identity.copy()
+        self.contents: dict[str, bytes] = {}
 
     def link_packages(self, store: Store | None) -> list[LinkedPackage]:
         places = [p for p in self.discovered.packages if find_manifest(self.extraction, p.manifest_path) is not None]
@@ -565,7 +628,7 @@ class _Linker:
                 size = int.from_bytes(blob[:4], "big")
                 packed = memoryview(blob)[4 + size :]
                 try:
-                    read = msgspec.msgpack.decode(blob[4 : 4 + size], type=dict[str, str])
+                    read, outline = structs.astuple(msgspec.msgpack.decode(blob[4 : 4 + size], type=_Head))
                     before = decoder.decode(packed)
                 except msgspec.MsgspecError:
                     continue  # of another version: made anew
@@ -573,7 +636,7 @@ class _Linker:
                 if not all(self.offered.is_unchanged(path, described) for path, described in headers.items()):
                     continue
                 if all(self.extraction.ids.get(path, "") == oid for path, oid in read.items() if path not in headers):
-                    found[place.path] = _Joined(before, packed, None)
+                    found[place.path] = _Joined(before, packed, outline, None)
                 else:
                     stale[place.path] = _Stale(before, headers)
         made = dict(self.combine([p for p in places if p.path not in found], stale))
@@ -581,9 +644,9 @@ class _Linker:
         found.update(made)
         fresh: list[tuple[bytes, bytes]] = []
         for place in places:
-            linked, packed, head = found[place.path]
+            linked, packed, outline, head = found[place.path]
             # Names that are no UTF-8 cannot be stored, and are read anew each time.
-            self.identify(packed or repr(linked).encode("utf-8", "backslashreplace"))
+            self.identify(linked.name, packed or repr(linked).encode("utf-8", "backslashreplace"), outline)
             if packed and head is not None:
                 fresh.append((keys[place.path], len(head).to_bytes(4, "big") + head + packed))
         if store is not None and fresh:
@@ -610,8 +673,7 @@ class _Linker:
                 place, _ = tasks[path]
                 yield path, self.encode_package(self.make_failed(place, f"its analysis {result.why}"), None)
             else:
-                linked, packed, head = result
-                yield path, _Joined(linked or decoder.decode(packed), packed, head)
+                yield path, result._replace(linked=result.linked or decoder.decode(result.packed))
 
     def join_one(self, place: PackagePlace, before: _Stale | None) -> _Joined:
         try:
@@ -625,18 +687,20 @@ class _Linker:
             linked, read = self.make_failed(place, why), None
         return self.encode_package(linked, read)
 
-    def encode_package(self, linked: LinkedPackage, read: Any) -> _Joined:
+    def encode_package(self, linked: LinkedPackage, read: dict[str, str] | None) -> _Joined:
         """A linked package with what is remembered of it."""
         try:
-            head = msgspec.msgpack.encode(read) if read is not None else None
-            return _Joined(linked, msgspec.msgpack.encode(linked), head)
+            outline = hashlib.sha1(encode_outline(linked)).digest()
+            head = msgspec.msgpack.encode(_Head(read, outline)) if read is not None else None
+            return _Joined(linked, msgspec.msgpack.encode(linked), outline, head)
         except UnicodeEncodeError:
-            return _Joined(linked, b"", None)
+            return _Joined(linked, b"", hashlib.sha1(repr(linked).encode("utf-8", "backslashreplace")).digest(), None)
 
-    def identify(self, linked: bytes | memoryview) -> None:
-        """Takes a linked package, as bytes, into the workspace's identity."""
-        self.identity.update(len(linked).to_bytes(8, "big"))
-        self.identity.update(linked)
+    def identify(self, name: str, linked: bytes | memoryview, outline: bytes) -> None:
+        """Takes a linked package, as bytes, and the digest of its outline into the workspace's identities."""
+        content = self.contents[name] = hashlib.sha1(linked).digest()
+        self.identity.update(content)
+        self.outline.update(outline)
 
     def make_failed(self, place, reason: str) -> LinkedPackage:
         """What stands for a package whose join failed: its manifest, and a problem that says so."""
@@ -717,7 +781,7 @@ class _Linker:
             else Build()
         )
         ignored = tuple(self.list_ignored(build, read))
-        build = msgspec.structs.replace(build, made=(*build.made, *ignored)) if ignored else build
+        build = structs.replace(build, made=(*build.made, *ignored)) if ignored else build
         if before is not None and build == before.linked.build:
             return before.linked, {**read, **before.headers}
         build_type = _detect_build_type(build, build_type_of(manifest, self.ros))
