@@ -14,7 +14,7 @@ from ...edges.limits import get_limits
 from ..config import Config, ConfigError, load, parse
 from ..facts.extract import ExtractedFacts, extract_all
 from ..facts.store import Store
-from ..model.discovery import Discovered, detect_generation, discover
+from ..model.discovery import Discovered, detect_generation, discover, list_versions
 from ..targets.resolve import Chosen, choose_targets
 from ..tree import LEAVES, GitTree, PathProblem, Tree, TreeError, WorkingTree, shown
 from ..tree.ignore import Index, find_enclosing_repository
@@ -158,7 +158,11 @@ def read_workspace(
         )
         discovered = discover(tree, extraction)
         ros = detect_generation(discovered, extraction)
-        targets = choose_targets(options.targets, config, ros, tree)
+        versions = list_versions(discovered, extraction)
+        targets = [
+            Chosen(target.follow_release(versions), reason)
+            for target, reason in choose_targets(options.targets, config, ros, tree)
+        ]
         yield Read(tree, store, extraction, discovered, ros, targets, config, load_names)
 
 

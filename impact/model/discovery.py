@@ -414,6 +414,12 @@ def find_manifest(extraction: ExtractedFacts, path: str) -> Manifest | None:
     return facts if isinstance(facts, Manifest) else None
 
 
+def list_versions(discovered: Discovered, extraction: ExtractedFacts) -> list[tuple[str, str]]:
+    """The packages of a tree, each with the version that its manifest states."""
+    manifests = ((place.name, find_manifest(extraction, place.manifest_path)) for place in discovered.packages)
+    return [(name, manifest.version) for name, manifest in manifests if manifest is not None]
+
+
 def detect_generation(discovered: Discovered, extraction: ExtractedFacts) -> int:
     """1 or 2: which ROS generation most packages of the tree are written for, 2 where none tells."""
     manifests = (find_manifest(extraction, place.manifest_path) for place in discovered.packages)

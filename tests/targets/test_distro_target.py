@@ -63,6 +63,36 @@ def test_before_the_first_sync_the_commit_stands(text, approximate):
     assert target(text).approximate is approximate
 
 
+@pytest.mark.parametrize(
+    ("versions", "has", "waits"),
+    [
+        ([("maliput_viz", "0.1.0")], "1.1.0", True),
+        ([("maliput_viz", "0.1.0"), ("own", "0.1.0")], "1.1.0", True),
+        ([("maliput_viz", "0.2.0")], "1.0.7", False),
+        ([("maliput_viz", "0.1.0"), ("rclcpp", "2.4.2")], "1.0.7", False),  # that one was synced
+        ([], "1.0.7", False),
+    ],
+)
+def test_a_release_that_waits_for_the_next_sync_has_what_it_is_built_against(versions, has, waits):
+    synced = DistroTarget("foxy", "2023-03-12")
+    found = synced.follow_release(versions)
+    assert (found.find_version("maliput"), found is not synced, bool(found.notes)) == (has, waits, waits)
+    travelled = pickle.loads(pickle.dumps(found))
+    assert (travelled.find_version("maliput"), travelled.notes) == (has, found.notes)
+    assert travelled.compute_identity() == found.compute_identity()
+
+
+def test_a_release_that_waits_is_built_for_the_platform_that_its_distro_has_moved_to():
+    synced = DistroTarget("rolling", "2026-05-20")
+    assert synced.platform == "ubuntu noble"
+    assert synced.follow_release([("robot_arm_demo", "0.1.0")]).platform == "ubuntu resolute"
+
+
+def test_a_machine_with_versions_of_its_own_stays():
+    robot = DistroTarget("foxy", "2023-03-12", versions={"opencv": "4.9"})
+    assert robot.follow_release([("maliput_viz", "0.1.0")]) is robot
+
+
 def test_a_date_before_the_first_release_is_moved_with_a_note():
     early = target("jazzy@2020-01-01")
     assert early.date == "2024-04-19"

@@ -8,9 +8,10 @@ Why it breaks
     Nothing can install the package there: `rosdep install` fails, find_package fails, the node does not start.
 
 Severity
-    error when CMake or sources use the package without a condition; warning otherwise, and where a .repos or
-    .rosinstall file of the workspace may bring it, since people also build dependencies from source in an underlay
-    (name it in `[workspace] underlays`, `repos` or `private`).
+    error when CMake or sources use the package without a condition; warning otherwise, where the package waits for the
+    distro's next sync (the build farm and machines with ros-testing have it), and where a .repos or .rosinstall file of
+    the workspace may bring it, since people also build dependencies from source in an underlay (name it in `[workspace]
+    underlays`, `repos` or `private`).
 
 Example
     <depend>moveit_plugins</depend>             # on a distro where MoveIt is not released
@@ -33,6 +34,7 @@ _HELP = "bring its source into the workspace, or put a condition on the dependen
     texts={
         "never": Text("`{subject}` is not released in {distro}[[ (last released in {last})]]", _HELP),
         "later": Text("`{subject}` was not released in {distro} on that date", _HELP),
+        "waiting": Text("`{subject}` waits for the next sync of {distro}", "use ros-testing, or " + _HELP),
     },
 )
 def unreleased_package(view: TargetView, package: Package):
@@ -55,11 +57,12 @@ def unreleased_package(view: TargetView, package: Package):
             for need in view.list_needs(package)
         )
         last = target.find_last_distro(name)
+        waits = (testing := target.find_testing()) is not None and testing.find_version(name) is not None
         yield Diagnostic(
             view.find_place(package, dependency),
             name,
             package.name,
             {"distro": target.distro, "last": last},
-            kind="later" if last == target.distro else "never",
-            doubts=() if used and not beside else (Doubt.INCOMPLETE,),
+            kind="waiting" if waits else "later" if last == target.distro else "never",
+            doubts=() if used and not beside and not waits else (Doubt.INCOMPLETE,),
         )

@@ -165,7 +165,8 @@ class DistroTarget:
 
     def __reduce__(self):
         # A target travels to worker processes as its recipe; each opens the shared cache file itself.
-        return DistroTarget, (*self._asked, None, self._rules)
+        taken = {"_cut": self._cut, "platform": self.platform, "_notes": self._notes}
+        return DistroTarget, (*self._asked, None, self._rules), taken
 
     def compute_identity(self) -> str:
         """Differs whenever the target, or the data that answers for it, does."""
@@ -391,6 +392,24 @@ class DistroTarget:
         found = self.copy_with_changes()
         found._cut = compute_end_of_day(self.date)
         return found
+
+    def follow_release(self, versions: Iterable[tuple[str, str]]) -> DistroTarget:
+        """This target, or, where a workspace is a release that waits for the next sync, what its build farm builds that
+        release against. A target with versions of its own is a machine, and stays.
+
+        versions: the packages of the workspace, each with its version.
+        """
+        testing = self.find_testing() if not self._overrides else None
+        if testing is None:
+            return self
+        released = [(name, version) for name, version in versions if testing.find_version(name) == version]
+        if not released or any(self.find_version(name) == version for name, version in released):
+            return self
+        name, version = released[0]
+        note = f"{name} {version} waits for the next sync of {self.distro}: answered as of what is released, not synced"
+        testing.platform = normalize_platform(self._asked.platform or self._find_main_platform(testing._cut))
+        testing._notes = (note,)
+        return testing
 
     def find_updated(self) -> DistroTarget | None:
         """The same distro as of the data's newest day, None when this is it."""
