@@ -2,7 +2,8 @@
 
 What it does
     Makes the checks of catkin_package(CATKIN_DEPENDS ...): every package of it has to be a catkin package and a run
-    dependency, and a build dependency too when it is a component of find_package(catkin).
+    dependency, and a build dependency too when it is a component of find_package(catkin). What a package is that is
+    found after catkin_package() only, or not at all, is not looked at.
 
 Why it breaks
     catkin_package() ends with FATAL_ERROR: nothing of the package is built, on any machine.
@@ -47,7 +48,9 @@ def catkin_depends(view: TargetView, package: Package):
     if view.target.ros != 1 or build.catkin_package is None or package.build_type != "catkin":
         return
     declared = view.collect_declared(package)
-    components = {f.name for f in build.found if f.how == "catkin" and view.is_sure(f.conditions)}
+    call = build.catkin_package
+    found = [f for f in build.found if f.at.path != call.path or f.at.line < call.line]
+    components = {f.name for f in found if f.how == "catkin" and view.is_sure(f.conditions)}
     old = package.manifest.format == 1
     seen = set()
     for export in build.exports:
@@ -58,7 +61,7 @@ def catkin_depends(view: TargetView, package: Package):
         kinds = declared.get(name, set())
         kind, sure = _explain_not_catkin(view, name)
         tag = "build_depend"
-        if not kind or not any(f.name == name and f.required for f in build.found):
+        if not kind or not any(f.name == name and f.required for f in found):
             sure = True
             if not kinds & _RUN:
                 kind, tag = "run", "run_depend" if old else "exec_depend" if kinds else "depend"
