@@ -17,7 +17,8 @@ Use instead
     include_directories(${catkin_INCLUDE_DIRS})
 
 Not reported
-    Packages that use the include directories of any package of ROS, since all of ROS lies in one folder.
+    Packages that use the include directories of any package of ROS, since all of ROS lies in one folder; headers that a
+    system package has too.
 """
 
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
@@ -46,22 +47,20 @@ def missing_include_directories(view: TargetView, package: Package):
     for target in build.targets:
         if target.kind not in ("executable", "library") or not view.is_sure(target.conditions):
             continue
-        include = next(
-            (
-                i
-                for i in package.linked.includes
-                if target.name in i.targets
-                and view.is_sure(i.conditions)
-                and any(p.kind == "ros" and p.name not in view.workspace.packages for p in view.find_header(i.path))
-            ),
-            None,
-        )
+        own = (i for i in package.linked.includes if target.name in i.targets and view.is_sure(i.conditions))
+        include = next((i for i in own if _is_released(view, i.path)), None)
         if include is not None:
             data = {"target": target.name, "header": include.path}
             doubts = (Doubt.LUCKY,) if view.target.distro in _WITH_CPATH else ()
             subject = "catkin_INCLUDE_DIRS"
             yield Diagnostic(target.at, subject, package.name, data, doubts=doubts)
             return
+
+
+def _is_released(view: TargetView, path: str) -> bool:
+    """Whether nothing but released packages has a header: the system's own folder is searched in any case."""
+    providers = view.find_header(path)
+    return bool(providers) and all(p.kind == "ros" and p.name not in view.workspace.packages for p in providers)
 
 
 # Distros whose setup files put the include folder of ROS into CPATH. Source: catkin's change log, 0.7.0.
