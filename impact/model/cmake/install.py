@@ -22,6 +22,8 @@ _KEYWORDS = make_name_set(
     CXX_MODULES_BMI CXX_MODULES_DIRECTORY EXPORT_LINK_INTERFACE_LIBRARIES
     """
 )
+_OF_ITEMS = make_name_set("TARGETS FILES PROGRAMS")
+"""Forms of install() with which CMake does nothing where no item is given: nothing that they read is missed."""
 # cmake-commands(7), install(), "TYPE": where each type goes.
 _TYPES = {
     "BIN": "bin",
@@ -49,6 +51,10 @@ def install(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     if run.silent:
         return
     form = args[0]
+    if form in _OF_ITEMS and (len(args) == 1 or args[1] in _KEYWORDS or args[1] in _ARTIFACTS):
+        places = {run.locate(template.at) for template in call.templates}
+        run.uses = {use: None for use in run.uses if use.at not in places}
+        return
     if not run.catkin_destinations:
         for name in _OF_CATKIN_PACKAGE.findall(" ".join(argument.text for argument in call.arguments)):
             run.use_variable(name, call.at)
