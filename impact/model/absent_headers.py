@@ -53,7 +53,9 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
     path, build = include.path, package.build
     if not include.targets or not view.is_sure(include.conditions) or build.unresolved:
         return False
-    if is_answered(view, path):
+    # What does not lie where a relative path leads is looked for in the folders that are searched.
+    searched_for = path.lstrip("./")
+    if is_answered(view, searched_for):
         return False
     name = path.rpartition("/")[2]
     if not re.fullmatch(r"[\w./+-]+\.(?:h|hh|hpp|hxx|H)", path) or name in _list_file_names(view):
@@ -63,7 +65,7 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
     searched = (*(item for item, _ in build.include_dirs), *(link.item for link in build.target_links))
     if any(item.startswith(("/", "~", "$ENV{")) for item in searched):
         return False  # a folder of the machine
-    if view.unknown_contents.may_hold(package, path.lstrip("./")):
+    if view.unknown_contents.may_hold(package, searched_for):
         return False
     passed = (link.item for link in build.target_links if link.how == "ament")
     direct = {*view.collect_declared(package), *(one.name for one in build.found), *passed}
