@@ -122,8 +122,9 @@ def find_brought(view: TargetView, package: Package, target: str) -> tuple[froze
     }
     hiding, kinds = set(filter(is_opaque, items)), {t.name: t.kind for t in build.targets}
     # Packages name their variables in capitals too: ${OMPL_INCLUDE_DIRS} is ompl's.
-    # A target of the package may be called like the package, and brings none of what that declares.
-    given = {resolve_package(item) for item in (*(items - hiding - kinds.keys()), *(i for i, _ in build.include_dirs))}
+    # A target of the package may be called like a package, and brings none of what that declares.
+    own = kinds.keys() - {link.item for link in build.target_links if link.how == "ament"}
+    given = {resolve_package(item) for item in (*(items - hiding - own), *(i for i, _ in build.include_dirs))}
     given -= {"", package.name}
     known = view.collect_declared(package).keys() | {f.name for f in build.found}
     if view.unknown_contents.list_unknown(frozenset(given & known)):
