@@ -38,6 +38,7 @@ from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
 from ..targets.providers.message_headers import parse_type
+from ..targets.providers.standard import list_own_names
 from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .cpp.offered_headers import OfferedHeaders, collect_words
@@ -90,7 +91,8 @@ _SOURCES = 6
 class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """An include that no file of the package answers. role: build, test or aside; public: in an installed header.
     targets: CMake targets that compile it. idle: no file of the package names anything of the namespace, or a macro,
-    that its first folder is called after. angled: in <...>, not in quotes."""
+    that its first folder is called after, nor of a standard header since C++17 any of its names. angled: in <...>, not
+    in quotes."""
 
     path: str
     at: At
@@ -794,7 +796,7 @@ class PackageJoin:
                     includes.append(
                         IncludeUse(include.path, At(path, include.line, include.column), role, public,
                                    conditions + self.macros.resolve_conditions(include.conditions, targets), targets,
-                                   self.is_idle(include.path.partition("/")[0]), include.angled)
+                                   self.is_idle(include.path), include.angled)
                     )  # fmt: skip
             types = set()
             for name in facts.qualified:
@@ -824,15 +826,29 @@ class PackageJoin:
         return includes, names, needed
 
     @cached_property
-    def spaces(self) -> frozenset[str]:
-        """First parts of the qualified names and namespaces in C++ files."""
+    def qualified(self) -> frozenset[str]:
+        """The qualified names and namespaces in C++ files."""
         names = {name.text for facts in self.cpp.values() for name in facts.qualified}
         names.update(name for facts in self.cpp.values() for name in (*facts.using, *facts.opened, *facts.namespaces))
-        return frozenset(name.removeprefix("::").partition("::")[0] for name in names)
+        names.update(space for facts in self.cpp.values() for _, space in facts.spaces)
+        return frozenset(name.removeprefix("::") for name in names)
+
+    @cached_property
+    def spaces(self) -> frozenset[str]:
+        """First parts of the qualified names and namespaces in C++ files."""
+        return frozenset(name.partition("::")[0] for name in self.qualified)
 
     @cache_method
-    def is_idle(self, space: str) -> bool:
-        """Whether no C++ file names anything of a namespace, or a macro that is called after it."""
+    def is_idle(self, path: str) -> bool:
+        """Whether no C++ file names anything of the namespace, or a macro, that the first folder of an included header
+        is called after; of a standard header whose names are known, any of these."""
+        if offered := list_own_names(path):
+            opened = "std" in self.qualified
+            words = {name.rpartition("::")[2] for name in offered} if opened else ()
+            if any(name.startswith(offered) for name in self.qualified):
+                return False
+            return not any(word in facts.words for facts in self.cpp.values() for word in words)
+        space = path.partition("/")[0]
         macro = f"{space.upper()}_"
         return space not in self.spaces and not any(macro in facts.words for facts in self.cpp.values())
 

@@ -21,12 +21,13 @@ Use instead
 
 Not reported
     CMAKE_CXX_STANDARD in ROS 2: CMake raises it to what linked targets ask for. A -std= flag in ROS 2 where the
-    compiler's default is below what they ask for: CMake then writes the higher one behind it.
+    compiler's default is below what they ask for: CMake then writes the higher one behind it. Headers of the standard
+    library since C++17 of which no name is used: below their standard they are empty.
 """
 
 from ...model.standards import find_standards, may_be_raised, may_be_set_elsewhere
 from ...targets.providers.library import NeededStandard, find_default_standard, find_needed_standard, get_year
-from ...targets.providers.standard import HEADER_SINCE
+from ...targets.providers.standard import HEADER_SINCE, is_empty
 from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 
@@ -77,6 +78,8 @@ def _check_ros1(view: TargetView, package: Package, default: int | None):
             continue
         if not need.package and (need.standard == 17 and not fixed):
             continue  # often beside std::experimental, under a test of the compiler
+        if not need.package and include.idle and is_empty(include.path, view.machine.gcc):
+            continue
         reported.add(need.package)
         own = need.package in view.workspace.packages
         known = need.sure and sure and not own and not may_be_raised(view, package, include.targets)

@@ -136,6 +136,21 @@ def index_headers() -> dict[str, tuple[str, ...]]:
 
 
 @cache
+def list_own_names(header: str) -> tuple[str, ...]:
+    """The names that a standard header is for, of those that are empty below the C++ standard that they are of; empty
+    where that is not known."""
+    if HEADER_SINCE.get(header, 0) < 17:
+        return ()
+    names = tuple(name for name, own in load_names().names.items() if own == header)
+    return (f"std::{header}", *names) if names else ()
+
+
+def is_empty(header: str, gcc: int) -> bool:
+    """Whether a standard header is there in a GCC, and empty below the C++ standard that it is of."""
+    return HEADER_SINCE.get(header, 0) >= 17 and header in _build_table(gcc)
+
+
+@cache
 def _index_bits() -> dict[str, int]:
     return {name: 1 << place for place, name in enumerate(load_names().names)}
 
