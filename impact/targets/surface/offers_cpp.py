@@ -196,6 +196,8 @@ def _check_call(offers: Offers, offered: Offered, arguments: int, given: tuple[s
         for event, form, earlier in iterate_other_forms(offers, offered):
             others = (one for one in list_callable_forms(form) if one.accepts(arguments))
             if any(not fitting or may_have_taken(one, shown) for one in others):
+                if not fitting and _is_accepted_by_count(offers, offered, arguments):
+                    return None
                 why = "types" if fitting else "arguments"
                 return _answer("changed", make_offered(offers, offered, event, earlier), why, earlier)
         return None
@@ -203,6 +205,14 @@ def _check_call(offers: Offers, offered: Offered, arguments: int, given: tuple[s
     if relying and offered.first and all(reported.kind == "default" for reported in offered.reported):
         return _answer("changed", offered, "default")
     return None
+
+
+def _is_accepted_by_count(offers: Offers, offered: Offered, arguments: int) -> bool:
+    """Whether the stored version takes so many arguments. Forms tell what breaks somebody: a default that a parameter
+    got since changes none."""
+    offer = offers.find_package(offered.package)
+    found = _list_accepting(offer.history, offered.name, offer.stored, arguments) if offer is not None else ()
+    return any("deleted" not in one.traits for one in found)
 
 
 def may_be_implicit(name: str, here: Iterable[Overload], arguments: int, given: Sequence[Sequence[str]]) -> bool:
