@@ -9,9 +9,9 @@ Why it breaks
 
 Severity
     error when CMake or sources use the package without a condition; warning otherwise, where the package waits for the
-    distro's next sync (the build farm and machines with ros-testing have it), and where a .repos or .rosinstall file of
-    the workspace may bring it, since people also build dependencies from source in an underlay (name it in `[workspace]
-    underlays`, `repos` or `private`).
+    first sync on another platform (whoever is there has ros-testing until then), and where a .repos or .rosinstall file
+    of the workspace may bring it, since people also build dependencies from source in an underlay (name it in
+    `[workspace] underlays`, `repos` or `private`).
 
 Example
     <depend>moveit_plugins</depend>             # on a distro where MoveIt is not released
@@ -64,5 +64,5 @@ def unreleased_package(view: TargetView, package: Package):
             package.name,
             {"distro": target.distro, "last": last},
             kind="waiting" if waits else "later" if last == target.distro else "never",
-            doubts=() if used and not beside and not waits else (Doubt.INCOMPLETE,),
+            doubts=(used or Doubt.INCOMPLETE, not (beside or (waits and target.moving)) or Doubt.INCOMPLETE),
         )

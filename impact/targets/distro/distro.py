@@ -120,7 +120,8 @@ class DistroTarget:
 
     Raises TargetError for an unknown distro or a malformed date. Further attributes: ros (1 or 2), python_major (2 or
     3), data_date (newest day of the data), notes (what was adjusted, such as a date moved to the first release),
-    approximate (True before the first sync tag), end_of_life (ISO day, empty when none is set), lts.
+    approximate (True before the first sync tag), moving (its distro is built for another platform by now and has had no
+    sync there), end_of_life (ISO day, empty when none is set), lts.
     """
 
     def __init__(
@@ -150,6 +151,7 @@ class DistroTarget:
         self.date = self._move_date(date, notes)
         self._cut, self.approximate = self._find_commit_time()
         self._rule_ts = compute_end_of_day(self.date)
+        self.moving = False
         self.platform = self._choose_platform(platform, notes)
         self._notes = tuple(notes)
         self.name = name or (distro if date is None else f"{distro}@{date}")
@@ -220,7 +222,8 @@ class DistroTarget:
         if platform:
             return normalize_platform(platform)
         built_for, now = self._find_main_platform(self._cut), self._find_main_platform(compute_end_of_day(self.date))
-        if built_for != now:
+        self.moving = built_for != now
+        if self.moving:
             notes.append(
                 f"{self.distro} had moved to {now}, not yet synced there: answered as of its last on {built_for}"
             )
