@@ -14,13 +14,17 @@ Use instead
     add_dependencies(bridge ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
 Not reported
-    Targets that wait through another target of the package, or through `${catkin_EXPORTED_TARGETS}`; interfaces of
-    packages that are released, and so installed before the build.
+    Targets that wait through another target of the package, through `${catkin_EXPORTED_TARGETS}`, or through a linked
+    library that another package of the workspace exports; interfaces of packages that are released, and so installed
+    before the build.
 """
 
 import re
+from collections.abc import Iterable, Iterator
+from functools import cache
 
 from ....edges.reach import walk
+from ...model.cmake.catkin_links import find_linked_packages
 from ...model.view import find_included_interface
 from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, rule
 
@@ -59,7 +63,9 @@ def missing_interface_wiring(view: TargetView, package: Package):
             kind = "generate_messages_cpp"
         for name in include.targets:
             target = targets.get(name)
-            if target is not None and not _waits(orders.get(name, ()), head, kind, package.name):
+            if target is None or _waits(orders.get(name, ()), head, kind, package.name):
+                continue
+            if head == package.name or not _waits_elsewhere(view, package, orders[name], head):
                 wanted.setdefault((head, kind), []).append((include, target))
     for (head, kind), uses in wanted.items():
         include, target = min(uses, key=lambda u: (u[1].at.path, u[1].at.line, u[0].at.path, u[0].at.line))
@@ -76,12 +82,46 @@ def missing_interface_wiring(view: TargetView, package: Package):
 
 def _find_orders(package: Package) -> dict[str, set[str]]:
     """For every target: everything it waits for, through targets of the package."""
+    direct = _index_links(package)
+    return {name: set(walk(items, lambda item: direct.get(item, ()))) for name, items in direct.items()}
+
+
+def _index_links(package: Package) -> dict[str, set[str]]:
+    """For every target: what it waits for itself."""
     direct: dict[str, set[str]] = {}
     for target in package.build.targets:
         direct.setdefault(target.name, set()).update(
             link.item for link in target.links if link.how in ("order", "link")
         )
-    return {name: set(walk(items, lambda item: direct.get(item, ()))) for name, items in direct.items()}
+    return direct
+
+
+def _waits_elsewhere(view: TargetView, package: Package, items: Iterable[str], head: str) -> bool:
+    """Whether a library that another package of the workspace exports, and that is among what a target is linked to,
+    waits for the interfaces of a package: in one CMake run (catkin_make) such a library is a target."""
+    packages = view.workspace.packages
+    index_links = cache(lambda name: _index_links(packages[name]))
+
+    def list_next(place: tuple[str, str]) -> Iterator[tuple[str, str]]:
+        user, item = place
+        yield from ((user, link) for link in index_links(user).get(item, ()))
+        for name in walk(find_linked_packages(view, packages[user], [item]), list_handed_on):
+            if name in packages:
+                yield from ((name, library) for library in _list_exports(packages[name], "libraries"))
+
+    def list_handed_on(name: str) -> tuple[str, ...]:
+        return _list_exports(packages[name], "catkin_depends") if name in packages else ()
+
+    return any(
+        name != package.name
+        and _waits([item], head, "generate_messages_cpp", name)
+        and head in view.build_environment(packages[name])
+        for name, item in walk([(package.name, item) for item in items], list_next)
+    )
+
+
+def _list_exports(package: Package, how: str) -> tuple[str, ...]:
+    return tuple(export.item for export in package.build.exports if export.how == how)
 
 
 def _is_built_beside(view: TargetView, package: Package, header: str) -> bool:
@@ -111,7 +151,8 @@ def _add_dependencies(package: Package, targets, variable: str) -> tuple[Insert,
     )
 
 
-def _waits(items, head: str, kind: str, package: str) -> bool:
+def _waits(items: Iterable[str], head: str, kind: str, package: str) -> bool:
+    """Whether what targets of a package wait for makes the headers of `head`."""
     for item in items:
         text = item.strip("${}")
         if text in ("catkin_EXPORTED_TARGETS", "catkin_TARGETS"):
