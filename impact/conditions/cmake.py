@@ -262,9 +262,12 @@ class _OnMachine(CMakeTest):
         return expanded if literal or not re.search(r"[A-Z_]", expanded) else None
 
     def evaluate_comparison(self, left: Token, kind: str, right: Token) -> bool | None:
-        if kind in ("IN_LIST", "IS_NEWER_THAN", "PATH_EQUAL"):
+        if kind in ("IS_NEWER_THAN", "PATH_EQUAL"):
             return None
         known = self.resolve_operand(left, False)
+        if kind == "IN_LIST":
+            # A list that is known stands for its name, see format_condition() of model.cmake.conditions.
+            return known in right.text.split(";") if known is not None and right.text.endswith(";") else None
         wanted = self.resolve_operand(right, True)
         if known is None or wanted is None:
             return None

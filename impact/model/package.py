@@ -37,6 +37,7 @@ from ..facts.searches import SearchedCpp, WordUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
+from ..targets.changes import DISTROS
 from ..targets.providers.message_headers import parse_type
 from ..targets.providers.standard import list_own_names
 from ..targets.surface.fields import Fields
@@ -726,9 +727,12 @@ class PackageJoin:
                 own = next((conditions for path, conditions in target.guarded if path == source), ())
                 names = () if is_header(source) else (target.name,)
                 walk(source, role, False, names, target.conditions + own)
-        for header in self.list_installed_headers():
-            walk(header, "build", True, (), ())
-        return {p: (r[0], r[1], tuple(sorted(r[2])), tuple(r[3])) for p, r in reached.items()}
+        for header, conditions in self.list_installed_headers():
+            walk(header, "build", True, (), conditions)
+        per_distro = _list_per_distro(self.cpp)
+        return {
+            p: (r[0], r[1], tuple(sorted(r[2])), (*r[3], *per_distro.get(p, ()))) for p, r in reached.items()
+        }
 
     def list_own_calls(self, roles) -> Iterator[tuple[str, str, str]]:
         """As LinkedPackage.own_calls."""
@@ -751,15 +755,19 @@ class PackageJoin:
         declared = partial(self.look, kind="called_cpp")
         yield from list_own_calls(sources, list_included, self.list_words, may_lack, declared)
 
-    def list_installed_headers(self) -> list[str]:
-        folders, single = [], set()
+    def list_installed_headers(self) -> Iterator[tuple[str, tuple[Condition, ...]]]:
+        """The headers that are installed, each under what all rules that install it have in common."""
+        folders, single = [], {}
         for rule in self.build.installs:
             if rule.kind == "directory" and "include" in rule.destination.lower():
-                folders.extend(item.rstrip("/") for item in rule.items)
+                folders.extend((f"{item.rstrip('/')}/".lstrip("/"), rule.conditions) for item in rule.items)
             elif rule.kind == "files":
-                single.update(rule.items)
-        headers = filter(is_header, self.cpp)
-        return [p for p in headers if p in single or any(not f or p.startswith(f"{f}/") for f in folders)]
+                for item in rule.items:
+                    single.setdefault(item, []).append(rule.conditions)
+        for path in filter(is_header, self.cpp):
+            around = [*single.get(path, ()), *(held for folder, held in folders if path.startswith(folder))]
+            if around:
+                yield path, tuple(c for c in around[0] if all(c in other for other in around))
 
     def list_unsearched(self, roles) -> Iterator[tuple[IncludeUse, str]]:
         """As LinkedPackage.unsearched."""
@@ -1392,6 +1400,25 @@ _ANNOUNCED = frozenset({"std::string"}).union(
 )  # fmt: skip
 # Stands for a test of which only is known that one of several branches of it has to be taken.
 _ONE_OF_SEVERAL = Condition("cmake", "<one of several conditions>")
+
+
+def _list_per_distro(paths: Iterable[str]) -> dict[str, tuple[Condition, ...]]:
+    """The files in a folder that is called as a distro, each with what it is not for: the distros that have a folder
+    beside it."""
+    found: dict[str, tuple[str, str]] = {}
+    beside: dict[str, set[str]] = {}
+    for path in paths:
+        folders = path.split("/")[:-1]
+        for place, folder in enumerate(folders):
+            if folder in DISTROS:
+                found[path] = "/".join(folders[:place]), folder
+                beside.setdefault(found[path][0], set()).add(folder)
+                break
+    return {
+        path: (Condition("cmake", f"$ENV{{ROS_DISTRO}} IN_LIST {';'.join(others)};", True),)
+        for path, (parent, folder) in found.items()
+        if (others := sorted(beside[parent] - {folder}))
+    }
 
 
 def _merge_conditions(one: list[Condition], other: tuple[Condition, ...]) -> list[Condition]:

@@ -14,7 +14,7 @@ from ...edges.memory import cache_method
 from ..conditions.cmake import list_tested_packages
 from ..facts.condition import Condition
 from ..targets.target import Provider
-from .cmake.build import At, FoundPackage, is_for_tests
+from .cmake.build import At, FoundPackage, Stop, is_for_tests
 from .on_target import INTERFACES, PACKAGE, Unresolved, WorkspaceOnTarget
 from .package import find_folder_role
 from .roles import Roles
@@ -83,6 +83,20 @@ class TargetView(WorkspaceOnTarget):
     def sort_needs(self, package: Package) -> tuple[Need, ...]:
         """The same, what is surest to break first."""
         return tuple(sorted(self.list_needs(package), key=make_sort_key))
+
+    @cache_method
+    def find_stop(self, package: Package) -> Stop | None:
+        """Where configuring a package stops on this target for its distro, None where it does not."""
+        for stop in package.build.stops:
+            if any("ROS_DISTRO" in condition.text for condition in stop[2]) and self.is_sure(stop[2]):
+                return stop
+        return None
+
+    def is_refused(self, package: str, path: str) -> bool:
+        """Whether a file belongs to a package that is not for this target: its CMake stops there. What the manifest
+        declares is looked for even so."""
+        own = self.workspace.packages.get(package)
+        return own is not None and not path.endswith("package.xml") and self.find_stop(own) is not None
 
     def is_circular(self, package: Package, name: str) -> bool:
         """True when what would be declared comes with the package itself, or is of the workspace and needs it."""
@@ -180,7 +194,7 @@ class TargetView(WorkspaceOnTarget):
         for at, _, conditions in package.build.stops:
             for test in conditions:
                 asked = _DEFINED.search(test.text)
-                if asked and test.text.startswith("NOT ") != test.negated:
+                if asked and " AND " not in test.text and test.text.startswith("NOT ") != test.negated:
                     read.append((asked[1], at, tuple(other for other in conditions if other is not test)))
         for name, at, conditions in read:
             if self.applies(conditions):

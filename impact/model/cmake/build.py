@@ -20,6 +20,10 @@ class At(msgspec.Struct, frozen=True, array_like=True, gc=False):
     column: int = 0
 
 
+Stop = tuple[At, str, tuple[Condition, ...]]
+"""A message(FATAL_ERROR) under conditions, with its text."""
+
+
 class FoundPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A package looked for by CMake.
 
@@ -287,7 +291,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     refused: tuple[RefusedName, ...] = ()
     read_elsewhere: tuple[ReadFile, ...] = ()
     asked: tuple[str, ...] = ()
-    stops: tuple[tuple[At, str, tuple[Condition, ...]], ...] = ()
+    stops: tuple[Stop, ...] = ()
     dependency_calls: tuple[DependencyCall, ...] = ()
     catkin_destinations: bool = False
 

@@ -31,9 +31,14 @@ def evaluate(tokens: Sequence[Token], world: CMakeWorld) -> bool | None:
     return _InWorld(tokens, world).evaluate_tokens() if tokens else False
 
 
-def format_condition(tokens: Sequence[Token]) -> str:
-    """The condition for a reader: arguments with one space between them."""
-    return " ".join(token.text if token.text else '""' for token in tokens)
+def format_condition(tokens: Sequence[Token], world: CMakeWorld) -> str:
+    """The condition for a reader: arguments with one space between them, a list that is known in place of its name."""
+    texts = [token.text or '""' for token in tokens]
+    for place, token in enumerate(tokens[1:], 1):
+        held = world.get(token.text) if tokens[place - 1].text == "IN_LIST" else None
+        if held is not None and held.sure and held.defined:
+            texts[place] = f"{held.text};"
+    return " ".join(texts)
 
 
 def make_version_key(text: str) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ variables is joined.
 import itertools
 import posixpath
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import wraps
 from typing import Any
 
@@ -66,6 +66,7 @@ MAX_STEPS = 40_000
 MAX_ITERATIONS = 1_000
 MAX_NESTING = 120
 MAX_CONDITIONS = 50
+_MAX_TEST = 1_000  # letters
 
 NORMAL, BREAK, CONTINUE, RETURN, FATAL = range(5)
 
@@ -420,6 +421,7 @@ class Interpreter:
         outer = self.conditions
         before: tuple[Condition, ...] = ()
         outcomes: list[dict[tuple[int, str], tuple[dict[str, CMakeValue], CMakeValue | None]]] = []
+        led: list[tuple[Condition, ...]] = []
         returned: list[tuple[Condition, ...]] = []
         signals: set[int] = set()
         exhaustive = False
@@ -447,15 +449,17 @@ class Interpreter:
                 if signal in (BREAK, CONTINUE):
                     self.maybe_break = True
                 outcomes.append(changes)
+                led.append(own)
             if value is True:
                 exhaustive = True
                 break
             before = (*before, self.make_test(text, negated=True))
         if not exhaustive:
             outcomes.insert(0, {})
+            led.insert(0, before)
         if not outcomes:
             return RETURN if RETURN in signals else FATAL
-        self.merge_outcomes(outcomes, before if len(before) == 1 and not exhaustive else ())
+        self.merge_outcomes(outcomes, before if len(before) == 1 and not exhaustive else (), led)
         for own in returned if len(self.conditions) < MAX_CONDITIONS else ():
             rest = structs.replace(own[0], negated=not own[0].negated, gate=self.is_at_gate(own[0]))
             self.conditions = merge(self.conditions, (rest,))
@@ -504,9 +508,9 @@ class Interpreter:
         del self.journal[mark:]
         return signal, changes
 
-    def merge_outcomes(self, outcomes, untaken: tuple[Condition, ...] = ()) -> None:
+    def merge_outcomes(self, outcomes, untaken: tuple[Condition, ...] = (), led=()) -> None:
         """Leaves in each variable what the branches wrote, joined. untaken: what holds where the only branch is not
-        taken; what that branch takes out of a list is left under this."""
+        taken; what that branch takes out of a list is left under this. led: the tests that lead into each."""
         touched: dict[tuple[int, str], dict[str, CMakeValue]] = {}
         for changes in outcomes:
             for key, (where, _) in changes.items():
@@ -525,7 +529,7 @@ class Interpreter:
                     for item in whole.words
                 )
                 left[0] = CMakeValue(tuple(words), whole.sure, whole.defined)
-            value = join(left)
+            value = join(left, led)
             if value is not None:
                 self.spend(len(value.words) >> 5)
                 self.assign(where, name, value)
@@ -533,11 +537,9 @@ class Interpreter:
     def decide(self, head: CommandCall) -> tuple[bool | None, str]:
         """The value of a test and its text."""
         self.command = head.name
-        tokens = self.expand_condition(head)
-        value = tests.evaluate(tokens, self)
+        value, text = self.evaluate(head)
         if value is not None:
             return value, ""
-        text = self.clean(tests.format_condition(tokens))
         self.use_environment(text, head.at)
         for held in self.conditions:
             if held.text == text and held.language == "cmake":
@@ -552,6 +554,46 @@ class Interpreter:
         if assumed is not None:
             return assumed != negated, text
         return None, text
+
+    def evaluate(self, head: CommandCall) -> tuple[bool | None, str]:
+        """The value of a test, or its text where that is not known. What it reads of a variable that branches set
+        differently is told by the tests that lead into these."""
+        tokens = self.expand_condition(head)
+        value = tests.evaluate(tokens, self)
+        if value is not None:
+            return value, ""
+        text = self.clean(tests.format_condition(tokens, self))
+        for where, name in self.list_tested(head):
+            held = where[name]
+            alternatives: list[tuple[str, bool]] = []
+            try:
+                for conditions, way in held.ways:
+                    where[name] = way or CMakeValue((wrap(f"${{{name}}}", head.at, (), False),), False)
+                    value, rest = self.evaluate(head)
+                    if value is not False:
+                        alternatives.append((format_all(conditions, rest), value is True))
+            finally:
+                where[name] = held
+            if all(sure for _, sure in alternatives) and len(alternatives) in (0, len(held.ways)):
+                return bool(alternatives), ""
+            told = [each for each, _ in alternatives]
+            any_of = " OR ".join(map(group, told)) if told[1:] else told[0]
+            return None, any_of if len(any_of) <= _MAX_TEST else text
+        return None, text
+
+    def list_tested(self, head: CommandCall) -> Iterator[tuple[dict[str, CMakeValue], str]]:
+        """The variables that a test reads and that branches set differently, each with what holds it."""
+        for template in head.templates:
+            if template.kind == LITERAL:
+                names = () if template.quoted else map(str, template.words)
+            else:
+                names = (template.name,)
+            for name in names:
+                for where in (self.overlay, self.scope, self.cache):
+                    if name in where:
+                        if where[name].ways:
+                            yield where, name
+                        break
 
     def assume(self, text: str, value: bool) -> None:
         """Takes a test as decided from here on: configuring stops when it is otherwise."""
@@ -1217,6 +1259,19 @@ class Interpreter:
         """Makes or finds a target; a second one of the same name adds to the first."""
         conditions = self.merge_with(name) if isinstance(name, Word) else self.conditions
         return self.targets.make(str(name), kind, self.locate(at), conditions)
+
+
+def format_all(conditions: Sequence[Condition], rest: str) -> str:
+    """Conditions that hold together, and a further test, as one test."""
+    tests_together = [f"NOT {group(held.text)}" if held.negated else group(held.text) for held in conditions]
+    if rest:
+        tests_together.append(group(rest))
+    return " AND ".join(tests_together)
+
+
+def group(test: str) -> str:
+    """A test as a part of another one."""
+    return f"( {test} )" if " AND " in test or " OR " in test else test
 
 
 def _is_longer(long: list[str], short: list[str]) -> bool:

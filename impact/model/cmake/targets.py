@@ -290,7 +290,7 @@ _OF_CUSTOM_COMMANDS = make_name_set(
 
 @handles("add_custom_target", least=1)
 def add_custom_target(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
-    """add_custom_target()."""
+    """add_custom_target(): its SOURCES are shown by editors, and not compiled."""
     draft = run.add_target(args[0], "custom")
     section = ""
     for item in args[1:]:
@@ -302,9 +302,7 @@ def add_custom_target(run: Interpreter, call: CommandCall, args: list[Word]) -> 
             note_made(run, run.resolve(item))
         elif section == "DEPENDS" and "/" not in item and "." not in item:
             add_links(run, draft, [item], "order")
-        elif section == "SOURCES":
-            add_sources(run, draft, [item])
-        else:
+        elif section != "SOURCES":
             note_written(run, item)
 
 

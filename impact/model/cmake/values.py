@@ -12,6 +12,7 @@ from .build import At
 MAX_WORDS = 20_000
 MAX_TEXT = 200_000
 _MAX_NESTING = 20
+_MAX_WAYS = 16
 
 
 class Word(str):
@@ -44,9 +45,10 @@ def wrap(text: str, at: At, conditions: tuple[Condition, ...] = (), sure: bool =
 class CMakeValue:
     """What a variable holds. words is the list view: the union of all branches that wrote it; text is what was written
     last, and chosen its words; sure is False when branches differ or a user may override it; defined is False for a
-    variable that is known to be unset."""
+    variable that is known to be unset. ways: of what differing branches leave, each with the conditions under which it
+    is left, of which no two hold together; None is never set. Empty where that is not known."""
 
-    __slots__ = ("chosen", "defined", "sure", "text", "words")
+    __slots__ = ("chosen", "defined", "sure", "text", "ways", "words")
 
     def __init__(self, words: tuple[Word, ...], sure: bool = True, defined: bool = True):
         self.words = words
@@ -54,6 +56,7 @@ class CMakeValue:
         self.text = words[0] if len(words) == 1 else ";".join(words)
         self.sure = sure
         self.defined = defined
+        self.ways: tuple[tuple[tuple[Condition, ...], CMakeValue | None], ...] = ()
 
 
 UNSET = CMakeValue((), True, False)
@@ -69,8 +72,11 @@ def make_unsure(value: CMakeValue) -> CMakeValue:
     return made
 
 
-def join(values: Iterable[CMakeValue | None]) -> CMakeValue | None:
-    """One value for what several branches left behind, in order of writing; None stands for never set."""
+def join(
+    values: Sequence[CMakeValue | None], tests: Sequence[tuple[Condition, ...]] = ()
+) -> CMakeValue | None:
+    """One value for what several branches left behind, in order of writing; None stands for never set. tests: those
+    that lead into each branch, where no two of them are taken."""
     distinct: list[CMakeValue | None] = []
     for value in values:
         if not any(value is other or _is_same(value, other) for other in distinct):
@@ -90,6 +96,13 @@ def join(values: Iterable[CMakeValue | None]) -> CMakeValue | None:
     made = CMakeValue(tuple(words.values())[:MAX_WORDS], False)
     made.chosen = known[-1].chosen
     made.text = known[-1].text
+    ways = [
+        (merge(held, inner), way)
+        for held, value in zip(tests, values, strict=False)
+        for inner, way in ((value.ways if value is not None else ()) or (((), value),))
+    ]
+    if len(known) > 1 and len(ways) <= _MAX_WAYS:
+        made.ways = tuple(ways)
     return made
 
 

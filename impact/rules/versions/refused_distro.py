@@ -19,7 +19,8 @@ Use instead
     endif()
 
 Not reported
-    Conditions that cannot be decided, and those that do not test ROS_DISTRO.
+    Conditions that cannot be decided, and those that do not test ROS_DISTRO. No other finding in the files of such a
+    package, but in its manifest, is reported on that target.
 """
 
 from collections.abc import Iterator
@@ -31,8 +32,8 @@ from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
     texts=Text("CMakeLists.txt stops on {distro}: {message}", help="add a branch for {distro}"),
 )
 def refused_distro(view: TargetView, package: Package) -> Iterator[Diagnostic]:
-    for at, message, conditions in package.build.stops:
-        asks = any("ROS_DISTRO" in condition.text for condition in conditions)
-        if asks and view.is_sure(conditions):
-            data = {"distro": view.target.distro, "message": f"`{message}`" if message else "message(FATAL_ERROR)"}
-            yield Diagnostic(at, "FATAL_ERROR", package.name, data)
+    stop = view.find_stop(package)
+    if stop is not None:
+        at, message, _ = stop
+        data = {"distro": view.target.distro, "message": f"`{message}`" if message else "message(FATAL_ERROR)"}
+        yield Diagnostic(at, "FATAL_ERROR", package.name, data)
