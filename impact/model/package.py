@@ -1134,19 +1134,21 @@ class PackageJoin:
 
     def compute_reaches(self, paths: Iterable[str], roles) -> dict[str, tuple[tuple[str, ...], ...]]:
         """For each file, what reaches it in the sources that compile it; the least of them tell enough. A header that
-        none does is taken alone, and one that is only a part of another as that one includes it."""
-        found: dict[str, set[tuple[str, ...]]] = {p: set() if is_header(p) else {self.list_outward(p)} for p in paths}
+        none does is taken alone, and one that is only a part of another, as a source that no target compiles is, as
+        that one includes it."""
+        compiled = {source for target in self.build.targets for source in target.sources if not is_header(source)}
+        found: dict[str, set[tuple[str, ...]]] = {p: {self.list_outward(p)} if p in compiled else set() for p in paths}
         besides: dict[str, set[tuple[str, ...]]] = {p: set() for p in found}
-        own = {path: frozenset(self.list_outward(path)) for path in found if is_header(path)}
+        own = {path: frozenset(self.list_outward(path)) for path in found if path not in compiled}
         for source, (role, *_) in roles.items():
-            if is_header(source):
+            if source not in compiled:
                 continue
             for path, before in self.list_met_headers(source, own):
                 # An installed header may be compiled by nothing but programs that are called tests.
                 (found if role == roles[path][0] else besides)[path].add(tuple(sorted(own[path] | before)))
         for path, sets in found.items():
             sets.update(besides[path] if not sets else ())
-        parts = {path: own[path] for path, sets in found.items() if not sets and _PART.search(path)}
+        parts = {p: own[p] for p, sets in found.items() if not sets and (_PART.search(p) or not is_header(p))}
         for header in self.list_outermost(roles) if parts else ():
             for path, before in self.list_met_headers(header, parts):
                 found[path].add(tuple(sorted(own[path] | before)))
