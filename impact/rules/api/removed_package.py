@@ -30,14 +30,20 @@ from ...model.cmake.build import FoundPackage
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rule
 
 _GONE = "package `{subject}` is not available in {distro}"
+_ENDED = f"{_GONE}; its successor `{{replacement}}` has another API"
 _LEAVING = "package `{subject}` will be removed: not in {distro}"
 TEXTS = {
     "declared": Text(_GONE, "remove the dependency"),
     "declared, renamed": Text(f"{_GONE}: it was renamed to `{{replacement}}`", "depend on `{replacement}`"),
+    "declared, succeeded": Text(_ENDED, "port to `{replacement}`, or put a condition on the dependency"),
     "found": Text(_GONE),
     "found, renamed": Text(f"{_GONE}: it was renamed to `{{replacement}}`", "find `{replacement}`"),
+    "found, succeeded": Text(_ENDED, "port to `{replacement}`"),
     "upcoming": Text(_LEAVING, "use something else there, or a condition"),
     "upcoming, renamed": Text(f"{_LEAVING}, where it is `{{replacement}}`", "use `{replacement}` there"),
+    "upcoming, succeeded": Text(
+        f"{_LEAVING}, where its successor `{{replacement}}` has another API", "port to `{replacement}` there"
+    ),
 }
 
 
@@ -69,8 +75,9 @@ def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterato
             if later.horizon is not None and view.is_active_on(later.horizon, conditions):
                 seen.add(name)
                 data = {"distro": later.horizon.name, "replacement": later.replacement}
-                reported = "upcoming, renamed" if later.replacement else "upcoming"
-                found = Diagnostic(at, name, package.name, data, reported, doubts)
+                found = Diagnostic(
+                    at, name, package.name, data, f"upcoming{_find_fate(view, name, later.replacement)}", doubts
+                )
                 yield Upcoming(found, name, later.horizon, (at.path, at.line))
             continue
         gone = rows.get("removed")
@@ -78,7 +85,14 @@ def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterato
             continue
         seen.add(name)
         data = {"distro": view.target.distro, "replacement": gone.replacement}
-        yield Diagnostic(at, name, package.name, data, f"{how}, renamed" if gone.replacement else how, doubts)
+        yield Diagnostic(at, name, package.name, data, f"{how}{_find_fate(view, name, gone.replacement)}", doubts)
+
+
+def _find_fate(view: TargetView, name: str, replacement: str) -> str:
+    """What became of a package that is gone, as the kinds of texts name it."""
+    if not replacement:
+        return ""
+    return ", renamed" if view.offers.lives_on(name, replacement) else ", succeeded"
 
 
 def _collect_search_doubts(view: TargetView, found: FoundPackage) -> tuple[Doubt | bool, ...]:

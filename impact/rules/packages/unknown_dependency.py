@@ -1,4 +1,4 @@
-"""unknown-dependency: nobody knows a declared dependency in public.
+"""unknown-dependency: no distro releases a declared dependency, and rosdep has no key for it.
 
 What it does
     Reports names in a manifest that are neither in the workspace, nor released by any distro, nor keys of rosdep, and
@@ -40,19 +40,20 @@ _KEY = re.compile(r"python3?-[a-z0-9.+-]+|lib[a-z0-9.+-]+-dev|[a-z0-9.+-]+-pip|\
     group="unresolvable-key",
     texts={
         "unused": Text(
-            "`{subject}` is not a public package or rosdep key, and nothing in `{package}` uses it",
-            "remove it, or correct the name",
+            "no distro releases `{subject}`, rosdep has no such key, and nothing in `{package}` is known to use it",
+            "bring its source into the workspace, remove it, or correct the name",
         ),
         "called after": Text(
-            "`{subject}` is called after `{package}` but is neither in the workspace nor a public package",
+            "`{subject}` is called after `{package}` but is neither in the workspace nor released by any distro",
             "remove it, correct the name, or add it to `[workspace] private` in rosimpact.toml",
         ),
         "unread": Text(
-            "`{subject}` is not a public package or rosdep key, and may be in a submodule that was not read: {unread}",
+            "no distro releases `{subject}`, rosdep has no such key, and it may be in a submodule that was not read: "
+            "{unread}",
             "run `git submodule update --init`, or, if it is your own, add it to `[workspace] private`",
         ),
         "unknown": Text(
-            "`{subject}` is not a public package or rosdep key",
+            "no distro releases `{subject}`, and rosdep has no such key",
             "if it is your own, add it to `[workspace] private` in rosimpact.toml",
         ),
     },

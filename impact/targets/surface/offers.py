@@ -121,6 +121,14 @@ class Offers:
             return False
         return history.is_bundle(offer.stored if offer is not None else history.versions[-1])
 
+    def lives_on(self, old: str, new: str) -> bool:
+        """Whether one package is another one that was renamed: at least half of what its last stored version has to
+        include, import, start or send is in the newest of the other. False where nothing of it is stored."""
+        before, after = self.find_history(old), self.find_history(new)
+        had = before.list_own_names(before.versions[-1]) if before is not None else frozenset()
+        kept = had & after.list_own_names(after.versions[-1]) if after is not None else had
+        return bool(had) and after is not None and 2 * len(kept) >= len(had)
+
     @cached_property
     def has_one_include_folder(self) -> bool:
         """Whether the headers of all packages lie in one folder, so that whoever is given any package finds those of

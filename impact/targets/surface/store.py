@@ -117,6 +117,18 @@ class SurfaceHistory:
                 found.append(value)
         return tuple(found) if kinds else None
 
+    def list_own_names(self, version: str) -> frozenset[tuple[str, str]]:
+        """The headers, modules, programs and interfaces of a stored version, each with its kind, without the name of
+        the package that their paths begin with."""
+        surface = self.load_surface(version)
+        if surface is None:
+            return frozenset()
+        found = {("header", header.include.partition("/")[2]) for header in surface.build.headers}
+        found.update(("module", module.name.partition(".")[2]) for module in surface.python.modules)
+        found.update(("program", program.name) for program in surface.build.programs)
+        found.update(("interface", name) for name, _ in surface.interfaces)
+        return frozenset(each for each in found if each[1])
+
     def is_bundle(self, version: str) -> bool:
         """True for a version that has nothing to include, import, link, start or load."""
         if version not in self.versions:
