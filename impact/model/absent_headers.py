@@ -69,7 +69,11 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
         return False
     passed = (link.item for link in build.target_links if link.how == "ament")
     direct = {*view.collect_declared(package), *(one.name for one in build.found), *passed}
-    return path.startswith(".") or all(_has_known_headers(view, one) for one in direct)
+    if path.startswith("."):
+        return True
+    # A header that lies deeper than the exported folders of most packages is known by the surface of its own alone.
+    brought = view.build_environment(package).union(direct)
+    return all(_has_known_headers(view, one) for one in direct) and not view.offers.list_packages_with(path, brought)
 
 
 def may_be_made(package: Package, name: str) -> bool:

@@ -121,6 +121,11 @@ class Offers:
             return False
         return history.is_bundle(offer.stored if offer is not None else history.versions[-1])
 
+    def list_packages_with(self, header: str, packages: Iterable[str]) -> list[str]:
+        """Those of some packages whose stored version has a header by the path that dependants include."""
+        offers = (offer for package in packages if (offer := self.find_package(package)) is not None)
+        return [offer.package for offer in offers if any(h.include == header for h in offer.build.headers)]
+
     def lives_on(self, old: str, new: str) -> bool:
         """Whether one package is another one that was renamed: at least half of what its last stored version has to
         include, import, start or send is in the newest of the other. False where nothing of it is stored."""
