@@ -25,7 +25,7 @@ from ..targets.providers import message_headers
 from ..targets.providers.apt import Apt, load_apt
 from ..targets.providers.includes import HeadersOfMachine, load_machine, make_machine
 from ..targets.providers.libraries import load_libraries
-from ..targets.providers.library import find_default_standard, get_year, include_roots
+from ..targets.providers.library import check_version, find_default_standard, get_year, include_roots, name_library
 from ..targets.providers.providers import Providers
 from ..targets.providers.stdlib import is_in_stdlib, was_ever_in_stdlib
 from ..targets.surface.offers import Offers
@@ -563,11 +563,23 @@ class WorkspaceOnTarget:
             return False
         if path.endswith(".py") or language == "python":
             return True
+        if self.takes_other_version(package, head):
+            return False
         names = self.build_environment(package)
         if head in names or (any(head in (p.name, p.package) for p in self.find_cmake(head)) and head in names):
             return True
         roots = include_roots(head)
         return any(i.path.startswith(roots) for i in package.linked.includes) if roots else head in names
+
+    @cache_method
+    def takes_other_version(self, package: Package, library: str) -> bool:
+        """Whether CMake is asked for a version of a library that another copy has than the one which it finds first."""
+        answers = (
+            check_version(self.target, found.name, found.version, found.exact)
+            for found in package.build.found
+            if found.version and name_library(found.name) == library and self.applies(found.conditions)
+        )
+        return any(each and each.holds and each.version != self.target.find_library(library) for each in answers)
 
     @cache_method
     def is_included_under_conditions(self, package: Package, library: str) -> bool:

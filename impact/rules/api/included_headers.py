@@ -71,6 +71,8 @@ class IncludedHeaders:
         view, path = self._view, include.path
         rows = {row.state: row for row in view.find_reviewed("header", path)}
         row = self._find_row(rows) or rows.get("upcoming")
+        if row is not None and view.takes_other_version(package, row.package):
+            return None
         if row is not None and (row.horizon is None or view.is_active_on(row.horizon, include.conditions)):
             as_it_is = row.form == "renamed" and row.state != "not yet"
             fix = respell(view, package, include, row.replacement) if as_it_is else ()

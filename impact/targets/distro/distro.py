@@ -621,18 +621,28 @@ class DistroTarget:
 
     def find_library(self, name: str) -> str | None:
         """Version of a platform library by the name of platform_versions.yaml (opencv, boost, gcc, python3 ...)."""
+        return next(self._iterate_library(name), None)
+
+    def list_library_versions(self, name: str) -> list[str]:
+        """All versions of a platform library that a machine has: a released package may bring another one beside the
+        platform's, which CMake finds first."""
+        return list(dict.fromkeys(self._iterate_library(name)))
+
+    def _iterate_library(self, name: str) -> Iterator[str]:
         wanted = normalize_library_name(name)
         if wanted in self._own_libraries:
-            return self._own_libraries[wanted] or None
-        if self.platform in CHANNELS:
-            return cell.version if (cell := self._load_libraries().get(wanted)) else None
-        instead = self._facts.libraries_from.get(wanted) if self._facts else None
-        if instead and (version := self.find_version(instead)):
-            return version
-        if self._facts and wanted in self._facts.libraries:
-            return self._facts.libraries[wanted]
-        cell = self._load_libraries().get(wanted)
-        return cell.version if cell else None
+            if self._own_libraries[wanted]:
+                yield self._own_libraries[wanted]
+            return
+        if self.platform not in CHANNELS and self._facts:
+            instead = self._facts.libraries_from.get(wanted)
+            if instead and (version := self.find_version(instead)):
+                yield version
+            if wanted in self._facts.libraries:
+                yield self._facts.libraries[wanted]
+                return
+        if (cell := self._load_libraries().get(wanted)) is not None and cell.version:
+            yield cell.version
 
     def was_added_with_release(self, name: str) -> bool:
         """True for platform libraries that everybody has in this version since the distro's release: it stays on one

@@ -158,22 +158,28 @@ def check_version(target: "DistroTarget", package: str, request: str, exact: boo
     known = _KNOWN.packages.get(package, _OTHER)
     if not known.library and target.platform not in CHANNELS and target.find_version(package) is not None:
         return None  # a released package's own; conda's channels build libraries that the distro releases too
-    version = target.find_library(known.library or package.lower().replace("_", "-"))
-    if not version:
-        return None
-    if package == "OpenCV" and target.ros == 1 and target.distro == "kinetic":
-        return None  # ROS kinetic brings OpenCV 3 beside the platform's 2
+    versions = target.list_library_versions(name_library(package))
+    fitting = (version for version in versions if _meets(version, request, exact, known.same_major))
+    found = next(fitting, None)
+    return VersionAnswer(found is not None, found or versions[0]) if versions else None
+
+
+def name_library(package: str) -> str:
+    """The platform library that find_package(package) looks for."""
+    return _KNOWN.packages.get(package, _OTHER).library or package.lower().replace("_", "-")
+
+
+def _meets(version: str, request: str, exact: bool, same_major: bool) -> bool:
+    """Whether a version file accepts a request."""
     low, _, high = request.partition("...")
     if exact:
-        return VersionAnswer(parse(version)[: len(parse(low))] == parse(low), version)
+        return parse(version)[: len(parse(low))] == parse(low)
     holds = is_at_least(version, low)
     if holds and high:
         bound = high.lstrip("<")
         included = not high.startswith("<") and parse(version)[: len(parse(bound))] == parse(bound)
-        holds = included or not is_at_least(version, bound)
-    elif holds and known.same_major:
-        holds = parse(version)[:1] == parse(low)[:1]
-    return VersionAnswer(holds, version)
+        return included or not is_at_least(version, bound)
+    return holds and not (same_major and parse(version)[:1] != parse(low)[:1])
 
 
 class NeededStandard(NamedTuple):
