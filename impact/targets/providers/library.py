@@ -159,7 +159,7 @@ def check_version(target: "DistroTarget", package: str, request: str, exact: boo
     if not known.library and target.platform not in CHANNELS and target.find_version(package) is not None:
         return None  # a released package's own; conda's channels build libraries that the distro releases too
     versions = target.list_library_versions(name_library(package))
-    fitting = (version for version in versions if _meets(version, request, exact, known.same_major))
+    fitting = (version for version in versions if _accepts_version(version, request, exact, known.same_major))
     found = next(fitting, None)
     return VersionAnswer(found is not None, found or versions[0]) if versions else None
 
@@ -169,7 +169,7 @@ def name_library(package: str) -> str:
     return _KNOWN.packages.get(package, _OTHER).library or package.lower().replace("_", "-")
 
 
-def _meets(version: str, request: str, exact: bool, same_major: bool) -> bool:
+def _accepts_version(version: str, request: str, exact: bool, same_major: bool) -> bool:
     """Whether a version file accepts a request."""
     low, _, high = request.partition("...")
     if exact:
