@@ -37,7 +37,6 @@ from ..facts.searches import SearchedCpp, WordUse
 from ..facts.setup import SetupFile
 from ..facts.usage import Pattern, Rows, UsageTable
 from ..facts.words import mentions
-from ..targets.changes import DISTROS
 from ..targets.providers.message_headers import parse_type
 from ..targets.providers.standard import list_own_names
 from ..targets.surface.fields import Fields
@@ -729,10 +728,7 @@ class PackageJoin:
                 walk(source, role, False, names, target.conditions + own)
         for header, conditions in self.list_installed_headers():
             walk(header, "build", True, (), conditions)
-        per_distro = _list_per_distro(self.cpp)
-        return {
-            p: (r[0], r[1], tuple(sorted(r[2])), (*r[3], *per_distro.get(p, ()))) for p, r in reached.items()
-        }
+        return {p: (r[0], r[1], tuple(sorted(r[2])), tuple(r[3])) for p, r in reached.items()}
 
     def list_own_calls(self, roles) -> Iterator[tuple[str, str, str]]:
         """As LinkedPackage.own_calls."""
@@ -1402,25 +1398,6 @@ _ANNOUNCED = frozenset({"std::string"}).union(
 )  # fmt: skip
 # Stands for a test of which only is known that one of several branches of it has to be taken.
 _ONE_OF_SEVERAL = Condition("cmake", "<one of several conditions>")
-
-
-def _list_per_distro(paths: Iterable[str]) -> dict[str, tuple[Condition, ...]]:
-    """The files in a folder that is called as a distro, each with what it is not for: the distros that have a folder
-    beside it."""
-    found: dict[str, tuple[str, str]] = {}
-    beside: dict[str, set[str]] = {}
-    for path in paths:
-        folders = path.split("/")[:-1]
-        for place, folder in enumerate(folders):
-            if folder in DISTROS:
-                found[path] = "/".join(folders[:place]), folder
-                beside.setdefault(found[path][0], set()).add(folder)
-                break
-    return {
-        path: (Condition("cmake", f"$ENV{{ROS_DISTRO}} IN_LIST {';'.join(others)};", True),)
-        for path, (parent, folder) in found.items()
-        if (others := sorted(beside[parent] - {folder}))
-    }
 
 
 def _merge_conditions(one: list[Condition], other: tuple[Condition, ...]) -> list[Condition]:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from ...edges.memory import cache_method
 from ..conditions.cmake import list_tested_packages
 from ..facts.condition import Condition
+from ..targets.changes import DISTROS
 from ..targets.target import Provider
 from .cmake.build import At, FoundPackage, Stop, is_for_tests
 from .on_target import INTERFACES, PACKAGE, Unresolved, WorkspaceOnTarget
@@ -20,6 +21,18 @@ from .package import find_folder_role
 from .roles import Roles
 from .unknown_contents import UnknownContents
 from .workspace import Package
+
+_DISTRO = re.compile(rf"(?<![A-Za-z0-9])(?:{'|'.join(DISTROS)})(?![A-Za-z0-9])")
+
+
+def _mark_distro(path: str) -> tuple[str, str] | None:
+    """The distro that a file or its folder is called as, behind what those for other distros have in common."""
+    found = _DISTRO.search(path)
+    if found is None:
+        return None
+    before, behind = path[: found.start()], path[found.end() :]
+    is_folder = behind.startswith("/") and before[-1:] in ("", "/")
+    return before + ("/" if is_folder else behind), found.group()
 
 
 class Need(NamedTuple):
@@ -93,10 +106,19 @@ class TargetView(WorkspaceOnTarget):
         return None
 
     def is_refused(self, package: str, path: str) -> bool:
-        """Whether a file belongs to a package that is not for this target: its CMake stops there. What the manifest
-        declares is looked for even so."""
+        """Whether a file is not for this target: it is called as another distro, and one for this distro lies beside
+        it, or the CMake of its package stops here. What the manifest declares is looked for even so."""
         own = self.workspace.packages.get(package)
-        return own is not None and not path.endswith("package.xml") and self.find_stop(own) is not None
+        if own is None or path.endswith("package.xml"):
+            return False
+        distro, marked = self.target.distro, _mark_distro(own.strip_path(path))
+        is_other = marked is not None and marked[1] != distro and (marked[0], distro) in self._list_marked(own)
+        return is_other or self.find_stop(own) is not None
+
+    @cache_method
+    def _list_marked(self, package: Package) -> frozenset[tuple[str, str] | None]:
+        """The files of a package that are called as distros."""
+        return frozenset(_mark_distro(package.strip_path(path)) for path in package.files)
 
     def is_circular(self, package: Package, name: str) -> bool:
         """True when what would be declared comes with the package itself, or is of the workspace and needs it."""

@@ -441,7 +441,7 @@ class Interpreter:
             signal, changes = self.run_branch(body, merge(outer, own))
             if signal in (RETURN, FATAL):
                 signals.add(signal)
-                if signal == RETURN and len(own) == 1:
+                if signal == RETURN:
                     returned.append(own)
                 elif signal == FATAL and len(own) == 1:
                     self.assume(own[0].text, own[0].negated)
@@ -461,7 +461,8 @@ class Interpreter:
             return RETURN if RETURN in signals else FATAL
         self.merge_outcomes(outcomes, before if len(before) == 1 and not exhaustive else (), led)
         for own in returned if len(self.conditions) < MAX_CONDITIONS else ():
-            rest = structs.replace(own[0], negated=not own[0].negated, gate=self.is_at_gate(own[0]))
+            rest = own[0] if len(own) == 1 else self.make_test(format_all(own, ""))
+            rest = structs.replace(rest, negated=not rest.negated, gate=self.is_at_gate(rest))
             self.conditions = merge(self.conditions, (rest,))
         return NORMAL
 
