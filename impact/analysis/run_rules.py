@@ -306,7 +306,7 @@ def _run_singly(opened: OpenedWorkspace, rules: Sequence[Rule], task: _Task) -> 
 def _run_all(rules: Iterable[Rule], view, crashed: Crashes) -> Iterator[Yielded]:
     for rule in rules:
         for hit in _run_safely(rule, view.target.name, crashed, lambda rule=rule: rule.run(view)):
-            if rule.name == "refused-distro" or not view.is_refused(hit.package, hit.place[0]):
+            if not view.is_refused(hit.package, hit.place):
                 yield rule.name, hit
 
 

@@ -105,15 +105,17 @@ class TargetView(WorkspaceOnTarget):
                 return stop
         return None
 
-    def is_refused(self, package: str, path: str) -> bool:
-        """Whether a file is not for this target: it is called as another distro, and one for this distro lies beside
-        it, or the CMake of its package stops here. What the manifest declares is looked for even so."""
-        own = self.workspace.packages.get(package)
+    def is_refused(self, package: str, place: tuple[str, int, int]) -> bool:
+        """Whether what stands at a place (path, line, column) is not for this target: its file is called as another
+        distro, and one for this distro lies beside it, or the CMake of its package stops here, at another place. What
+        the manifest declares is looked for even so."""
+        own, path = self.workspace.packages.get(package), place[0]
         if own is None or path.endswith("package.xml"):
             return False
         distro, marked = self.target.distro, _mark_distro(own.strip_path(path))
         is_other = marked is not None and marked[1] != distro and (marked[0], distro) in self._list_marked(own)
-        return is_other or self.find_stop(own) is not None
+        stop = self.find_stop(own)
+        return is_other or (stop is not None and (stop[0].path, stop[0].line, stop[0].column) != place)
 
     @cache_method
     def _list_marked(self, package: Package) -> frozenset[tuple[str, str] | None]:
