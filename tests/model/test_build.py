@@ -129,6 +129,10 @@ FOUND = [
      ["A [NOT Z AND X]"]),
     ("set(l b c)\nif(NOT $ENV{ROS_DISTRO} IN_LIST l)\nfind_package(A)\nendif()",
      ["A [NOT $ENV{ROS_DISTRO} IN_LIST b;c;]"]),
+    ("set(l b c)\nlist(FIND l $ENV{ROS_DISTRO} at)\nif(at EQUAL -1)\nfind_package(A)\nendif()",
+     ["A [NOT $ENV{ROS_DISTRO} IN_LIST b;c;]"]),
+    ("set(l b c)\nlist(FIND l $ENV{ROS_DISTRO} at)\nif(NOT at LESS 0)\nfind_package(A)\nendif()",
+     ["A [$ENV{ROS_DISTRO} STREQUAL b OR $ENV{ROS_DISTRO} STREQUAL c]"]),
     ("set(v a)\nif(DEFINED ENV{ROS_DISTRO})\nset(v $ENV{ROS_DISTRO})\nendif()\n"
      "if(\"${v}\" STREQUAL b)\nfind_package(A)\nendif()",
      ["A [DEFINED ENV{ROS_DISTRO} AND $ENV{ROS_DISTRO} STREQUAL b]"]),

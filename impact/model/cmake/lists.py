@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 
 from ...conditions.preprocessor import evaluate_number
+from ...facts.condition import Condition
 from .blocks import CommandCall
 from .interpreter import Interpreter, handles
 from .regex import REGEX_STEPS, compile_if_usable
@@ -16,6 +17,7 @@ from .values import (
     Word,
     add_conditions,
     find_position,
+    join,
     split_list,
     split_words,
     wrap,
@@ -99,8 +101,11 @@ def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
                 run.assign(run.scope, str(variable), CMakeValue((item,), known) if item is not None else UNSET)
         run.assign(run.scope, name, CMakeValue(tuple(left), known))
     elif action == "FIND" and len(rest) == 2:
-        place = str(words.index(rest[0]) if rest[0] in words else -1)
-        run.set_text(rest[1], place if known else None, call.at)
+        if known and not rest[0].sure:
+            run.assign(run.scope, rest[1], _find_in_each(rest[0], words))
+        else:
+            place = str(words.index(rest[0]) if rest[0] in words else -1)
+            run.set_text(rest[1], place if known else None, call.at)
     elif action == "JOIN" and len(rest) == 2:
         run.set_text(rest[1], _join_words(str(rest[0]), words), call.at, known)
     elif action == "SUBLIST" and len(rest) == 3:
@@ -142,6 +147,14 @@ def _store(run: Interpreter, name: str, words: list[Word], known: bool) -> None:
 def _get_at(words: tuple[Word, ...], index: Word) -> Word | None:
     number = parse_int(index)
     return words[number] if number is not None and -len(words) <= number < len(words) else None
+
+
+def _find_in_each(item: Word, words: Sequence[Word]) -> CMakeValue:
+    """The places in a list that something which is not known may have, each where it is that."""
+    tests = [(Condition("cmake", f"{item} STREQUAL {word}"),) for word in words]
+    absent = (Condition("cmake", f"{item} IN_LIST {';'.join(words)};", negated=True),)
+    places = [*map(str, range(len(words))), "-1"]
+    return join([CMakeValue((wrap(place, item.at),)) for place in places], [*tests, absent]) or UNSET
 
 
 def _join_words(separator: str, words: Sequence[Word]) -> str:
