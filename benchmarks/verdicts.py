@@ -73,12 +73,19 @@ def choose(findings: Iterable[dict], number: int, share_errors: float, seed: int
 
 
 def judged(batches: Path, only: str = "") -> list[dict]:
-    """The records of all verdicts, or of one batch, each with its batch."""
+    """The records of all verdicts, or of one batch, each with its batch and, of a release, the day that it was scored
+    as of."""
     found = []
+    days: dict[tuple[str, str, str], str] = {}
     for file in sorted(batches.glob("*.jsonl")):
         batch, _, kind = file.name.removesuffix(".jsonl").rpartition(".")
+        if kind == "releases":  # these go before the verdicts on them
+            trees = first_sight.read_records(file)
+            days.update(((r["repo"], r["tag"], r["distro"]), r["in_distro_until_at_least"][:10]) for r in trees)
         if kind in ("verdicts", "heads") and (not only or batch == only):
             found += [{"batch": batch, "severity": "error", **row} for row in first_sight.read_records(file)]
+    for row in found:
+        row["day"] = days.get((row["repo"], row.get("tag", ""), row.get("distro", "")), "")
     return found
 
 
@@ -126,7 +133,8 @@ def _list_jobs(clones: Sequence[mining.Clone], records: Iterable[dict]) -> list[
     by_name = {clone.name.lower(): clone for clone in clones}
     trees: dict[tuple[str, str, tuple[str, ...]], list[dict]] = defaultdict(list)
     for record in records:
-        targets = (record["distro"],) if record.get("distro") else ()
+        day = f"@{record['day']}" if record.get("day") else ""
+        targets = (record["distro"] + day,) if record.get("distro") else ()
         trees[record["repo"], record.get("commit") or record["tag"], targets].append(record)
     return [
         ((by_name[repo.lower()], revision, targets), rows)

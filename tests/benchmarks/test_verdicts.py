@@ -99,6 +99,15 @@ def test_what_was_judged_false_must_not_come_back(batches, tmp_path, capsys, ver
     assert capsys.readouterr().out == printed + end
 
 
+def test_a_release_is_asked_about_as_of_the_day_that_it_was_scored_as_of(batches):
+    where = {"repo": "someone/talker", "tag": "0.0.1", "distro": "jazzy"}
+    release = where | {"in_distro_until_at_least": "2025-03-01"}
+    first_sight.write_records(batches / "x.releases.jsonl", [release])
+    first_sight.write_records(batches / "x.verdicts.jsonl", [record("undeclared-package", "rclcpp", "false", **where)])
+    first_sight.write_records(batches / "x.heads.jsonl", [record("undeclared-package", "rclcpp", "false", commit="c")])
+    assert [row["day"] for row in verdicts.judged(batches)] == ["", "2025-03-01"]
+
+
 def test_a_false_error_may_come_back_as_a_warning_only_if_it_was_an_error():
     said = [{"rule": "unused-dependency", "path": "talker/CMakeLists.txt", "subject": "a", "severity": "warning"}]
     error = record("unused-dependency", "a", "false")
