@@ -2,8 +2,8 @@
 
 data/launch_names_read.jsonl, one a line: repositories with their commits, file (`package/path`), arguments and
 environment of the launch, runs (`package/executable` or the plugin), namespace and named (where several run the same,
-or where the name is left to the program, that name), asks (`node`, `container`, or a topic as the code writes it) and
-what is expected.
+or where the name is left to the program, that name), asks (`node`, or a topic as the code writes it) and what is
+expected.
 """
 
 import json
@@ -75,9 +75,8 @@ def runs(started: Started, row):
 
 def answer(started: Started, asks, named):
     """What a node calls a name, or itself; the reasons where that is not known."""
-    if asks in ("node", "container"):
-        text = started.full_name if asks == "node" else started.container
-        return text.value or text.reasons
+    if asks == "node":
+        return started.full_name.value or started.full_name.reasons
     name, namespace = started.name.value or named or "unnamed", started.namespace.value or "/"
     remaps = [(r.old.value, r.new.value) for r in started.remaps if r.old.value and r.new.value]
     if started.generation == 1:

@@ -15,7 +15,7 @@ from ....edges.dispatch import collect_methods
 from ...facts.launch.actions import Action, Value, ValuePart, make_literal
 from ...facts.launch.flow import parse_substitutions
 from ...facts.launch.parameter_files import ParameterEntry, parse_scalar
-from .result import LaunchParameter, LaunchSources, Remap, SettingFile, ShareLine, UnresolvedPart
+from .result import LaunchParameter, LaunchSources, Remap, SettingFile, ShareLine
 from .text import (
     CannotTell,
     LaunchText,
@@ -24,7 +24,7 @@ from .text import (
     format_flag,
     join_texts,
     make_unknown,
-    merge_groups,
+    merge_reasons,
     parse_ros1_value,
     parse_truth,
     parse_yaml_value,
@@ -43,13 +43,12 @@ class ActionScope(msgspec.Struct, eq=False):
     remaps: list[Remap] = []
     settings: list[LaunchParameter | SettingFile] = []
     private: list[Action] = []
-    constants: set[str] = set()
 
     def make_inner(self, open_: int) -> ActionScope:
         """A copy, whose changes do not reach this one."""
         return ActionScope(
             dict(self.arguments), dict(self.environment), open_, self.namespace, list(self.remaps),
-            list(self.settings), list(self.private), set(self.constants),
+            list(self.settings), list(self.private),
         )  # fmt: skip
 
 
@@ -84,22 +83,9 @@ class Filling:
         self.package = ""
         self.path = ""
         self.rewrites: dict[str, Rewrite] = {}
-        self.unresolved: list[UnresolvedPart] = []
 
     def locate_line(self, line: int) -> ShareLine:
         return ShareLine(self.package, self.path, line)
-
-    def note_missed(self, line: int, what: str, *reasons: str) -> None:
-        """Lists what could not be followed, once."""
-        unresolved = UnresolvedPart(self.locate_line(line), what, reasons)
-        if unresolved not in self.unresolved[-20:]:
-            self.unresolved.append(unresolved)
-
-    def note_unknown(self, text: LaunchText, line: int, what: str) -> LaunchText:
-        """The text; where it is not known that is listed."""
-        if text.value is None:
-            self.note_missed(line, f"{what} `{text.shown}`", *text.reasons)
-        return text
 
     def substitute_entries(self, entries: tuple[ParameterEntry, ...]) -> tuple[ParameterEntry, ...]:
         """Entries whose keys or values may hold substitutions, filled in where that can be done."""
@@ -135,26 +121,15 @@ class Filling:
             return {self.substitute_text(key): self.substitute_value(item) for key, item in value.items()}
         return value
 
-    def read_entries(self, file: str, line: int) -> tuple[ParameterEntry, ...] | None:
+    def read_entries(self, file: str) -> tuple[ParameterEntry, ...] | None:
         """The entries of a parameter file, changed as it is before it is read; None where it cannot be had."""
         rewrite = self.rewrites.get(file)
         if rewrite is not None:
-            if rewrite.source.value is None:
-                self.note_missed(line, f"parameters `{rewrite.source.shown}`", *rewrite.source.reasons)
-                return None
-            entries = self.read_entries(rewrite.source.value, line)
+            entries = self.read_entries(rewrite.source.value) if rewrite.source.value is not None else None
             return None if entries is None else self._rewrite_shared(entries, rewrite)
         place = self.split_share_path(file)
-        if place is None:
-            self.note_missed(line, f"parameters `{file}`", "the file lies in no package that is named")
-            return None
-        found = self.sources.find_parameter_file(*place)
-        if found is None:
-            self.note_missed(line, f"parameters `{file}`", "the file is not in the workspace")
-            return None
-        for problem in found.problems:
-            self.note_missed(line, f"parameters `{file}`, line {problem.line}", problem.message)
-        return found.entries
+        found = self.sources.find_parameter_file(*place) if place is not None else None
+        return None if found is None else found.entries
 
     def _rewrite_shared(self, entries: tuple[ParameterEntry, ...], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
         """The same for all nodes that are given one file with one rewrite."""
@@ -202,13 +177,12 @@ class Filling:
         is_argument = piece.kind == "arg"
         text = (self.scope.arguments if is_argument else self.scope.environment).get(name.value)
         if text is not None:
-            return text._replace(assumed=merge_groups((text.assumed, name.assumed))) if is_argument else text
-        shown = name.value if is_argument else f"${name.value}"
+            return text
         if rest:
-            default = self.fill(rest[0])
-            return default._replace(assumed=merge_groups((default.assumed, (shown,))))
-        reason = "argument `{}` has no value" if is_argument else "the environment variable `{}` is not known"
-        return make_unknown(shown, reason.format(name.value))
+            return self.fill(rest[0])
+        if is_argument:
+            return make_unknown(name.value, f"argument `{name.value}` has no value")
+        return make_unknown(f"${name.value}", f"the environment variable `{name.value}` is not known")
 
     fill_env = fill_arg
 
@@ -216,7 +190,7 @@ class Filling:
         name, _ = self.evaluate_named(piece)
         if name.value is None:
             return make_unknown(f"$({piece.kind} {name.shown})", *name.reasons)
-        return wrap(f"$({piece.kind} {name.value})", name.assumed)
+        return wrap(f"$({piece.kind} {name.value})")
 
     fill_prefix = fill_find
 
@@ -262,7 +236,7 @@ class Filling:
         both = join_texts(texts)
         if both.value is None:
             return both._replace(shown=show((piece,)))
-        return wrap(format_flag(texts[0].value in [t.value for t in texts[1:]]), both.assumed)
+        return wrap(format_flag(texts[0].value in [t.value for t in texts[1:]]))
 
     fill_equals = fill_in
 
@@ -271,19 +245,16 @@ class Filling:
         truth = parse_truth(text)
         if truth is None:
             return make_unknown(show((piece,)), *(text.reasons or (f"`{text.value}` is neither true nor false",)))
-        return wrap(format_flag(not truth), text.assumed)
+        return wrap(format_flag(not truth))
 
     def fill_and(self, piece: ValuePart) -> LaunchText:
         """`and` and `or`: what decides them alone is enough."""
         deciding = piece.kind == "or"
         texts = [self.fill(part) for part in piece.parts]
         truths = [parse_truth(text) for text in texts]
-        for text, truth in zip(texts, truths, strict=True):
-            if truth is deciding:
-                return wrap(format_flag(deciding), text.assumed)
-        if None in truths:
-            return make_unknown(show((piece,)), *merge_groups(t.reasons for t in texts))
-        return wrap(format_flag(not deciding), merge_groups(t.assumed for t in texts))
+        if deciding not in truths and None in truths:
+            return make_unknown(show((piece,)), *merge_reasons(t.reasons for t in texts))
+        return wrap(format_flag(deciding == (deciding in truths)))
 
     fill_or = fill_and
 
@@ -296,8 +267,7 @@ class Filling:
                 return yes
             reasons = asked.reasons or (f"`{asked.value}` is neither true nor false",)
             return make_unknown(f"{yes.shown} or {no.shown}", *reasons)
-        text = self.fill(piece.parts[1 if truth else 2])
-        return text._replace(assumed=merge_groups((text.assumed, asked.assumed)))
+        return self.fill(piece.parts[1 if truth else 2])
 
     def fill_method(self, piece: ValuePart) -> LaunchText:
         texts = [self.fill(part) for part in piece.parts]
@@ -308,7 +278,7 @@ class Filling:
             result = call_text_method(texts[0].value or "", piece.text, [t.value for t in texts[1:]])
         except CannotTell as error:
             return make_unknown(show((piece,)), str(error))
-        return wrap(format_flag(result) if isinstance(result, bool) else str(result), both.assumed)
+        return wrap(format_flag(result) if isinstance(result, bool) else str(result))
 
     def fill_rewritten(self, piece: ValuePart) -> LaunchText:
         """A changed parameter file: its name stands for it until it is read."""
@@ -319,29 +289,27 @@ class Filling:
         rewrite = Rewrite(source, wrap("") if is_text else texts[1], pairs, is_text)
         name = f"$({piece.kind} {source.shown} {len(self.rewrites)})"
         self.rewrites[name] = rewrite
-        return wrap(name, source.assumed)
+        return wrap(name)
 
     fill_replaced = fill_rewritten
 
     def fill_has_node(self, piece: ValuePart) -> LaunchText:
         file, node = (self.fill(part) for part in piece.parts[:2])
         both = join_texts((file, node))
-        entries = self.read_entries(file.value, 0) if both.value is not None and file.value is not None else None
+        entries = self.read_entries(file.value) if both.value is not None and file.value is not None else None
         if entries is None:
             return make_unknown(show((piece,)), *(both.reasons or ("the file is not in the workspace",)))
-        return wrap(format_flag(any(entry.path[:1] == (node.value,) for entry in entries)), both.assumed)
+        return wrap(format_flag(any(entry.path[:1] == (node.value,) for entry in entries)))
 
     def fill_eval(self, piece: ValuePart) -> LaunchText:
         expression = self.fill(piece.parts[0])
         if expression.value is None:
-            return make_unknown(f"$(eval {expression.shown})", *expression.reasons, assumed=expression.assumed)
-        used: list[tuple[str, ...]] = [expression.assumed]
+            return make_unknown(f"$(eval {expression.shown})", *expression.reasons)
 
         def read_value(kind: str, name: str, *default: str) -> str:
             text = self.fill_arg(ValuePart(kind, name, tuple(map(make_literal, default))))
             if text.value is None:
                 raise CannotTell(*text.reasons)
-            used.append(text.assumed)
             return text.value
 
         def read_argument(name: str) -> Any:
@@ -362,8 +330,8 @@ class Filling:
         try:
             result = evaluate(expression.value, names, functions)
         except CannotTell as error:
-            return make_unknown(f"$(eval {expression.value[:80]})", str(error), assumed=merge_groups(used))
-        return wrap(str(result), merge_groups(used))
+            return make_unknown(f"$(eval {expression.value[:80]})", str(error))
+        return wrap(str(result))
 
 
 OF_RUNNING: dict[str, str] = {

@@ -7,34 +7,22 @@ Sources: roslaunch's loader.py, xmlloader.py and substitution_args.py; launch's 
 node.py, load_composable_nodes.py and push_ros_namespace.py.
 """
 
+import contextlib
 import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ....edges.dispatch import collect_methods
-from ...facts.launch.actions import Action, ActionCondition, LaunchFile, find_literal, make_literal
+from ...facts.launch.actions import Action, ActionCondition, find_literal, make_literal
 from ...facts.launch.parameter_files import ParameterEntry
 from ...facts.launch.parameter_files import extract as parameters
 from ..flow.names import normalise, parse_ros2_rule
 from .fill import OF_RUNNING, ActionScope, ChangedFiles, Filling
-from .result import (
-    EMPTY,
-    LaunchArgument,
-    Launched,
-    LaunchParameter,
-    LaunchSources,
-    Remap,
-    SettingFile,
-    ShareLine,
-    Skipped,
-    Started,
-    UnresolvedPart,
-)
+from .result import EMPTY, Launched, LaunchParameter, LaunchSources, Remap, SettingFile, Started
 from .text import (
     LaunchText,
     make_unknown,
-    merge_groups,
     parse_ros1_value,
     parse_truth,
     parse_yaml_value,
@@ -66,16 +54,10 @@ def follow(
     given = {name: wrap(value) for name, value in (arguments or {}).items()}
     variables = {name: wrap(value) for name, value in (environment or {}).items()}
     launch = _Launch(sources, given, variables, generation, most, changed or ChangedFiles())
-    launch.follow_top(package, posixpath.normpath(path).lstrip("/"))
-    return Launched(
-        tuple(launch.started),
-        launch.server,
-        tuple(launch.declared),
-        tuple(launch.skipped),
-        tuple(launch.unresolved),
-        tuple(dict.fromkeys(launch.files)),
-        most - max(0, launch.budget),
-    )
+    with contextlib.suppress(RecursionError):  # what is nested too deeply is not followed
+        launch.include((package, posixpath.normpath(path).lstrip("/")))
+    files = tuple(dict.fromkeys(launch.files))
+    return Launched(tuple(launch.started), launch.server, files, most - max(0, launch.budget))
 
 
 class _Launch(Filling):
@@ -91,83 +73,59 @@ class _Launch(Filling):
         changed: ChangedFiles,
     ):
         super().__init__(sources, ActionScope(arguments, environment, 0), generation or 2, changed)
-        self.chain: list[ShareLine] = []
+        # The files whose includes lead to what is read.
+        self.chain: list[tuple[str, str]] = []
         self.open: list[str] = []
-        self.assumed: list[str] = []
-        self.after: list[str] = []
-        self.container = EMPTY
-        self.most = self.budget = most
+        self.budget = most
         self.started: list[Started] = []
         self.server: dict[str, LaunchParameter] = {}
-        self.declared: list[LaunchArgument] = []
-        self.skipped: list[Skipped] = []
         self.files: list[tuple[str, str]] = []
 
-    def follow_top(self, package: str, path: str) -> None:
-        self.package, self.path = package, path
-        file = self.sources.find_launch_file(package, path)
-        if file is None:
-            self.unresolved.append(UnresolvedPart(ShareLine(package, path, 0), path, ("the launch file is not there",)))
+    def include(self, place: tuple[str, str], action: Action | None = None) -> None:
+        """Follows a file that an action includes; without one the file that is launched."""
+        file = self.sources.find_launch_file(*place)
+        if file is None or len(self.chain) > DEEPEST or self.chain[:-1].count(place) > 3:
             return
-        try:
-            self.follow_file(file)
-        except RecursionError:
-            self.note_missed(0, "the rest of the launch", "it is nested too deeply to be followed")
-
-    def follow_file(self, file: LaunchFile) -> None:
-        self.files.append((self.package, self.path))
-        before = self.generation
-        self.generation = file.generation or before
-        for problem in file.problems:
-            self.note_missed(problem.line, "the launch file", problem.message)
+        before = self.scope, self.package, self.path, self.generation
+        generation = file.generation or self.generation
+        if action is not None and generation == 1:
+            self.scope = self.make_ros1_scope(action)
+        elif action is not None:
+            # One after the other: the value of one argument may name an argument given before it.
+            for name, text in self.list_passed(action):
+                self.scope.arguments[name] = text
+        self.chain.append(place)
+        self.files.append(place)
+        self.package, self.path = place
+        self.generation = generation
         self.run(file.actions)
-        self.generation = before
+        self.chain.pop()
+        self.scope, self.package, self.path, self.generation = before
 
     def run(self, actions: Iterable[Action]) -> None:
         for action in actions:
             self.budget -= 1
             if self.budget <= 0:
-                if self.budget == 0:
-                    self.note_missed(action.line, "the rest of the launch", f"more than {self.most} actions")
                 return
-            verdict, open_, assumed, after = self.decide(action.conditions)
-            if verdict is False:
-                if action.kind in _STARTING:
-                    texts = tuple(show_condition(c) for c in action.conditions)
-                    self.skipped.append(Skipped(action.kind, self.locate_line(action.line), texts, assumed))
-                continue
-            marks = len(self.open), len(self.assumed), len(self.after)
-            self.open += open_
-            self.assumed += assumed
-            self.after += after
-            _DOING.get(action.kind.replace("-", "_"), _Launch.do_unknown)(self, action)
-            del self.open[marks[0] :], self.assumed[marks[1] :], self.after[marks[2] :]
+            open_ = self.decide(action.conditions)
+            if open_ is not None:
+                mark = len(self.open)
+                self.open += open_
+                _DOING.get(action.kind.replace("-", "_"), _Launch.do_pass)(self, action)
+                del self.open[mark:]
 
-    def decide(
-        self, conditions: Sequence[ActionCondition]
-    ) -> tuple[bool | None, list[str], tuple[str, ...], list[str]]:
-        """Whether conditions hold (None: not known), which are not known, the defaults they rest on, and events."""
+    def decide(self, conditions: Sequence[ActionCondition]) -> list[str] | None:
+        """The conditions of which it is not known whether they hold; None where one does not."""
         open_: list[str] = []
-        after: list[str] = []
-        assumed: list[tuple[str, ...]] = []
         for condition in conditions:
             if condition.kind == "after":
-                after.append(self.fill(condition.value).shown)
-                continue
-            if condition.kind == "each":
-                open_.append(show(condition.value))
-                continue
-            text = self.fill(condition.value)
-            truth = parse_truth(text)
+                continue  # an event or a time
+            truth = parse_truth(self.fill(condition.value)) if condition.kind != "each" else None
             if truth is None:
                 open_.append(show_condition(condition))
-                reasons = text.reasons or (f"`{text.value}` is neither true nor false",)
-                self.note_missed(condition.line, f"condition `{show_condition(condition)}`", *reasons)
-                continue
-            assumed.append(text.assumed)
-            if truth == (condition.kind == "unless"):
-                return False, open_, merge_groups(assumed), after
-        return (None if open_ else True), open_, merge_groups(assumed), after
+            elif truth == (condition.kind == "unless"):
+                return None
+        return open_
 
     def is_uncertain(self) -> bool:
         """Whether what is set here may not be set at all, as seen by what follows."""
@@ -184,7 +142,7 @@ class _Launch(Filling):
         self.scope.arguments[name] = text
 
     def read_name(self, action: Action) -> str | None:
-        return self.note_unknown(self.read_field(action, "name"), action.line, f"name of {action.kind}").value
+        return self.read_field(action, "name").value
 
     def do_argument(self, action: Action) -> None:
         name = self.read_name(action)
@@ -192,18 +150,13 @@ class _Launch(Filling):
             return
         value, default = action.get("value"), action.get("default")
         if value is not None and self.generation == 1:
-            if name in self.scope.arguments and name not in self.scope.constants:
-                self.note_missed(action.line, f"argument `{name}`", "it is constant and is given another value")
             self.set(name, self.fill(value))
-            self.scope.constants.add(name)
         elif name not in self.scope.arguments:
             if default is None:
                 reason = f"argument `{name}` has no default and is not given"
                 self.scope.arguments[name] = make_unknown(f"{name}", reason)
             else:
-                text = self.fill(default)
-                self.set(name, text._replace(assumed=merge_groups((text.assumed, (name,)))))
-        self.declared.append(LaunchArgument(name, self.scope.arguments[name], self.locate_line(action.line)))
+                self.set(name, self.fill(default))
 
     def do_let(self, action: Action) -> None:
         name = self.read_name(action)
@@ -250,56 +203,25 @@ class _Launch(Filling):
         self.scope.remaps.append(self.make_remap(action))
 
     def make_remap(self, action: Action) -> Remap:
-        old = self.note_unknown(self.read_field(action, "from"), action.line, "remapping from")
-        new = self.note_unknown(self.read_field(action, "to"), action.line, "remapping to")
+        old, new = self.read_field(action, "from"), self.read_field(action, "to")
         return Remap(old, new, self.locate_line(action.line), tuple(self.open[self.scope.open :]))
 
     def do_include(self, action: Action) -> None:
-        file = self.note_unknown(self.read_field(action, "file"), action.line, "include")
-        if file.value is None:
-            return
-        place = self.split_share_path(file.value)
-        if place is None:
-            self.note_missed(action.line, f"include `{file.shown}`", "it lies in no package that is named")
-            return
-        found = self.sources.find_launch_file(*place)
-        if found is None:
-            self.note_missed(action.line, f"include `{file.shown}`", "the file is not in the workspace")
-            return
-        if len(self.chain) >= DEEPEST or [(a.package, a.path) for a in self.chain].count(place) > 3:
-            self.note_missed(action.line, f"include `{file.shown}`", "includes go round in a circle or too deep")
-            return
-        outer = self.scope, self.package, self.path
-        if (found.generation or self.generation) == 1:
-            self.scope = self.make_ros1_scope(action)
-        else:
-            # One after the other: the value of one argument may name an argument given before it.
-            for name, text in self.list_passed(action):
-                self.scope.arguments[name] = text
-        self.chain.append(self.locate_line(action.line))
-        self.package, self.path = place
-        self.assumed += file.assumed
-        self.follow_file(found)
-        del self.assumed[len(self.assumed) - len(file.assumed) :]
-        self.chain.pop()
-        scope, self.package, self.path = outer
-        self.scope = scope
+        file = self.read_field(action, "file")
+        place = self.split_share_path(file.value) if file.value is not None else None
+        if place is not None:
+            self.include(place, action)
 
     def list_passed(self, action: Action) -> Iterator[tuple[str, LaunchText]]:
         """The arguments given to an include, in order, each filled in when it is asked for."""
         for child in action.children:
-            if child.kind == "unknown":
-                self.do_unknown(child)
-                continue
-            if child.kind != "pass":
-                continue
-            verdict, open_, _, _ = self.decide(child.conditions)
+            open_ = self.decide(child.conditions) if child.kind == "pass" else None
             name = self.read_name(child)
-            if verdict is False or name is None:
+            if open_ is None or name is None:
                 continue
             value, default = child.get("value"), child.get("default")
             text = self.fill(value if value is not None else default if default is not None else make_literal(""))
-            if verdict is None:
+            if open_:
                 text = make_unknown(text.shown, f"`{name}` is given only if {open_[-1]}")
             yield name, text
 
@@ -313,8 +235,6 @@ class _Launch(Filling):
         all_ = action.get("pass-all")
         scope.arguments = dict(self.scope.arguments) if all_ is not None and parse_truth(self.fill(all_)) else {}
         scope.arguments.update(list(self.list_passed(action)))
-        # With pass_all_args, a constant of the included file replaces what is passed without complaint
-        scope.constants = set(scope.arguments) if all_ is not None else set()
         return scope
 
     def clear(self, action: Action, namespace: LaunchText) -> None:
@@ -327,12 +247,8 @@ class _Launch(Filling):
         for key in [key for key in self.server if key == name or key.startswith(f"{name.rstrip('/')}/")]:
             del self.server[key]
 
-    def do_unknown(self, action: Action) -> None:
-        text = action.get("text")
-        self.note_missed(action.line, show(text) if text is not None else action.kind, "it cannot be followed")
-
     def do_pass(self, action: Action) -> None:
-        """What has no place where it stands."""
+        """What has no place where it stands, or cannot be followed."""
 
     def do_parameter(self, action: Action) -> None:
         if self.generation == 1:
@@ -368,12 +284,9 @@ class _Launch(Filling):
         """A parameter file of a ROS 2 node."""
         file = self.read_field(action, "file")
         at, conditions = self.locate_line(action.line), tuple(self.open[self.scope.open :])
-        if file.value is None:
-            self.note_missed(action.line, f"parameters `{file.shown}`", *file.reasons)
-            return SettingFile(file, None, at, conditions)
-        if file.value == "":
-            return SettingFile(file, (), at, conditions)
-        entries = self.read_entries(file.value, action.line)
+        if not file.value:
+            return SettingFile(file, None if file.value is None else (), at, conditions)
+        entries = self.read_entries(file.value)
         if entries is not None and find_literal(action.get("substitute")) is not None:
             entries = self.substitute_entries(entries)
         below = [self.fill(key).value for key in action.list_values("below")]
@@ -393,9 +306,8 @@ class _Launch(Filling):
         """Puts a <param> of ROS 1 on the server, below a namespace."""
         name = self.read_field(action, "name")
         if name.value is not None and name.value[:1] == "~":
-            name = wrap(name.value[1:], name.assumed)
-        place = resolve(namespace if namespace.value != "" else wrap("/"), name)
-        full = self.note_unknown(place, action.line, "parameter")
+            name = wrap(name.value[1:])
+        full = resolve(namespace if namespace.value != "" else wrap("/"), name)
         if full.value is None:
             return
         given = next((key for key in OF_RUNNING if action.get(key) is not None), "")
@@ -421,9 +333,9 @@ class _Launch(Filling):
         below = self.read_field(action, "name")
         base = namespace if namespace.value != "" else wrap("/")
         if below.value is not None and below.value[:1] == "~":
-            below = wrap(below.value[1:].lstrip("/"), below.assumed)
+            below = wrap(below.value[1:].lstrip("/"))
         full = base if below.value == "" else resolve(base, below)
-        if self.note_unknown(full, action.line, "parameters below").value is None:
+        if full.value is None:
             return
         command = find_literal(action.get("command")) or "load"
         if command == "delete":
@@ -434,26 +346,24 @@ class _Launch(Filling):
         fill = substitute is not None and parse_truth(self.fill(substitute)) is True
         file, content = action.get("file"), action.get("text")
         if file is not None:
-            text = self.note_unknown(self.fill(file), action.line, "parameters")
-            entries = self.read_entries(text.value, action.line) if text.value is not None else None
-            assumed = text.assumed
+            name = self.fill(file).value
+            entries = self.read_entries(name) if name is not None else None
         else:
             # What is filled in may be any piece of YAML, so that it comes before reading.
-            text = self.fill(content or make_literal(""))
-            entries, assumed, fill = parameters(text.shown).entries, text.assumed, False
+            entries, fill = parameters(self.fill(content or make_literal("")).shown).entries, False
         for entry in self.substitute_entries(entries or ()) if fill else entries or ():
             key = "/".join(part.strip("/") for part in (full.value or "/", *entry.path) if part.strip("/"))
-            self.put(f"/{key}", entry.value, wrap(str(entry.value), assumed), action.line)
+            self.put(f"/{key}", entry.value, wrap(str(entry.value)), action.line)
 
     def do_node(self, action: Action) -> None:
         if self.generation == 1:
             self.start_ros1_node(action)
         else:
-            self.start_ros2_node(action, EMPTY)
+            self.start_ros2_node(action)
 
     do_lifecycle = do_test = do_container = do_node
 
-    def start_ros2_node(self, action: Action, container: LaunchText) -> None:
+    def start_ros2_node(self, action: Action) -> None:
         package, executable, plugin = (self.read_field(action, key) for key in ("package", "executable", "plugin"))
         name = self.read_field(action, "name")
         namespace = self.read_field(action, "namespace")
@@ -469,36 +379,29 @@ class _Launch(Filling):
             full_namespace = resolve(wrap("/"), moved)
         if renamed is not None:
             name = renamed
-        kind = action.kind if action.kind in ("lifecycle", "container", "composable", "test") else "node"
-        started = self.begin(
+        self.begin(
             action,
-            kind,
+            action.kind,
             package=package,
             executable=executable,
             plugin=plugin,
-            container=container,
             name=name,
             namespace=full_namespace,
             remaps=(*first_remaps, *remaps),
             settings=(*first_settings, *settings),
             arguments=arguments,
         )
-        if kind == "container":
-            self.load(action, started.full_name)
+        if action.kind == "container":
+            self.do_load(action)
 
     def read_field(self, action: Action, key: str) -> LaunchText:
         return self.fill(action.get(key) or make_literal(""))
 
-    def begin(self, action: Action, kind: str, **fields: Any) -> Started:
+    def begin(self, action: Action, kind: str, **fields: Any) -> None:
         """Notes that an action starts something. fields: those of Started that are not empty, lists as tuples."""
-        started = Started(
-            kind, self.generation, self.locate_line(action.line), tuple(self.chain), tuple(self.open),
-            merge_groups([tuple(self.assumed)]), tuple(self.after), **fields,
-        )  # fmt: skip
-        self.started.append(started)
-        for key in _TEXTS:
-            self.note_unknown(getattr(started, key), action.line, f"{key} of {kind}")
-        return started
+        self.started.append(
+            Started(kind, self.generation, self.locate_line(action.line), tuple(self.open), **fields)
+        )
 
     def parse_ros_arguments(
         self, arguments: Sequence[LaunchText], line: int
@@ -524,41 +427,27 @@ class _Launch(Filling):
                 rule = parse_ros2_rule(word)
                 if option in ("-r", "--remap") and rule is not None:
                     if rule.match in ("__node", "__name"):
-                        name = name or wrap(new, text.assumed)
+                        name = name or wrap(new)
                     elif rule.match == "__ns":
-                        namespace = namespace or wrap(new, text.assumed)
+                        namespace = namespace or wrap(new)
                     else:
-                        remaps.append(Remap(wrap(old), wrap(new, text.assumed), self.locate_line(line)))
+                        remaps.append(Remap(wrap(old), wrap(new), self.locate_line(line)))
                 elif option in ("-p", "--param"):
-                    settings.append(
-                        LaunchParameter(old, parse_yaml_value(new), wrap(new, text.assumed), self.locate_line(line))
-                    )
+                    settings.append(LaunchParameter(old, parse_yaml_value(new), wrap(new), self.locate_line(line)))
                 elif option == "--params-file":
-                    settings.append(SettingFile(text, self.read_entries(word, line), self.locate_line(line)))
+                    settings.append(SettingFile(text, self.read_entries(word), self.locate_line(line)))
                 option = ""
-            elif option:
-                self.note_missed(line, f"argument `{option} {text.shown}`", *text.reasons)
+            else:
                 option = ""
         return remaps, settings, name, namespace
 
-    def load(self, action: Action, container: LaunchText) -> None:
+    def do_load(self, action: Action) -> None:
         """Starts the composable nodes below an action."""
         outer, self.scope = self.scope, self.scope.make_inner(len(self.open))
-        before, self.container = self.container, container
         self.run(child for child in action.children if child.kind == "composable")
-        self.container = before
         self.scope = outer
 
-    def do_load(self, action: Action) -> None:
-        own = action.get("container-node")
-        if own is not None:
-            container = self.make_inner_namespace(self.fill(own))
-        else:
-            container = resolve(wrap("/"), self.read_field(action, "container"))
-        self.load(action, self.note_unknown(container, action.line, "container"))
-
-    def do_composable(self, action: Action) -> None:
-        self.start_ros2_node(action, self.container)
+    do_composable = start_ros2_node
 
     def do_process(self, action: Action) -> None:
         words = tuple(self.fill(value) for value in action.list_values("command"))
@@ -570,7 +459,7 @@ class _Launch(Filling):
             installed = _INSTALLED.match(words[0].value or "")
             executable, rest = words[0], words[1:]
             if installed is not None:
-                package, executable = (wrap(part, words[0].assumed) for part in installed.groups())
+                package, executable = map(wrap, installed.groups())
         remaps, settings, name, namespace = self.parse_ros_arguments(rest, action.line)
         self.begin(
             action,
@@ -591,9 +480,9 @@ class _Launch(Filling):
         words = [word for value in action.list_values("arguments") for word in self.split(self.fill(value))]
         for text in words:
             if text.value is not None and text.value.startswith("__name:="):
-                name = wrap(text.value[8:], text.assumed)
+                name = wrap(text.value[8:])
             elif text.value is not None and text.value.startswith("__ns:="):
-                namespace = resolve(wrap("/"), wrap(text.value[6:], text.assumed))
+                namespace = resolve(wrap("/"), wrap(text.value[6:]))
         full = resolve(namespace, name)
         if full.value is not None:
             self.clear(action, full)
@@ -602,8 +491,8 @@ class _Launch(Filling):
         own: list[Remap] = []
         given: list[tuple[Action, list[str]]] = [(action, []) for action in self.scope.private]
         for child in action.children:
-            verdict, open_, _, _ = self.decide(child.conditions)
-            if verdict is False:
+            open_ = self.decide(child.conditions)
+            if open_ is None:
                 continue
             self.open += open_
             if child.kind == "remap":
@@ -626,10 +515,10 @@ class _Launch(Filling):
                 continue
             if old.startswith("_"):
                 if full.value is not None:
-                    self.put(f"{full.value}/{old[1:]}", parse_ros1_value(new), wrap(new, text.assumed), action.line)
+                    self.put(f"{full.value}/{old[1:]}", parse_ros1_value(new), wrap(new), action.line)
             else:
-                remaps.append(Remap(wrap(old), wrap(new, text.assumed), self.locate_line(action.line)))
-        kind, plugin, container = ("test" if action.kind == "test" else "node"), EMPTY, EMPTY
+                remaps.append(Remap(wrap(old), wrap(new), self.locate_line(action.line)))
+        kind, plugin = ("test" if action.kind == "test" else "node"), EMPTY
         if package.value == "nodelet" and words:
             command = words[0].value
             if command == "manager":
@@ -637,15 +526,12 @@ class _Launch(Filling):
             elif command in ("load", "standalone") and len(words) > 1:
                 plugin = words[1]
                 kind = "composable" if command == "load" else "node"
-                if command == "load" and len(words) > 2:
-                    container = resolve(namespace, words[2])
         self.begin(
             action,
             kind,
             package=package,
             executable=executable,
             plugin=plugin,
-            container=container,
             name=name,
             namespace=namespace,
             remaps=tuple(remaps),
@@ -656,13 +542,11 @@ class _Launch(Filling):
         """The words of one argument, which a substitution may have brought several of."""
         if text.value is None:
             return [text]
-        return [wrap(word, text.assumed) for word in text.value.split()] if " " in text.value else [text]
+        return [wrap(word) for word in text.value.split()] if " " in text.value else [text]
 
 
 _INSTALLED = re.compile(r"\$\(prefix ([\w.-]+)\)/lib/\1/([^/]+)\Z")
-_TEXTS = ("package", "executable", "plugin", "container", "name", "namespace")
-_OF_NODE = frozenset(("remap", "parameter", "parameter-file", "unknown"))
-_STARTING = frozenset(("node", "lifecycle", "test", "container", "composable", "load", "include", "group", "process"))
+_OF_NODE = frozenset(("remap", "parameter", "parameter-file"))
 _DOING = collect_methods(_Launch, "do_")
 
 

@@ -67,26 +67,20 @@ class Started(NamedTuple):
     """A node, or another program, that the launch starts.
 
     kind: `node`, `lifecycle`, `test`, `container`, `composable` (ROS 1: a nodelet that is loaded) or `process`.
-    executable or plugin: what runs. container: full name of where a composable is loaded. name: empty where it is left
-    to the program. namespace: absolute; empty where it is left to the program, which then means `/`.
+    executable or plugin: what runs. name: empty where it is left to the program. namespace: absolute; empty where it is
+    left to the program, which then means `/`.
     remaps, settings: in the order in which they are given to the node; of remaps ROS 1 takes the last for a name, ROS 2
     the first; of settings the last holds. settings of ROS 1 are on the server: Launched.values().
-    conditions: those that could not be decided, as text. assumed: launch arguments whose defaults decided the others.
-    after: events or times it waits for. at: the line that starts it. chain: the lines of the includes that lead there,
-    outermost first.
+    conditions: those that could not be decided, as text. at: the line that starts it.
     """
 
     kind: str
     generation: int
     at: ShareLine
-    chain: tuple[ShareLine, ...]
     conditions: tuple[str, ...]
-    assumed: tuple[str, ...]
-    after: tuple[str, ...]
     package: LaunchText = EMPTY
     executable: LaunchText = EMPTY
     plugin: LaunchText = EMPTY
-    container: LaunchText = EMPTY
     name: LaunchText = EMPTY
     namespace: LaunchText = EMPTY
     remaps: tuple[Remap, ...] = ()
@@ -102,34 +96,8 @@ class Started(NamedTuple):
             )
         full = resolve(self.namespace if self.namespace.value != "" else wrap("/"), self.name)
         if full.value is not None and full.value[:1] != "/":
-            return LaunchText(None, full.shown, (f"`{full.value}` is no name of a node",), full.assumed)
+            return LaunchText(None, full.shown, (f"`{full.value}` is no name of a node",))
         return full
-
-
-class Skipped(NamedTuple):
-    """Something not started because a condition is false. assumed: the arguments whose defaults made it so; empty when
-    it is false whatever the arguments."""
-
-    kind: str
-    at: ShareLine
-    conditions: tuple[str, ...]
-    assumed: tuple[str, ...]
-
-
-class UnresolvedPart(NamedTuple):
-    """Something that could not be followed or filled in: what, and why."""
-
-    at: ShareLine
-    what: str
-    reasons: tuple[str, ...]
-
-
-class LaunchArgument(NamedTuple):
-    """A launch argument as declared. value: what it has in this launch."""
-
-    name: str
-    value: LaunchText
-    at: ShareLine
 
 
 class Launched(NamedTuple):
@@ -138,9 +106,6 @@ class Launched(NamedTuple):
 
     started: tuple[Started, ...]
     server: Mapping[str, LaunchParameter]
-    arguments: tuple[LaunchArgument, ...]
-    skipped: tuple[Skipped, ...]
-    unresolved: tuple[UnresolvedPart, ...]
     files: tuple[tuple[str, str], ...]
     actions: int = 0
 
@@ -162,8 +127,7 @@ class Launched(NamedTuple):
             for key, entry in select_file_values(setting, full).items():
                 found.pop(key, None)
                 shown = str(entry.value)
-                text = LaunchText(shown, shown, (), setting.file.assumed)
-                found[key] = LaunchParameter(key, entry.value, text, setting.at, setting.conditions)
+                found[key] = LaunchParameter(key, entry.value, wrap(shown), setting.at, setting.conditions)
         return found
 
 

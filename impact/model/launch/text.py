@@ -19,23 +19,21 @@ LONGEST = 100_000
 
 class LaunchText(NamedTuple):
     """A text as far as it is known. value: None where it is not. shown: what is known of it, the rest as `<...>`.
-    reasons: why it is not known. assumed: launch arguments, and `$VARIABLE`s of the environment, on whose defaults it
-    rests."""
+    reasons: why it is not known."""
 
     value: str | None
     shown: str
     reasons: tuple[str, ...] = ()
-    assumed: tuple[str, ...] = ()
 
 
-def wrap(value: str, assumed: tuple[str, ...] = ()) -> LaunchText:
+def wrap(value: str) -> LaunchText:
     """A text that is known."""
-    return LaunchText(value, value, (), assumed)
+    return LaunchText(value, value)
 
 
-def make_unknown(shown: str, *reasons: str, assumed: tuple[str, ...] = ()) -> LaunchText:
+def make_unknown(shown: str, *reasons: str) -> LaunchText:
     """A text that is not."""
-    return LaunchText(None, f"<{shown}>", reasons, assumed)
+    return LaunchText(None, f"<{shown}>", reasons)
 
 
 def join_texts(texts: Sequence[LaunchText], between: str = "") -> LaunchText:
@@ -44,7 +42,7 @@ def join_texts(texts: Sequence[LaunchText], between: str = "") -> LaunchText:
     if value is not None and len(value) > LONGEST:
         return make_unknown("...", "is too long")
     shown = value if value is not None else between.join(t.shown for t in texts)[:LONGEST]
-    return LaunchText(value, shown, merge_groups(t.reasons for t in texts), merge_groups(t.assumed for t in texts))
+    return LaunchText(value, shown, merge_reasons(t.reasons for t in texts))
 
 
 def resolve(namespace: LaunchText, name: LaunchText) -> LaunchText:
@@ -54,14 +52,14 @@ def resolve(namespace: LaunchText, name: LaunchText) -> LaunchText:
     if namespace.value is None or name.value is None:
         both = join_texts((namespace, name), "/")
         return both._replace(value=None, shown=both.shown.replace("//", "/"))
-    return wrap(join_name(namespace.value, name.value), merge_groups((namespace.assumed, name.assumed)))
+    return wrap(join_name(namespace.value, name.value))
 
 
 _MOST = 200
 
 
-def merge_groups(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
-    """All of several tuples, each once, in order, as far as a person reads on."""
+def merge_reasons(groups: Iterable[tuple[str, ...]]) -> tuple[str, ...]:
+    """All of several reasons, each once, in order, as far as a person reads on."""
     return tuple(dict.fromkeys(item for group in groups for item in group))[:_MOST]
 
 
