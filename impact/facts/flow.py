@@ -54,7 +54,7 @@ class Guard(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | kind | holds |
     |---|---|
     | if | the condition (also of `? :`, `and`, `&&` before a call, assert) is true |
-    | unless | it is false: an else branch, or what follows a branch that always jumps (`early` is True then) |
+    | unless | it is false: an else branch, or what follows a branch that always jumps |
     | while | the loop goes round: condition of while and three-part for |
     | for | once for each of what is walked through; text: the whole head |
     | do | at least once; text: the condition at its end |
@@ -64,14 +64,13 @@ class Guard(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | cpp | the preprocessor's condition is true (negated ones written `!(...)`) |
     | macro | inside the block of an unknown macro; text: its head |
     | with | inside a Python `with`; text: its head |
-    | never | it stands behind a jump that always happens; text: `after return`, the jump's first word (`early` too) |
+    | never | it stands behind a jump that always happens; text: `after return`, the jump's first word |
     """
 
     kind: str
     text: str
     line: int
     outer: int = -1
-    early: bool = False
 
 
 class FlowCall(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -128,9 +127,9 @@ class FlowParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class FlowFunction(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A function's body. name: scopes joined by `::` in C++ and `.` in Python, template arguments left out; a lambda is
     called as what it stands in, followed by `lambda@line:column`. owner: the class it belongs to, as far as the file
-    says (`ns::Class` for `void Class::f()` inside `namespace ns`), empty for none. decorators: as paths. returns: the
-    type as written. virtual: C++ `virtual` or `override` is written. outside: names that Python declares `global` or
-    `nonlocal`. types: parameters of the C++ template that it is written as, empty for those that are no types.
+    says (`ns::Class` for `void Class::f()` inside `namespace ns`), empty for none. returns: the type as written.
+    outside: names that Python declares `global` or `nonlocal`. types: parameters of the C++ template that it is written
+    as, empty for those that are no types.
 
     The body of a Python class is a Function of the class's name, in which the names it binds are `this.name`."""
 
@@ -143,9 +142,7 @@ class FlowFunction(msgspec.Struct, frozen=True, array_like=True, gc=False):
     calls: tuple[FlowCall, ...] = ()
     assignments: tuple[Assignment, ...] = ()
     accesses: tuple[Access, ...] = ()
-    decorators: tuple[str, ...] = ()
     returns: str = ""
-    virtual: bool = False
     outside: tuple[str, ...] = ()
     types: tuple[str, ...] = ()
 
@@ -160,13 +157,12 @@ class DataMember(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class FlowClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A class or struct. name: with its scopes. bases: as written, template arguments kept. methods: names of those it
-    declares, bodies or not. types: parameters of a template, empty for those that are no types."""
+    """A class or struct. name: with its scopes. bases: as written, template arguments kept. types: parameters of a
+    template, empty for those that are no types."""
 
     name: str
     bases: tuple[str, ...]
     members: tuple[DataMember, ...]
-    methods: tuple[str, ...]
     line: int
     end: int
     types: tuple[str, ...] = ()

@@ -75,6 +75,8 @@ class _File(CppStatements):
         self.aliases: list[Alias] = []
         self.classes: list[FlowClass] = []
         self.constants: list[DataMember] = []
+        # Of the class that is read.
+        self.members: list[DataMember] = []
         self.problems: list[Problem] = []
         self.namespaces: set[str] = set()
         self.misread = False
@@ -230,8 +232,6 @@ class _File(CppStatements):
     def add_variable(self, node: Node, child: Node, index: int, type_: str, name: str, owner: str, base: int) -> None:
         said, marks = self.split_declarator(child)
         if said is None or self.declares_function(child):
-            if said is not None and owner:
-                self.methods.append(strip_template(self.spell_node(said)))
             return
         if child.kind_id == KIND.parenthesized_declarator and node.children[-1].is_missing:
             return
@@ -287,9 +287,6 @@ class _File(CppStatements):
             guard = self.guard("cpp", text, line, guard)
         return guard
 
-    members: list[DataMember]
-    methods: list[str]
-
     def enter_class_specifier(self, node: Node, name: str, owner: str, conditions) -> None:
         """A class; also one in a function, whose name is then its scope."""
         body = node.child_by_field_name("body")
@@ -301,19 +298,13 @@ class _File(CppStatements):
         for child in node.children:
             if child.kind_id == KIND.base_class_clause:
                 bases = [self.spell_node(part) for part in child.children if part.kind_id in TYPES]
-        kept = getattr(self, "members", None), getattr(self, "methods", None)
-        self.members, self.methods = [], []
-        before = self.get_state()
-        types, self.types = self.types, ()
-        self.visit_scope(body.children, inner, inner or "", conditions)
-        self.types = types
+        before, members, types = self.get_state(), self.members, self.types
+        self.members, self.types = [], ()
+        self.visit_scope(body.children, inner, inner, conditions)
         self.restore(before)
-        members, methods = self.members, self.methods
-        if kept[0] is not None and kept[1] is not None:
-            self.members, self.methods = kept[0], kept[1]
         lines = self.find_line(node), self.find_end_line(node)
-        found = FlowClass(inner, tuple(bases), tuple(members), tuple(dict.fromkeys(methods)), *lines, types)
-        self.classes.append(found)
+        self.classes.append(FlowClass(inner, tuple(bases), tuple(self.members), *lines, types))
+        self.members, self.types = members, types
 
     enter_struct_specifier = enter_union_specifier = enter_enum_specifier = enter_class_specifier
 
@@ -331,7 +322,6 @@ class _File(CppStatements):
         declarator: Node | None = None
         body: Node | None = None
         initializers: Node | None = None
-        virtual = False
         marks = ""
         children = node.children
         for index, child in enumerate(children):
@@ -340,8 +330,6 @@ class _File(CppStatements):
                 body = child
             elif number == KIND.field_initializer_list:
                 initializers = child
-            elif child.type == "virtual":
-                virtual = True
             elif number in DECLARATORS and (number not in NAMES or node.field_name_for_child(index) == "declarator"):
                 declarator = child
             elif number in DECLARED_TYPES and child.child_by_field_name("body") is not None:
@@ -368,8 +356,6 @@ class _File(CppStatements):
                     listed = child
                 elif number == KIND.trailing_return_type:
                     returns = self.spell_node(child).removeprefix("->").strip()
-                elif number == KIND.virtual_specifier:
-                    virtual = True
         else:
             said = self.spell_node(declarator)
             if declarator.kind_id == KIND.operator_cast or "operator" in said:
@@ -380,7 +366,6 @@ class _File(CppStatements):
             returns = self.find_written_type(children) + marks
         said = said.removeprefix("::")
         if owner:
-            self.methods.append(said)
             belongs = owner
         else:
             belongs = said.rpartition("::")[0] if "operator" not in said else said.partition("operator")[0].rstrip(":")
@@ -404,7 +389,7 @@ class _File(CppStatements):
             self.problems.append(Problem(line, "nested too deeply to be read in full"))
             self.nesting = 0
             self.restore(state)
-        self.close(parameters, line, self.find_end_line(node), returns, virtual)
+        self.close(parameters, line, self.find_end_line(node), returns)
 
     def visit_initializers(self, node: Node, guard: int) -> None:
         """The list of initialisers of a constructor: assignments to members, and to base classes by their names."""

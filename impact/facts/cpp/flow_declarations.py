@@ -286,13 +286,13 @@ class Declarations(FunctionReader):
         return FlowExpr("lambda", name)
 
     def close(
-        self, parameters: tuple[FlowParameter, ...], line: int, end: int, returns: str = "", virtual: bool = False
+        self, parameters: tuple[FlowParameter, ...], line: int, end: int, returns: str = ""
     ) -> None:
         """Notes the function it is in."""
         self.functions.append(
             FlowFunction(
                 self.name, self.owner, parameters, line, end, tuple(self.guards), tuple(self.calls),
-                tuple(self.assignments), tuple(dict.fromkeys(self.accesses)), (), returns, virtual, types=self.types,
+                tuple(self.assignments), tuple(dict.fromkeys(self.accesses)), returns, types=self.types,
             )
         )  # fmt: skip
 

@@ -1,8 +1,8 @@
 """C++ statements to guards: under which conditions what stands in a function runs.
 
 Every statement tells how control leaves it: STAYS (what follows runs), JUMPS (it never does), BREAKS (it leaves the
-switch or loop around it), or, where it depends, the conditions under which what follows runs. Those are guards too,
-with `early` set. A jump out of a loop from inside it says nothing about what follows the loop.
+switch or loop around it), or, where it depends, the conditions under which what follows runs. Those are guards too.
+A jump out of a loop from inside it says nothing about what follows the loop.
 """
 
 import re
@@ -145,13 +145,13 @@ class CppStatements(Declarations):
                 continue
             conditions += leaving
             for condition in leaving:
-                guard = self.guard(condition.kind, condition.text, condition.line, guard, True)
+                guard = self.guard(condition.kind, condition.text, condition.line, guard)
         return ended or tuple(conditions) or STAYS
 
     def add_never_guard(self, node: Node, guard: int) -> int:
         """A guard around what stands behind a statement that always leaves."""
         word = _WORD.search(self.text, node.start_byte, node.end_byte)
-        return self.guard("never", f"after {word[0] if word else 'a jump'}", self.find_line(node), guard, True)
+        return self.guard("never", f"after {word[0] if word else 'a jump'}", self.find_line(node), guard)
 
     def limit_leaving(self, regions: Regions, node: Node, leaving: Leaving) -> Leaving:
         """How control leaves a jump: only where the blanked directives let it be compiled that the statements around it

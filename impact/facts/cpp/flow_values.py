@@ -148,9 +148,9 @@ class FunctionReader:
         line = bisect_right(self.starts, offset)
         return line, offset - self.starts[line - 1] + 1
 
-    def guard(self, kind_: str, text: str, line: int, outer: int, early: bool = False) -> int:
+    def guard(self, kind_: str, text: str, line: int, outer: int) -> int:
         """A new guard around what follows; gives its place."""
-        self.guards.append(Guard(kind_, text[:LONGEST_CONDITION], line, outer, early))
+        self.guards.append(Guard(kind_, text[:LONGEST_CONDITION], line, outer))
         return len(self.guards) - 1
 
     def follow(self, node: Node, guard: int, position: str = READ, target: str | None = "") -> FlowExpr:

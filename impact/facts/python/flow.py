@@ -109,7 +109,7 @@ class PythonStatements(Expressions):
                 left = left or []
                 left += leaving
                 for condition in leaving:
-                    self.push(condition.kind, condition.text, condition.line, early=True)
+                    self.push(condition.kind, condition.text, condition.line)
         self.guard = saved
         if jumped is not None:
             return JUMPS
@@ -118,7 +118,7 @@ class PythonStatements(Expressions):
     def add_never_guard(self, node: ast.stmt) -> None:
         """A guard around what stands behind a statement that always leaves."""
         word = "exit" if node.__class__ is ast.Expr else node.__class__.__name__.lower()
-        self.push("never", f"after {word}", node.lineno, early=True)
+        self.push("never", f"after {word}", node.lineno)
 
     def make_condition(self, node: ast.expr) -> AskedCondition:
         operand = ""
@@ -198,7 +198,7 @@ class PythonStatements(Expressions):
             caught.append((what, handler.lineno, self.walk_under("catch", what, handler.lineno, handler.body)))
         if node.orelse and left is not None:
             for condition in left:
-                self.push(condition.kind, condition.text, condition.line, early=True)
+                self.push(condition.kind, condition.text, condition.line)
             for what, line, _ in caught:
                 self.push("unless", f"except {what}", line)
             more = self.walk_block(node.orelse)
@@ -447,7 +447,6 @@ class PythonStatements(Expressions):
         method = self.in_class
         name = f"{current.name}.{node.name}" if current.name else node.name
         body = self.make_body(name, node, node.args)
-        body.decorators = decorators
         body.returns = self.format_annotation(node.returns)
         if not method:
             if current.name:

@@ -27,7 +27,7 @@ class ClassBody(msgspec.Struct, eq=False):
 
     def build_class(self) -> FlowClass:
         members = tuple(sorted(self.members.values(), key=lambda member: member.line))
-        return FlowClass(self.name, self.bases, members, tuple(self.methods), self.line, self.end)
+        return FlowClass(self.name, self.bases, members, self.line, self.end)
 
 
 class Body(msgspec.Struct, eq=False):
@@ -43,7 +43,6 @@ class Body(msgspec.Struct, eq=False):
     is_class: bool = False
     this: str = ""
     parameters: tuple[FlowParameter, ...] = ()
-    decorators: tuple[str, ...] = ()
     returns: str = ""
     locals: set[str] = set()
     outside: dict[str, type] = {}
@@ -76,6 +75,5 @@ class Body(msgspec.Struct, eq=False):
         owner = self.cls.name if self.cls is not None else ""
         return FlowFunction(
             self.name, owner, self.parameters, self.line, self.end, tuple(self.guards), tuple(self.calls),
-            tuple(self.assignments), tuple(dict.fromkeys(self.accesses)), self.decorators, self.returns,
-            outside=tuple(self.outside),
+            tuple(self.assignments), tuple(dict.fromkeys(self.accesses)), self.returns, tuple(self.outside),
         )  # fmt: skip

@@ -71,9 +71,9 @@ class Expressions(SourceText):
         self.in_class = False
         self.unplaced = False
 
-    def push(self, kind: str, text: str, line: int, early: bool = False) -> None:
+    def push(self, kind: str, text: str, line: int) -> None:
         """A new guard around what follows."""
-        self.guards.append(Guard(kind, text, line, self.guard, early))
+        self.guards.append(Guard(kind, text, line, self.guard))
         self.guard = len(self.guards) - 1
 
     def knows(self, name: str) -> bool:

@@ -42,7 +42,7 @@ def guards_of(function, place):
     chain = []
     while place >= 0:
         guard = function.guards[place]
-        chain.append(("early " if guard.early else "") + f"{guard.kind} {guard.text}")
+        chain.append(f"{guard.kind} {guard.text}")
         place = guard.outer
     return chain[::-1]
 
@@ -68,7 +68,7 @@ def guards(text, callee="p"):
         ("if (a and  # why\n    b):\n    p()", ["if a and b"]),
         ("if a  ==   'x#y': p()", ["if a == 'x#y'"]),
         ("while a: p()", ["while a"]),
-        ("while True:\n    if a: break\n    p()", ["while True", "early unless a"]),
+        ("while True:\n    if a: break\n    p()", ["while True", "unless a"]),
         ("for x, y in  z: p()", ["for x, y in z"]),
         ("with a as b, c(): p()", ["with a as b, c()"]),
         ("async with a: p()", ["with a"]),
@@ -88,7 +88,7 @@ def guards(text, callee="p"):
         ("x = {a: p() for a in b}", ["for a in b"]),
         ("any(p() for x in y)", ["for x in y"]),
         ("x = [q for q in p()]", []),
-        ("assert a, 'm'\np()", ["early if a"]),
+        ("assert a, 'm'\np()", ["if a"]),
         ("match a:\n  case 1: p()", ["case a == 1"]),
         ("match a:\n  case 1 | B.c: p()", ["case a == 1 or B.c"]),
         ("match a:\n  case 1: x()\n  case 2 | 3: y()\n  case _: p()", ["case a other than 1, 2, 3"]),
@@ -107,62 +107,62 @@ def test_guards(text, expected):
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("if a: return\np()", ["early unless a"]),
-        ("if a: return\nif b: return\np()", ["early unless a", "early unless b"]),
-        ("if not a: raise E\np()", ["early unless not a"]),
-        ("if a: sys.exit(1)\np()", ["early unless a"]),
+        ("if a: return\np()", ["unless a"]),
+        ("if a: return\nif b: return\np()", ["unless a", "unless b"]),
+        ("if not a: raise E\np()", ["unless not a"]),
+        ("if a: sys.exit(1)\np()", ["unless a"]),
         ("if a: x()\np()", []),
-        ("if a: return\nelif b: return\np()", ["early unless a", "early unless b"]),
-        ("if a: x()\nelse: return\np()", ["early if a"]),
-        ("if a: x()\nelif b: y()\nelse: return\np()", ["early if a or b"]),
-        ("if a: return\nelif b: y()\nelse: return\np()", ["early unless a", "early if b"]),
-        ("if a: x()\nelif b: return\np()", ["early unless not a and b"]),
-        ("if not a: x()\nelif b: return\np()", ["early unless a and b"]),
-        ("if a == 1: x()\nelif b or c: return\np()", ["early unless not (a == 1) and (b or c)"]),
-        ("if a: return\nelif b: y()\nelif c: return\np()", ["early unless a", "early unless not b and c"]),
-        ("if a:\n    if b: return\n    x()\np()", ["early unless a and b"]),
-        ("if a:\n    if not b: return\n    x()\np()", ["early unless a and not b"]),
-        ("if a or b:\n    if c: return\np()", ["early unless (a or b) and c"]),
-        ("if a and b:\n    if c: return\np()", ["early unless a and b and c"]),
-        ("if a if b else c:\n    if d: return\np()", ["early unless (a if b else c) and d"]),
-        ("if a:\n    assert b\np()", ["early unless a and not (b)"]),
-        ("if a:\n    if b: return\n    else: raise E\np()", ["early unless a"]),
-        ("if a:\n    with b: return\np()", ["early unless a"]),
-        ("with b:\n    if a: return\np()", ["early unless a"]),
-        ("for x in y:\n    if x: continue\n    p()", ["for x in y", "early unless x"]),
+        ("if a: return\nelif b: return\np()", ["unless a", "unless b"]),
+        ("if a: x()\nelse: return\np()", ["if a"]),
+        ("if a: x()\nelif b: y()\nelse: return\np()", ["if a or b"]),
+        ("if a: return\nelif b: y()\nelse: return\np()", ["unless a", "if b"]),
+        ("if a: x()\nelif b: return\np()", ["unless not a and b"]),
+        ("if not a: x()\nelif b: return\np()", ["unless a and b"]),
+        ("if a == 1: x()\nelif b or c: return\np()", ["unless not (a == 1) and (b or c)"]),
+        ("if a: return\nelif b: y()\nelif c: return\np()", ["unless a", "unless not b and c"]),
+        ("if a:\n    if b: return\n    x()\np()", ["unless a and b"]),
+        ("if a:\n    if not b: return\n    x()\np()", ["unless a and not b"]),
+        ("if a or b:\n    if c: return\np()", ["unless (a or b) and c"]),
+        ("if a and b:\n    if c: return\np()", ["unless a and b and c"]),
+        ("if a if b else c:\n    if d: return\np()", ["unless (a if b else c) and d"]),
+        ("if a:\n    assert b\np()", ["unless a and not (b)"]),
+        ("if a:\n    if b: return\n    else: raise E\np()", ["unless a"]),
+        ("if a:\n    with b: return\np()", ["unless a"]),
+        ("with b:\n    if a: return\np()", ["unless a"]),
+        ("for x in y:\n    if x: continue\n    p()", ["for x in y", "unless x"]),
         ("for x in y:\n    if x: continue\np()", []),
         ("for x in y:\n    if x: return\np()", []),
-        ("for x in y:\n    if a:\n        if b: break\n    p()", ["for x in y", "early unless a and b"]),
+        ("for x in y:\n    if a:\n        if b: break\n    p()", ["for x in y", "unless a and b"]),
         ("for x in y:\n    if x: break\nelse:\n    p()", ["unless break"]),
-        ("for x in y:\n    if x: break\nelse:\n    return\np()", ["early if break"]),
+        ("for x in y:\n    if x: break\nelse:\n    return\np()", ["if break"]),
         ("for x in y: x()\nelse: p()", []),
         ("while a: x()\nelse: p()", ["unless a"]),
-        ("if a:\n    while True: x()\np()", ["early unless a"]),
+        ("if a:\n    while True: x()\np()", ["unless a"]),
         ("if a:\n    while True:\n        if b: break\np()", []),
-        ("try: x()\nexcept E: return\np()", ["early unless except E"]),
-        ("try: x()\nexcept E: return\nexcept F: y()\np()", ["early unless except E"]),
-        ("try: return x()\nexcept E: y()\np()", ["early catch E"]),
-        ("try: return x()\nexcept E: return\np()", ["early never after try"]),
-        ("if a:\n    try: return x()\n    except E: raise\np()", ["early unless a"]),
-        ("try:\n    if a: return\nfinally: x()\np()", ["early unless a"]),
+        ("try: x()\nexcept E: return\np()", ["unless except E"]),
+        ("try: x()\nexcept E: return\nexcept F: y()\np()", ["unless except E"]),
+        ("try: return x()\nexcept E: y()\np()", ["catch E"]),
+        ("try: return x()\nexcept E: return\np()", ["never after try"]),
+        ("if a:\n    try: return x()\n    except E: raise\np()", ["unless a"]),
+        ("try:\n    if a: return\nfinally: x()\np()", ["unless a"]),
         ("try:\n    if a: return\nexcept E: x()\np()", []),
         ("try:\n    if a: return\nfinally: p()", []),
-        ("try:\n    if a: return\nexcept E: x()\nelse: p()", ["early unless a", "unless except E"]),
-        ("match a:\n  case 1: return\np()", ["early case a other than 1"]),
-        ("match a:\n  case 1 | 2: x()\n  case _: return\np()", ["early case a == 1 or 2"]),
-        ("match a:\n  case 1 if b: return\np()", ["early unless a == 1 and b"]),
-        ("if a:\n    return\n    x()\np()", ["early unless a"]),
+        ("try:\n    if a: return\nexcept E: x()\nelse: p()", ["unless a", "unless except E"]),
+        ("match a:\n  case 1: return\np()", ["case a other than 1"]),
+        ("match a:\n  case 1 | 2: x()\n  case _: return\np()", ["case a == 1 or 2"]),
+        ("match a:\n  case 1 if b: return\np()", ["unless a == 1 and b"]),
+        ("if a:\n    return\n    x()\np()", ["unless a"]),
         ("if a:\n    def g(): return\np()", []),
         # behind what always jumps
-        ("return\np()", ["early never after return"]),
-        ("raise E\nif a: p()", ["early never after raise", "if a"]),
-        ("sys.exit()\np()", ["early never after exit"]),
-        ("if a: return\nelse: return\np()", ["early never after if"]),
-        ("if a: return\nreturn\np()", ["early unless a", "early never after return"]),
-        ("for x in y:\n    continue\n    p()", ["for x in y", "early never after continue"]),
+        ("return\np()", ["never after return"]),
+        ("raise E\nif a: p()", ["never after raise", "if a"]),
+        ("sys.exit()\np()", ["never after exit"]),
+        ("if a: return\nelse: return\np()", ["never after if"]),
+        ("if a: return\nreturn\np()", ["unless a", "never after return"]),
+        ("for x in y:\n    continue\n    p()", ["for x in y", "never after continue"]),
         ("for x in y:\n    break\np()", []),
-        ("while True:\n    x()\np()", ["early never after while"]),
-        ("with b: return\np()", ["early never after with"]),
+        ("while True:\n    x()\np()", ["never after while"]),
+        ("with b: return\np()", ["never after with"]),
         ("with suppress(E): return\np()", []),
         ("if a:\n    with contextlib.suppress(E): return\np()", []),
         ("try: return\nfinally: p()", []),
@@ -174,11 +174,11 @@ def test_what_follows_a_jump(text, expected):
 
 def test_lines_of_guards_are_those_of_the_statements_that_ask():
     body = function(facts("def f():\n\n    if (\n        a): return\n    elif b: x()\n    p()\n"), "f")
-    assert [(g.kind, g.text, g.line, g.early) for g in body.guards] == [
-        ("if", "a", 3, False),
-        ("unless", "a", 3, False),
-        ("if", "b", 5, False),
-        ("unless", "a", 3, True),
+    assert [(g.kind, g.text, g.line) for g in body.guards] == [
+        ("if", "a", 3),
+        ("unless", "a", 3),
+        ("if", "b", 5),
+        ("unless", "a", 3),
     ]
 
 
@@ -304,7 +304,6 @@ def helper(msg): pass
 def test_classes():
     talker, inner = facts(NODE).classes
     assert (talker.name, talker.bases, inner.name, inner.bases) == ("Talker", ("Base", "mixins.M"), "Talker.Inner", ())
-    assert talker.methods == ("__init__", "value", "make", "other", "tick")
     assert [(m.name, m.type, m.line, shown(m.value)) for m in talker.members] == [
         ("RATE", "", 9, "10"),
         ("out", "Publisher", 10, None),
@@ -342,7 +341,6 @@ def test_functions():
     assert init.returns == "None"
     assert [p.name for p in function(found, "Talker.make").parameters] == ["a", "b"]
     assert [p.name for p in function(found, "Talker.other").parameters] == ["a"]
-    assert function(found, "Talker.tick").decorators == ("node.on",)
 
 
 def test_calls_with_what_they_are_kept_in():
@@ -548,8 +546,8 @@ def test_python_2():
     body = function(found, "f")
     assert found.problems == () and found.unread == ()
     assert [(c.callee, guards_of(body, c.guard)) for c in body.calls] == [
-        ("pub.publish", ["early unless not m.ok"]),
-        ("done", ["early unless not m.ok", "early unless except rospy.ROSException"]),
+        ("pub.publish", ["unless not m.ok"]),
+        ("done", ["unless not m.ok", "unless except rospy.ROSException"]),
     ]
 
 
