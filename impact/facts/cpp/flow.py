@@ -24,10 +24,9 @@ from .flow_grammar import (
     NAMES,
     TYPES,
     find_node_readers,
-    get_items,
     list_children,
 )
-from .flow_statements import CppStatements
+from .flow_statements import STATEMENTS, STAYS, CppStatements
 from .flow_values import PASS, READ, flatten, strip_template
 from .lexical import EXPORTING, find_at_line_starts, list_exports, scan
 from .names import join_scope
@@ -146,18 +145,14 @@ class _File(CppStatements):
                 self.visit_statement(child, -1)
 
     def enter_preproc_if(self, node: Node, name: str, owner: str, conditions) -> None:
-        asked, statements, rest = self.split_branch(node)
-        if not rest and not owner and asked.startswith("!(defined(") and is_include_guard(node, statements):
+        branches = list(self.list_branches(node))
+        asked, statements, line = branches[0]
+        if not branches[1:] and not owner and asked.startswith("!(defined(") and is_include_guard(node, statements):
             self.visit_scope(statements, name, owner, conditions)
             return
-        line = self.find_line(node)
-        inner = (*conditions, (asked, line)) if asked else conditions
-        self.visit_scope(statements, name, owner, inner)
-        while rest is not None:
+        for asked, statements, _ in branches:
+            self.visit_scope(statements, name, owner, (*conditions, (asked, line)) if asked else conditions)
             conditions = (*conditions, (f"!({asked})", line))
-            asked, statements, rest = self.split_branch(rest)
-            inner = (*conditions, (asked, line)) if asked else conditions
-            self.visit_scope(statements, name, owner, inner)
 
     enter_preproc_ifdef = enter_preproc_if
 
@@ -254,11 +249,7 @@ class _File(CppStatements):
                 given.kind_id == KIND.initializer_list and before is not None and before.kind_id != KIND.equals_sign
             )
             if direct:
-                inner = get_items(given)
-                if len(inner) == 1:
-                    value = self.follow(inner[0], base, READ, target)
-                else:
-                    value = FlowExpr("make", type_, self.visit_arguments(given, base, PASS))
+                value = self.visit_initializer(given, type_, base, READ, target)
             else:
                 value = self.follow(given, base, READ, target)
         member = DataMember(variable if owner else target, type_ + marks, self.find_line(said), value)
@@ -311,8 +302,12 @@ class _File(CppStatements):
     def add_local_type(self, node: Node) -> None:
         self.enter_class_specifier(node, self.name or self.owner, "", ())
 
-    def add_local_name(self, node: Node) -> None:
+    def read_alias_declaration(self, node: Node, guard: int) -> int:
+        """Another name for something inside a function."""
         SCOPED[node.kind_id](self, node, self.name, "", ())
+        return STAYS
+
+    read_type_definition = read_using_declaration = read_namespace_alias_definition = read_alias_declaration
 
     def find_end_line(self, node: Node) -> int:
         return bisect_right(self.starts, node.end_byte)
@@ -398,12 +393,7 @@ class _File(CppStatements):
                 continue
             parts = list_children(child)
             target = f"this.{strip_template(self.spell_node(parts[0]))}"
-            given = parts[-1]
-            inner = get_items(given)
-            if len(inner) == 1:
-                value = self.follow(inner[0], guard, PASS, target)
-            else:
-                value = FlowExpr("make", "", self.visit_arguments(given, guard, PASS) if inner else ())
+            value = self.visit_initializer(parts[-1], "", guard, PASS, target)
             self.assignments.append(Assignment(target, value, self.find_line(child), guard))
 
     def enter_expression_statement(self, node: Node, name: str, owner: str, conditions) -> None:
@@ -429,3 +419,4 @@ def is_include_guard(node: Node, statements: list[Node]) -> bool:
 
 
 SCOPED = find_node_readers(_File, "enter_")
+STATEMENTS.update(find_node_readers(_File, "read_"))

@@ -1,6 +1,7 @@
 """What C++ functions declare: variables and what they begin with, parameters, and lambdas as functions of their own."""
 
 from bisect import bisect_right
+from typing import Any
 
 from tree_sitter import Node
 
@@ -96,9 +97,6 @@ class Declarations(FunctionReader):
 
     def add_local_type(self, node: Node) -> None:
         """A class inside a function; who reads files says what is done with it."""
-
-    def add_local_name(self, node: Node) -> None:
-        """Another name for something inside a function; the same."""
 
     def visit_initialization(self, node: Node, guard: int, kind_: str) -> FlowExpr:
         children = node.children
@@ -280,7 +278,7 @@ class Declarations(FunctionReader):
             self.known.add(said)
             self.assignments.append(Assignment(said, value, line, -1, "auto"))
         if body is not None:
-            self.run(body)
+            self.visit_statement(body, -1)
         self.close(parameters, line, bisect_right(self.starts, max(0, node.end_byte - 1)), returns)
         self.restore(state)
         return FlowExpr("lambda", name)
@@ -296,8 +294,8 @@ class Declarations(FunctionReader):
             )
         )  # fmt: skip
 
-    def run(self, body: Node, guard: int = -1) -> None:
-        """The statements of a function; given by who knows statements."""
+    def visit_statement(self, node: Node, guard: int) -> Any:
+        """A statement of a function; given by who knows statements."""
         raise NotImplementedError
 
 

@@ -7,7 +7,7 @@ A jump out of a loop from inside it says nothing about what follows the loop.
 
 import re
 from bisect import bisect_right
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from tree_sitter import Node
@@ -77,9 +77,6 @@ def add_parentheses(text: str) -> str:
 
 class CppStatements(Declarations):
     """The reader of statements."""
-
-    def run(self, body: Node, guard: int = -1) -> None:
-        self.visit_statement(body, guard)
 
     def visit_statement(self, node: Node, guard: int) -> Leaving:
         if self.regions is not None:
@@ -366,21 +363,18 @@ class CppStatements(Declarations):
                 self.visit_statement(child, guard)
         return self.merge_case_leavings(subject, leavings, line)
 
-    def list_cases(self, body: Node, condition: str | None = None):
+    def list_cases(self, body: Node):
         """The labels of a switch, nested ones too: value (None for default), node, statements, condition of #if."""
         for child in body.children:
             if child.kind_id == KIND.case_statement:
-                yield from self.list_labels(child, condition)
+                yield from self.list_labels(child, None)
             elif child.kind_id in PREPROC:
-                asked, statements, rest = self.split_branch(child)
-                for part in statements:
-                    if part.kind_id == KIND.case_statement:
-                        yield from self.list_labels(part, asked)
-                while rest is not None:
-                    _, statements, rest = self.split_branch(rest)
+                branches = list(self.list_branches(child))
+                asked = branches[0][0]
+                for place, (_, statements, _) in enumerate(branches):
                     for part in statements:
                         if part.kind_id == KIND.case_statement:
-                            yield from self.list_labels(part, f"!({asked})")
+                            yield from self.list_labels(part, f"!({asked})" if place else asked)
 
     def list_labels(self, case: Node, condition: str | None):
         children = case.children
@@ -511,6 +505,14 @@ class CppStatements(Declarations):
         self.known = known | self.known
         return STAYS
 
+    def list_branches(self, node: Node) -> Iterator[tuple[str, list[Node], int]]:
+        """The branches of an #if: condition (empty for #else), what stands in it, line."""
+        branch: Node | None = node
+        while branch is not None:
+            asked, statements, rest = self.split_branch(branch)
+            yield asked, statements, self.find_line(branch)
+            branch = rest
+
     def split_branch(self, node: Node) -> tuple[str, list[Node], Node | None]:
         """The condition of an #if, #ifdef, #elif or #else, what stands in it, and the branch after it."""
         children = node.children
@@ -543,18 +545,12 @@ class CppStatements(Declarations):
 
     def read_preproc_if(self, node: Node, guard: int) -> Leaving:
         """#if in a function; its branches are walked along."""
-        branch: Node | None = node
-        asked_before = ""
         ends: list[tuple[str, Leaving]] = []
-        while branch is not None:
-            asked, statements, rest = self.split_branch(branch)
-            line = self.find_line(branch)
-            if asked_before:
-                guard = self.guard("cpp", f"!({asked_before})", line, guard)
+        for asked, statements, line in self.list_branches(node):
+            if ends and ends[-1][0]:
+                guard = self.guard("cpp", f"!({ends[-1][0]})", line, guard)
             inner = self.guard("cpp", asked, line, guard) if asked else guard
             ends.append((asked, self.visit_sequence(statements, inner)))
-            asked_before = asked
-            branch = rest
         line = self.find_line(node)
         gone = [left in (JUMPS, BREAKS) for _, left in ends]
         if all(gone) and not ends[-1][0]:
@@ -583,12 +579,6 @@ class CppStatements(Declarations):
         return STAYS
 
     read_struct_specifier = read_union_specifier = read_enum_specifier = read_class_specifier
-
-    def read_alias_declaration(self, node: Node, guard: int) -> Leaving:
-        self.add_local_name(node)
-        return STAYS
-
-    read_type_definition = read_using_declaration = read_namespace_alias_definition = read_alias_declaration
 
 
 PREPROC = get_kinds("preproc_if", "preproc_ifdef")

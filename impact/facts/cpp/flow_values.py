@@ -19,6 +19,7 @@ from tree_sitter import Node
 from ..flow import Access, Assignment, FlowCall, FlowExpr, FlowFunction, Guard
 from .flow_clean import Cleaned, Regions
 from .flow_grammar import KIND, LISTS, LITERALS, OPERATORS, find_node_readers, get_items, list_children
+from .names import strip_templates
 
 # A position: kind of access, callee it is passed to, number of the argument.
 READ, WRITE, PASS, ESCAPE = "read", "write", "pass", "escape"
@@ -87,19 +88,7 @@ def strip_template(name: str) -> str:
     """A name without its template arguments and without blanks."""
     if "<" not in name and " " not in name and "\n" not in name:
         return name
-    if "<" in name:
-        depth = 0
-        kept: list[str] = []
-        for piece in re.split(r"([<>])", name):
-            if piece == "<":
-                depth += 1
-            elif piece == ">":
-                depth -= 1
-            elif depth <= 0:
-                kept.append(piece)
-        if "operator" not in name:
-            name = "".join(kept)
-    return "".join(name.split()) if "operator" not in name else " ".join(name.split())
+    return " ".join(name.split()) if "operator" in name else strip_templates(name)
 
 
 class FunctionReader:
@@ -114,6 +103,8 @@ class FunctionReader:
         self.name = ""
         self.owner = ""
         self.begin(set())
+        # Of the call that was read last.
+        self.callee = ""
         # What the receiver of the call that is read is, where it is a call too or is made there.
         self.received: FlowExpr | None = None
         # Parameters of the template that is read.
@@ -272,17 +263,18 @@ class FunctionReader:
                     if method in POINTEES:
                         self.evaluate_call_expression(node, guard, READ, "")
                         receiver = self.find_plain_path(function.children[0])
-                        return receiver if receiver is not None else (self.find_receiver(node), False)
+                        return receiver if receiver is not None else (self.callee.rpartition(".")[0], False)
                     path, local = self.visit_path(function.children[0], guard)
                     for argument in get_items(children[-1]):
                         self.follow(argument, guard)
                     return f"{path}.[]", local
             else:
                 arguments = get_items(children[-1])
-                if len(arguments) == 1 and self.find_callee(node) in THROUGH:
+                called = strip_template(self.text[function.start_byte : function.end_byte])
+                if len(arguments) == 1 and called in THROUGH:
                     return self.visit_path(arguments[0], guard)
             self.received = self.evaluate_call_expression(node, guard, ESCAPE, "")
-            return self.find_callee(node) + "()", False
+            return self.callee + "()", False
         self.received = self.follow(node, guard, ESCAPE)
         return "()", False
 
@@ -292,48 +284,6 @@ class FunctionReader:
         if plain is None:
             return None
         return plain[0].replace("->", "."), plain[1] is None and plain[2] in self.known
-
-    def find_callee(self, node: Node) -> str:
-        """The callee of a call, by its text alone."""
-        function = node.children[0]
-        number = function.kind_id
-        if number == KIND.field_expression:
-            children = list_children(function)
-            return f"{self.find_receiver(children[0])}.{self.find_member_name(children[-1])}"
-        if number in (KIND.identifier, KIND.qualified_identifier, KIND.template_function):
-            return strip_template(self.text[function.start_byte : function.end_byte])
-        return self.find_receiver(function)
-
-    def find_receiver(self, node: Node) -> str:
-        """What a method is called on, as a path; nothing is noted."""
-        number = node.kind_id
-        if number in (KIND.this, KIND.identifier, KIND.qualified_identifier):
-            return strip_template(self.text[node.start_byte : node.end_byte])
-        if number == KIND.field_expression:
-            plain = self.find_plain_path(node)
-            if plain is not None:
-                return plain[0]
-            children = list_children(node)
-            return f"{self.find_receiver(children[0])}.{self.find_member_name(children[-1])}"
-        if number == KIND.parenthesized_expression:
-            return self.find_receiver(list_children(node)[1])
-        if number in (KIND.pointer_expression, KIND.cast_expression):
-            return self.find_receiver(list_children(node)[-1])
-        if number == KIND.subscript_expression:
-            return self.find_receiver(node.children[0]) + ".[]"
-        if number == KIND.call_expression:
-            name = self.find_callee(node)
-            if name in THROUGH:
-                arguments = get_items(node.children[-1])
-                if len(arguments) == 1:
-                    return self.find_receiver(arguments[0])
-            head, _, last = name.rpartition(".")
-            if head and last in ELEMENTS:
-                return head + ".[]"
-            if head and last in POINTEES:
-                return head
-            return name + "()"
-        return "()"
 
     def find_member_name(self, node: Node) -> str:
         """The name of a member in a field expression, without template arguments."""
@@ -425,6 +375,7 @@ class FunctionReader:
             else:
                 self.follow(listed, guard, ESCAPE)
             self.nesting -= 1
+        self.callee = callee
         if callee in BINDS and arguments and (callee != "bind" or arguments[0].kind == "function"):
             return FlowExpr("bind", "", arguments)
         if not logs and not (method in SILENT and method):
@@ -443,6 +394,13 @@ class FunctionReader:
         """The arguments in a list, each in the same position."""
         given = (child for child in listed.named_children if child.kind_id != KIND.comment)
         return tuple(VALUES[child.kind_id](self, child, guard, position, "") for child in given)
+
+    def visit_initializer(self, listed: Node, type_: str, guard: int, position: str, target: str) -> FlowExpr:
+        """What a variable begins with that is given a list: its one element, else an object of a type."""
+        inner = get_items(listed)
+        if len(inner) == 1:
+            return self.follow(inner[0], guard, position, target)
+        return FlowExpr("make", type_, self.visit_arguments(listed, guard, PASS))
 
     def evaluate_subscript_expression(self, node: Node, guard: int, position: str, target: str | None) -> FlowExpr:
         children = list_children(node)
