@@ -30,9 +30,9 @@ def rosrun(package: str, executable: str, arguments: Iterable[str] = ()) -> Laun
         elif not old.startswith("__"):
             remaps.append(Remap(wrap(old), wrap(new), _HERE))
     started = Started(
-        "node", 1, _HERE, (), (), (), (), package=wrap(package), executable=wrap(executable), name=wrap(name),
+        "node", 1, _HERE, (), package=wrap(package), executable=wrap(executable), name=wrap(name),
         namespace=wrap(namespace), remaps=tuple(remaps), settings=tuple(private), arguments=tuple(map(wrap, words)),
     )  # fmt: skip
     full = f"{namespace.rstrip('/')}/{name or executable}"
     server = {f"{full}/{setting.name}": setting._replace(name=f"{full}/{setting.name}") for setting in private}
-    return Launched((started,), server, (), (), (), ())
+    return Launched((started,), server, ())

@@ -833,6 +833,58 @@ class FlowCode:
                         found.setdefault(cls.key, []).append((fn, arguments, line))
         return found
 
+    @cached_property
+    def bases_made(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
+        """Constructors that initialise a base class of the code: key of the base to function, arguments and line."""
+        found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
+        for fn in self.functions:
+            owner = self.find_owner(fn) if fn.facts.owner else None
+            if owner is None:
+                continue
+            for call in fn.facts.calls:
+                if call.callee == "super().__init__":
+                    for base in self.list_bases(owner)[1:2]:
+                        found.setdefault(base.key, []).append((fn, call.arguments, call.line))
+            for each in fn.facts.assignments:
+                made = self.find_base_made(fn, each)
+                cls = self.find_class(made[0], fn.source, fn.scope) if made is not None else None
+                if made is not None and cls is not None:
+                    found.setdefault(cls.key, []).append((fn, made[1], each.line))
+        return found
+
+    def is_constructor(self, fn: Fn) -> bool:
+        """Whether a function is the constructor of a class of the code."""
+        owner = self.find_owner(fn)
+        return owner is not None and get_tail(fn.name) in (get_tail(owner.name), "__init__")
+
+    def list_constructed(self, fn: Fn) -> Iterator[tuple[Fn, tuple[FlowExpr, ...], int]]:
+        """Who makes objects by a constructor, with its arguments and line; nothing for other functions."""
+        owner = self.find_owner(fn)
+        if owner is not None and self.is_constructor(fn):
+            inheriting = self.derived.get(owner.key, ()) if get_tail(fn.name) == "__init__" else ()
+            for cls in (owner, *inheriting):
+                yield from self.constructions.get(cls.key, ())
+            yield from self.bases_made.get(owner.key, ())
+
+    def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn]]:
+        """What is given for the parameter of a function, where it is called, bound, or makes an object; with who gives
+        it."""
+        called = ((caller, call.arguments) for caller, call in self.callers.get(fn, ()))
+        made = ((maker, arguments) for maker, arguments, _ in self.list_constructed(fn))
+        for giver, arguments in (*called, *self.bound.get(fn, ()), *made):
+            argument = find_argument(arguments, place, name)
+            if argument is not None:
+                yield argument, giver
+
+
+def find_argument(arguments: tuple[FlowExpr, ...], place: int, name: str) -> FlowExpr | None:
+    """The argument that is given for a parameter, by its name or its place; None where none is."""
+    for argument in arguments:
+        if argument.kind == "keyword" and argument.text == name and argument.parts:
+            return argument.parts[0]
+    positional = [argument for argument in arguments if argument.kind != "keyword"]
+    return positional[place] if 0 <= place < len(positional) else None
+
 
 def list_made(fn: Fn, code: FlowCode) -> list[tuple[str, tuple[FlowExpr, ...], int]]:
     """Objects that a function makes: type as meant (template arguments kept), arguments, line."""

@@ -603,17 +603,10 @@ class Sites:
             place = find_parameter(one, name)
             if place is None:
                 continue
-            found: list[Fn] = []
-            for caller, call in self.code.callers.get(one, ()):
-                positional = [argument for argument in call.arguments if argument.kind != "keyword"]
-                if place[0] < len(positional):
-                    found += self.list_bodies(positional[place[0]], caller, use, depth + 1)
-            owner = self.code.find_owner(one)
-            if owner is not None:
-                for caller, arguments, _ in self.code.constructions.get(owner.key, ()):
-                    if place[0] < len(arguments):
-                        found += self.list_bodies(arguments[place[0]], caller, use, depth + 1)
-            return list(dict.fromkeys(found))
+            given = self.code.list_given(one, place[0], name)
+            return list(dict.fromkeys(
+                body for value, giver in given for body in self.list_bodies(value, giver, use, depth + 1)
+            ))
         return []
 
     def _list_functions(self, name: str, fn: Fn) -> list[Fn]:
@@ -715,20 +708,10 @@ class Sites:
             for one in self.code.list_enclosing_chain(fn):
                 place = find_parameter(one, variable.name)
                 if place is not None:
-                    given = list(self._list_given_handles(one, place[0], depth))
+                    passed = self.code.list_given(one, place[0], variable.name)
+                    given = [self.resolve_handle(handle, giver, depth + 1) for handle, giver in passed]
                     return self._select_agreed(given) if given else private or self._resolve_unless_handle(value, fn)
         return private
-
-    def _list_given_handles(self, fn: Fn, place: int, depth: int) -> Iterator[str]:
-        """The namespaces of the handles that are passed for a parameter."""
-        owner = self.code.find_owner(fn)
-        makers = [(caller, call.arguments, 0) for caller, call in self.code.callers.get(fn, ())]
-        if owner is not None and get_tail(fn.name) == get_tail(owner.name):
-            makers += self.code.constructions.get(owner.key, ())
-            makers += self.values.bases_made.get(owner.key, ())
-        for caller, arguments, _ in makers:
-            if place < len(arguments):
-                yield self.resolve_handle(arguments[place], caller, depth + 1)
 
     @staticmethod
     def _select_agreed(found: list[str]) -> str:
@@ -878,13 +861,9 @@ class Sites:
                 place = find_parameter(one, variable.name)
                 if place is None:
                     continue
-                for caller, arguments in [
-                    *((caller, call.arguments) for caller, call in code.callers.get(one, ())),
-                    *code.bound.get(one, ()),
-                ]:  # fmt: skip
-                    positional = [argument for argument in arguments if argument.kind != "keyword"]
-                    if place[0] < len(positional) and positional[place[0]].kind == "name":
-                        yield from self.list_publishers(positional[place[0]].text, caller, depth + 1)
+                for value, giver in code.list_given(one, place[0], variable.name):
+                    if value.kind == "name":
+                        yield from self.list_publishers(value.text, giver, depth + 1)
 
     @cached_property
     def timers(self) -> list[TimerSite]:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 from ...facts.flow import FlowExpr
-from .code import FlowCode, Fn, Variable, find_parameter, get_tail
+from .code import FlowCode, Fn, Variable, find_parameter
 
 _MOST = 50
-Made = Mapping[str, Sequence[tuple[Fn, tuple[FlowExpr, ...], int]]]
 
 
 class Origins(NamedTuple):
@@ -22,10 +20,10 @@ class Origins(NamedTuple):
 
 
 class ObjectOrigins:
-    """Asks a body of code for the origins of objects. bases_made: as FlowValues has it."""
+    """Asks a body of code for the origins of objects."""
 
-    def __init__(self, code: FlowCode, bases_made: Callable[[], Made]):
-        self.code, self._bases_made = code, bases_made
+    def __init__(self, code: FlowCode):
+        self.code = code
         self._known: dict[Variable, Origins | None] = {}
 
     @cached_property
@@ -73,25 +71,9 @@ class ObjectOrigins:
         found: list[tuple[FlowExpr, Fn]] = []
         parameter = find_parameter(fn, name)
         if parameter is not None:
-            found += self._list_passed(fn, parameter[0], name)
+            found += self.code.list_given(fn, parameter[0], name)
         for each in fn.assigned.get(name, ()):
             targets = self.code.list_targets(each.value.text, fn) if each.value.kind == "call" else []
             given = [(a.value, target) for target in targets for a in target.facts.assignments if not a.target]
             found += given or [(each.value, fn)]
-        return found
-
-    def _list_passed(self, fn: Fn, place: int, name: str) -> list[tuple[FlowExpr, Fn]]:
-        """What is passed for a parameter."""
-        rows = [(caller, call.arguments) for caller, call in self.code.callers.get(fn, ())]
-        rows += self.code.bound.get(fn, ())
-        owner = self.code.find_owner(fn)
-        if owner is not None and get_tail(fn.name) in (get_tail(owner.name), "__init__"):
-            classes = (owner, *self.code.derived.get(owner.key, ()))
-            made = [row for one in classes for row in self.code.constructions.get(one.key, ())]
-            rows += [(maker, arguments) for maker, arguments, _ in (*made, *self._bases_made().get(owner.key, ()))]
-        found: list[tuple[FlowExpr, Fn]] = []
-        for caller, arguments in rows:
-            positional = [argument for argument in arguments if argument.kind != "keyword"]
-            named = [a.parts[0] for a in arguments if a.kind == "keyword" and a.text == name and a.parts]
-            found += [(argument, caller) for argument in (*named, *positional[place : place + 1])]
         return found

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from ...facts.flow import FlowCall, FlowExpr, FlowParameter
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
-from .code import Fn, Variable, find_parameter, get_tail
+from .code import Fn, Variable, find_argument, find_parameter, get_tail
 from .graph import How
 from .origins import ObjectOrigins, Origins
 from .types import split_name
@@ -87,7 +87,7 @@ class FlowValues:
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
-        for name in ("filled", "declared", "bases_made", "command_line", "origins"):
+        for name in ("filled", "declared", "command_line", "origins"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other.asked = self._budget, self.asked
         return other
@@ -224,7 +224,7 @@ class FlowValues:
     @cached_property
     def origins(self) -> ObjectOrigins:
         """Where the code's objects come from."""
-        return ObjectOrigins(self.code, lambda: self.bases_made)
+        return ObjectOrigins(self.code)
 
     def evaluate_variable(
         self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None
@@ -310,37 +310,19 @@ class FlowValues:
         """What callers pass for a parameter."""
         number = 0
         only = self.way.get(fn)
-        for caller, call in self.code.callers.get(fn, ()):
-            if (only is not None and call is not only) or not self._runs(caller):
-                continue
-            argument = _find_argument(call.arguments, place, name)
-            if argument is not None:
+        calls = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
+                 if only is None or call is only)  # fmt: skip
+        for caller, arguments, line in (*calls, *self.code.list_constructed(fn)):
+            argument = find_argument(arguments, place, name)
+            if argument is not None and self._runs(caller):
                 number += 1
-                yield from self._evaluate(argument, caller, call.line, seen)
-        owner = self.code.find_owner(fn)
-        is_constructor = owner is not None and get_tail(fn.name) in (get_tail(owner.name), "__init__")
-        if is_constructor and owner is not None:
-            for maker in (owner, *self.code.derived.get(owner.key, ())):
-                for caller, arguments, line in self.code.constructions.get(maker.key, ()):
-                    argument = _find_argument(arguments, place, name)
-                    direct = maker is owner or get_tail(fn.name) == "__init__"
-                    if argument is not None and direct and self._runs(caller):
-                        number += 1
-                        yield from self._evaluate(argument, caller, line, seen)
-            for caller, arguments, line in self.bases_made.get(owner.key, ()):
-                argument = _find_argument(arguments, place, name)
-                if argument is not None and self._runs(caller):
-                    number += 1
-                    yield from self._evaluate(argument, caller, line, seen)
+                yield from self._evaluate(argument, caller, line, seen)
         if not number:
             yield FlowValue(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
-        owner = self.code.find_owner(fn)
-        if value.kind != "name" or owner is None or get_tail(fn.name) not in (get_tail(owner.name), "__init__"):
-            return None
-        return find_parameter(fn, value.text)
+        return find_parameter(fn, value.text) if value.kind == "name" and self.code.is_constructor(fn) else None
 
     def _evaluate_given(
         self, fn: Fn, parameter: tuple[int, FlowParameter], origins: Origins, seen: tuple
@@ -350,31 +332,12 @@ class FlowValues:
         place, facts = parameter
         for maker, arguments, line in self.code.constructions.get(owner.key, ()) if owner is not None else ():
             if (maker.place, arguments) in origins.made and self._runs(maker):
-                argument = _find_argument(arguments, place, facts.name) or facts.default
+                argument = find_argument(arguments, place, facts.name) or facts.default
                 if argument is not None:
                     yield from self._evaluate(argument, maker, line, seen)
 
     def _runs(self, fn: Fn) -> bool:
         return self.within is None or fn in self.within
-
-    @cached_property
-    def bases_made(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
-        """Constructors that initialise a base class of the code: key of the base to function, arguments and line."""
-        found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
-        for fn in self.code.functions:
-            owner = self.code.find_owner(fn) if fn.facts.owner else None
-            if owner is None:
-                continue
-            for call in fn.facts.calls:
-                if call.callee == "super().__init__":
-                    for base in self.code.list_bases(owner)[1:2]:
-                        found.setdefault(base.key, []).append((fn, call.arguments, call.line))
-            for each in fn.facts.assignments:
-                made = self.code.find_base_made(fn, each)
-                cls = self.code.find_class(made[0], fn.source, fn.scope) if made is not None else None
-                if made is not None and cls is not None:
-                    found.setdefault(cls.key, []).append((fn, made[1], each.line))
-        return found
 
     def _call(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         last = get_tail(value.text)
@@ -504,11 +467,3 @@ def _take_first(values: Iterator[FlowValue]) -> list[FlowValue]:
         if len(found) == _MOST:
             break
     return list(found)
-
-
-def _find_argument(arguments: tuple[FlowExpr, ...], place: int, name: str) -> FlowExpr | None:
-    for argument in arguments:
-        if argument.kind == "keyword" and argument.text == name and argument.parts:
-            return argument.parts[0]
-    positional = [argument for argument in arguments if argument.kind != "keyword"]
-    return positional[place] if 0 <= place < len(positional) else None
