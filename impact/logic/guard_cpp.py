@@ -1,10 +1,10 @@
 """C++ conditions to terms, with tree-sitter. Whatever is not understood is opaque; nothing raises."""
 
 import re
-from functools import lru_cache
 from typing import Any
 
 from ...edges.dispatch import collect_methods
+from ..facts.cpp.flow_grammar import PARSER
 from .guard_terms import (
     DEEPEST,
     FALSE,
@@ -38,14 +38,6 @@ _CATCH = re.compile(r"\bcatch\s*\(([^()]*)\)")
 _CAUGHT = re.compile(r"(?:const\s+)?(?:[\w:]*::)?(\w+(?:<.*>)?)(?:\s+const)?(?:\s*[&*]+\s*\w*|\s+(?!as\b)\w+)?")
 _DEFINED = re.compile(r"\bdefined\s+([A-Za-z_]\w*)")
 _HAS_INCLUDE = re.compile(r"<([^<>\s]+\.?[^<>\s]*)>")
-
-
-@lru_cache(1)
-def _load_parser() -> Any:
-    import tree_sitter_cpp
-    from tree_sitter import Language, Parser
-
-    return Parser(Language(tree_sitter_cpp.language()))
 
 
 def parse_condition(text: str, holds: bool) -> GuardReading:
@@ -120,7 +112,7 @@ class _Reader:
         """The condition's node; None when the text is not one condition."""
         if not self.text or len(self.text) > LONGEST or "\0" in self.text:
             return None
-        root = _load_parser().parse(self.source).root_node
+        root = PARSER.parse(self.source).root_node
         if root.has_error or root.named_child_count != 1:
             return None
         body = root.named_children[0].child_by_field_name("body")

@@ -25,15 +25,6 @@ from .guard_terms import (
 Language = Literal["cpp", "python"]
 
 
-def detect_language(ways: Sequence[Sequence[GuardAt]]) -> Language:
-    """The language the guards are written in, as their paths tell it; a script without an ending is Python."""
-    for way in ways:
-        for guard in way:
-            ending = guard.path.rpartition("/")[2].rpartition(".")[1:]
-            return "python" if (ending[0] == "" and guard.path) or ending[1] in ("py", "pyw") else "cpp"
-    return "cpp"
-
-
 def collect_pieces(way: Sequence[GuardAt], language: Language, renames: Mapping[str, str]) -> tuple[Conjunct, ...]:
     """All that must hold on one way, outermost first, with variables of loops and conditions put back into what they
     stand for."""

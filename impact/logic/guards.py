@@ -1,7 +1,7 @@
 """What happened to the conditions of a publish statement between two revisions.
 
-    compare_ways(old, new)       # "tightened", "widened", "equivalent" or "changed"
-    explain_ways(old, new)       # "only when `scan_received_` too"
+    compare_ways(old, new, reading)       # "tightened", "widened", "equivalent" or "changed"
+    explain_ways(old, new, reading)       # "only when `scan_received_` too"
 
 All of it is about the same moment: a name, and a call with the same arguments, has the same value wherever it stands in
 the two conditions. That calls have effects and that variables are assigned between two guards is not seen, save where
@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from ..model.flow.graph import GuardAt
-from .guard_reading import Language, collect_pieces, detect_language, drop_this
+from .guard_reading import Language, collect_pieces, drop_this
 from .guard_solver import Solver, Undecided
 from .guard_terms import FALSE, TRUE, Conjunct, Term, join
 from .guard_words import describe_ways
@@ -23,26 +23,18 @@ Ways = Sequence[Guards]
 _Side = tuple[tuple[Conjunct, ...], ...]
 
 MILLISECONDS = 100
-_NOTHING: Mapping[str, str] = {}
+"""What each of the few questions to z3 may take, on any machine the same work."""
 
 
 class NameReading(NamedTuple):
-    """How the names in two conditions are to be understood.
+    """How the names in two conditions are to be understood. renames: identifiers of the old revision that are called
+    otherwise in the new one."""
 
-    renames: identifiers of the old revision that are called otherwise in the new one. language: as the guards' paths
-    tell it when it is not given. milliseconds: what each of the few questions to z3 may take, on any machine the same
-    work.
-    """
-
-    renames: Mapping[str, str] = _NOTHING
-    language: Language | None = None
-    milliseconds: int = MILLISECONDS
+    renames: Mapping[str, str]
+    language: Language
 
 
-AS_WRITTEN = NameReading()
-
-
-def compare_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> Kind:
+def compare_ways(old: Ways, new: Ways, reading: NameReading) -> Kind:
     """What happened to the guards of a statement, of each of the ways that lead to it outermost first: it runs when all
     of one way hold; `changed` when the time was not enough."""
     if not reading.renames and _collect_texts(old) == _collect_texts(new):
@@ -63,7 +55,7 @@ def compare_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> Kin
     return "widened" if backward and forward is False else "changed"
 
 
-def explain_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> str:
+def explain_ways(old: Ways, new: Ways, reading: NameReading) -> str:
     """One clause that tells people what was added or removed, with code in backticks: "only when `a` too", "no longer
     asks for `x > 3`", "`x > 3` was `x > 0`"; empty when the two say the same."""
     if compare_ways(old, new, reading) == "equivalent":
@@ -80,11 +72,10 @@ def explain_ways(old: Ways, new: Ways, reading: NameReading = AS_WRITTEN) -> str
     return describe_ways(before, after, is_implied)
 
 
-def is_impossible(guards: Guards, language: Language | None = None) -> bool:
+def is_impossible(guards: Guards, language: Language) -> bool:
     """Whether guards contradict each other. That tells that the statement never runs only where nothing they name is
     assigned between them."""
-    language = language or detect_language((guards,))
-    pieces = collect_pieces(guards, language, _NOTHING)
+    pieces = collect_pieces(guards, language, {})
     try:
         return not Solver(language, MILLISECONDS).is_possible(_join_pieces(pieces))
     except Undecided:
@@ -97,12 +88,11 @@ def _collect_texts(ways: Ways) -> frozenset[tuple[tuple[str, str], ...]]:
 
 def _build_sides(old: Ways, new: Ways, reading: NameReading) -> tuple[_Side, _Side, Callable[[], Solver]]:
     """Both sides as terms, and what makes a solver for them."""
-    language = reading.language or detect_language((*old, *new))
-    before = tuple(collect_pieces(way, language, reading.renames) for way in old)
-    after = tuple(collect_pieces(way, language, _NOTHING) for way in new)
-    if language == "cpp":
+    before = tuple(collect_pieces(way, reading.language, reading.renames) for way in old)
+    after = tuple(collect_pieces(way, reading.language, {}) for way in new)
+    if reading.language == "cpp":
         before, after = drop_this((before, after))
-    return before, after, lambda: Solver(language, reading.milliseconds)
+    return before, after, lambda: Solver(reading.language, MILLISECONDS)
 
 
 def _collect_terms(side: _Side) -> frozenset[frozenset[Term]]:

@@ -1,11 +1,29 @@
-"""Guards of a statement that a single way leads to."""
+"""Guards as the functions of `logic` are given them: in the language of their files, and of a single way."""
 
-from rosimpact.impact.logic.guards import AS_WRITTEN, compare_ways, explain_ways
-
-
-def compare(old, new, reading=AS_WRITTEN):
-    return compare_ways((old,), (new,), reading)
+from rosimpact.impact.logic import guards
+from rosimpact.impact.logic.guards import NameReading
 
 
-def explain(old, new, reading=AS_WRITTEN):
-    return explain_ways((old,), (new,), reading)
+def language(*ways):
+    paths = [guard.path for way in ways for guard in way]
+    return "python" if paths and paths[0].endswith(".py") else "cpp"
+
+
+def compare_ways(old, new, renames=None):
+    return guards.compare_ways(old, new, NameReading(renames or {}, language(*old, *new)))
+
+
+def explain_ways(old, new, renames=None):
+    return guards.explain_ways(old, new, NameReading(renames or {}, language(*old, *new)))
+
+
+def is_impossible(asked):
+    return guards.is_impossible(asked, language(asked))
+
+
+def compare(old, new, renames=None):
+    return compare_ways((old,), (new,), renames)
+
+
+def explain(old, new, renames=None):
+    return explain_ways((old,), (new,), renames)

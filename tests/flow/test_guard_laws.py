@@ -6,10 +6,9 @@ import operator
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-from one_way import compare, explain
+from one_way import compare, compare_ways, explain, is_impossible
 from rosimpact.impact.logic import guard_reading
 from rosimpact.impact.logic.guard_renames import propose_renames
-from rosimpact.impact.logic.guards import compare_ways, is_impossible
 from rosimpact.impact.model.flow.graph import GuardAt
 
 # Formulas: ("a",) is a boolean, ("<", sum, number) compares, ("not", f), ("and", f, g), ("or", f, g).

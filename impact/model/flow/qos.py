@@ -125,7 +125,7 @@ def _merge_common(found: list[Qos]) -> Qos:
 
 def _evaluate_built(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, depth: int) -> Qos:
     """Profiles with settings behind them: `rclcpp::QoS(1).transient_local().reliable()`, `QoSProfile(depth=1, ...)`."""
-    links = _split_chain(value, fn)
+    links = _split_chain(value)
     names = [name for name, _ in links]
     base = next((_PROFILES[name] for name in names if name in _PROFILES), None)
     fields = structs.asdict(base) if base is not None else structs.asdict(Qos())
@@ -145,23 +145,20 @@ def _evaluate_built(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, d
                 if each.operator == "return"
             ]
         fields = structs.asdict(_merge_common(found)) if found else fields
-    positional = [part for part in links[0][1] or () if part.kind != "keyword"]
+    positional = [part for part in links[0][1] if part.kind != "keyword"]
     if positional and names[0] in ("QoS", "KeepLast", "keep_last", "QoSProfile", "SensorDataQoS"):
         _apply_constructor(positional[0], fields, fn, calls, values, depth)
     for place, (name, given) in enumerate(links):
-        if name in _SETTINGS:
-            field, setting = _SETTINGS[name]
-            fields[field] = setting
+        if place or name in _SETTINGS:
+            _set(name, given[0] if given else None, fields, fn, values)
             if place and name == "keep_last":
-                fields["depth"] = _evaluate_number(given[0], fn, values) if given else -1
-        elif place and name in _TAKING:
-            _set(_TAKING[name], given[0] if given else None, fields, fn, values)
+                fields["depth"] = _evaluate_number(given[0] if given else None, fn, values)
     for part in value.parts:
         if part.kind == "keyword" and part.parts:
             if part.text == "depth":
                 fields["depth"] = _evaluate_number(part.parts[0], fn, values)
             elif part.text in _TAKING:
-                _set(_TAKING[part.text], part.parts[0], fields, fn, values)
+                _set(part.text, part.parts[0], fields, fn, values)
     fields["written"] = ""
     return Qos(**fields)
 
@@ -170,7 +167,7 @@ def _apply_constructor(first: FlowExpr, fields: dict, fn: Fn, calls: Calls, valu
     """What a profile's constructor is given: a depth, a history, or another profile."""
     if first.kind in ("call", "make") and get_tail(first.text) in ("KeepLast", "KeepAll"):
         fields["history"] = "keep_all" if get_tail(first.text) == "KeepAll" else "keep_last"
-        fields["depth"] = _evaluate_number(first.parts[0], fn, values) if first.parts else -1
+        fields["depth"] = _evaluate_number(first.parts[0] if first.parts else None, fn, values)
         return
     other = _evaluate(first, fn, calls, values, depth + 1) if first.kind != "number" else Qos()
     if other != Qos():
@@ -181,30 +178,23 @@ def _apply_constructor(first: FlowExpr, fields: dict, fn: Fn, calls: Calls, valu
         fields["depth"] = _evaluate_number(first, fn, values)
 
 
-def _split_chain(value: FlowExpr, fn: Fn) -> list[tuple[str, tuple[FlowExpr, ...] | None]]:
-    """The calls of a chain, the first one first, with their arguments; None for those that are not known."""
-    if value.receiver is not None:
-        return [*_split_chain(value.receiver, fn), (get_tail(value.text), value.parts)]
-    names = value.text.split("().")
-    return [(get_tail(name), _find_link_arguments(value, names, place, fn)) for place, name in enumerate(names)]
+def _split_chain(value: FlowExpr) -> list[tuple[str, tuple[FlowExpr, ...]]]:
+    """The calls of a chain, the first one first, with their arguments."""
+    before = _split_chain(value.receiver) if value.receiver is not None else []
+    return [*before, (get_tail(value.text), value.parts)]
 
 
-def _find_link_arguments(value: FlowExpr, links: list[str], place: int, fn: Fn) -> tuple[FlowExpr, ...] | None:
-    """The arguments of one call of a chain; None where they are not told apart from those of a chain like it."""
-    if place == len(links) - 1:
-        return value.parts
-    callee = "().".join(links[: place + 1])
-    found = {call.arguments for call in fn.facts.calls if call.callee == callee}
-    return found.pop() if len(found) == 1 else None
-
-
-def _set(field: str, value: FlowExpr | None, fields: dict, fn: Fn, values: FlowValues) -> None:
-    """Gives a setting the value of an expression; it is not told where that is not known."""
+def _set(name: str, value: FlowExpr | None, fields: dict, fn: Fn, values: FlowValues) -> str:
+    """Does what a function or member of this name does with an expression; gives the setting, empty for none. It is not
+    told where the expression is not known."""
+    field, setting = _SETTINGS.get(name) or (_TAKING.get(name, ""), "")
     if field in ("deadline", "lease"):
         fields[field] = parse_seconds(value, fn, values) if value is not None else None
-        return
-    words = get_tail(value.text).upper().replace("_", "") if value is not None and value.kind == "name" else ""
-    fields[field] = next((setting for word, setting in _WORDS[field] if words.endswith(word)), "")
+    elif field:
+        words = get_tail(value.text).upper().replace("_", "") if value is not None and value.kind == "name" else ""
+        found = (meant for word, meant in _WORDS[field] if words.endswith(word))
+        fields[field] = setting or next(found, "")
+    return field
 
 
 def parse_seconds(value: FlowExpr, fn: Fn, values: FlowValues) -> float | None:
@@ -233,24 +223,11 @@ def _set_later(found: Qos, name: str, fn: Fn, values: FlowValues) -> Qos:
     only is not told."""
     fields = structs.asdict(found)
     nothing = structs.asdict(Qos())
-    for call in fn.facts.calls:
-        if not call.callee.startswith(name + "."):
-            continue
-        *_, last = call.callee[len(name) + 1 :].split("().")
-        if last in _SETTINGS:
-            field, setting = _SETTINGS[last]
-            fields[field] = setting
-        elif last in _TAKING:
-            field = _TAKING[last]
-            _set(field, call.arguments[0] if call.arguments else None, fields, fn, values)
-        else:
-            continue
-        if call.guard >= 0:
-            fields[field] = nothing[field]
-    for each in fn.facts.assignments:
-        field = _TAKING.get(get_tail(each.target), "") if each.target.startswith(name + ".") else ""
-        if field:
-            _set(field, each.value, fields, fn, values)
-            if each.guard >= 0:
+    said = [(call.callee, call.arguments[0] if call.arguments else None, call.guard) for call in fn.facts.calls]
+    said += [(each.target, each.value, each.guard) for each in fn.facts.assignments if get_tail(each.target) in _TAKING]
+    for path, value, guard in said:
+        if path.startswith(name + "."):
+            field = _set(path[len(name) + 1 :].rpartition("().")[2], value, fields, fn, values)
+            if field and guard >= 0:
                 fields[field] = nothing[field]
     return Qos(**fields)
