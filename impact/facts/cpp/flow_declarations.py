@@ -99,9 +99,6 @@ class Declarations(FunctionReader):
         """A class inside a function; who reads files says what is done with it."""
 
     def visit_initialization(self, node: Node, guard: int, kind_: str) -> FlowExpr:
-        children = node.children
-        if len(children) == 3 and children[1].kind_id == KIND.equals_sign:
-            return self.keep_value(children[0], children[2], guard, kind_)
         children = list_children(node)
         if len(children) == 3:
             return self.keep_value(children[0], children[2], guard, kind_)
@@ -251,25 +248,20 @@ class Declarations(FunctionReader):
         if self.name == "" and self.owner:
             name = f"{self.owner}::{name}"
         inits: list[tuple[str, FlowExpr]] = []
-        body: Node | None = None
+        captures, body = node.child_by_field_name("captures"), node.child_by_field_name("body")
+        for capture in captures.children if captures is not None else ():
+            if capture.kind_id == KIND.lambda_capture_initializer:
+                parts = list_children(capture)
+                said = self.text[parts[0].start_byte : parts[0].end_byte].lstrip("&")
+                inits.append((said, self.follow(parts[-1], guard, READ)))
         listed: Node | None = None
         returns = ""
-        for child in node.children:
-            number = child.kind_id
-            if number == KIND.lambda_capture_specifier:
-                for capture in child.children:
-                    if capture.kind_id == KIND.lambda_capture_initializer:
-                        parts = list_children(capture)
-                        said = self.text[parts[0].start_byte : parts[0].end_byte].lstrip("&")
-                        inits.append((said, self.follow(parts[-1], guard, READ)))
-            elif number == KIND.compound_statement:
-                body = child
-            elif number == KIND.abstract_function_declarator:
-                for part in child.children:
-                    if part.kind_id == KIND.parameter_list:
-                        listed = part
-                    elif part.kind_id == KIND.trailing_return_type:
-                        returns = self.spell_node(part).removeprefix("->").strip()
+        declarator = node.child_by_field_name("declarator")
+        for part in declarator.children if declarator is not None else ():
+            if part.kind_id == KIND.parameter_list:
+                listed = part
+            elif part.kind_id == KIND.trailing_return_type:
+                returns = self.spell_node(part).removeprefix("->").strip()
         state = self.get_state()
         self.begin(set(self.known))
         self.name = name

@@ -190,17 +190,8 @@ class CppStatements(Declarations):
         branches: list[tuple[FlowCondition, Leaving]] = []
         last: Leaving = STAYS
         while True:
-            asked: Node | None = None
-            then: Node | None = None
-            other: Node | None = None
-            for child in node.children:
-                number = child.kind_id
-                if number == KIND.condition_clause:
-                    asked = child
-                elif number == KIND.else_clause:
-                    other = child
-                elif asked is not None and child.is_named and number != KIND.comment:
-                    then = child
+            asked, then = node.child_by_field_name("condition"), node.child_by_field_name("consequence")
+            other = node.child_by_field_name("alternative")
             if asked is None:
                 return self.visit_sequence(node.named_children, guard)
             line = self.find_line(node)
@@ -248,46 +239,26 @@ class CppStatements(Declarations):
         return tuple(result) or STAYS
 
     def read_while_statement(self, node: Node, guard: int) -> Leaving:
-        asked: Node | None = None
-        for child in node.children:
-            if child.kind_id == KIND.condition_clause:
-                asked = child
-            elif asked is not None and child.is_named and child.kind_id != KIND.comment:
-                text = self.visit_condition(asked, guard)
-                self.visit_statement(child, self.guard("while", text, self.find_line(node), guard))
-                return STAYS
+        asked, body = node.child_by_field_name("condition"), node.child_by_field_name("body")
+        if asked is not None and body is not None:
+            text = self.visit_condition(asked, guard)
+            self.visit_statement(body, self.guard("while", text, self.find_line(node), guard))
         return STAYS
 
     def read_for_statement(self, node: Node, guard: int) -> Leaving:
-        children = list_children(node)
-        semicolons = 0
+        fields = ("initializer", "condition", "update", "body")
+        begun, asked, update, body = map(node.child_by_field_name, fields)
         text = ""
-        update: list[Node] = []
-        body: Node | None = None
-        closed = False
-        for child in children:
-            number = child.kind_id
-            if number == KIND.semicolon:
-                semicolons += 1
-            elif not child.is_named:
-                closed = closed or child.kind_id == KIND.closing
-            elif closed:
-                body = child
-            elif number in (KIND.declaration, KIND.init_statement):
-                self.visit_statement(child, guard)
-                semicolons += 1
-            elif semicolons == 0:
-                self.follow(child, guard, READ, None)
-            elif semicolons == 1:
-                self.follow(child, guard, READ, None)
-                text = self.format_condition(child)
-            else:
-                update.append(child)
+        if begun is not None:
+            self.follow(begun, guard, READ, None)
+        if asked is not None:
+            self.follow(asked, guard, READ, None)
+            text = self.format_condition(asked)
         inner = self.guard("while", text or "true", self.find_line(node), guard)
         if body is not None:
             self.visit_statement(body, inner)
-        for child in update:
-            self.follow(child, inner, READ, None)
+        if update is not None:
+            self.follow(update, inner, READ, None)
         return STAYS
 
     def read_for_range_loop(self, node: Node, guard: int) -> Leaving:

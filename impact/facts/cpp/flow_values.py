@@ -513,11 +513,7 @@ class FunctionReader:
         path, local = self.visit_path(operand, guard)
         if local:
             self.touch(path, WRITE)
-        sign = (
-            "+="
-            if "++" in (self.text[node.start_byte : node.start_byte + 2], self.text[node.end_byte - 2 : node.end_byte])
-            else "-="
-        )
+        sign = "+=" if any(child.type == "++" for child in children) else "-="
         self.assignments.append(Assignment(path, FlowExpr("number", "1"), self.find_line(node), guard, "", sign))
         return FlowExpr("name", path)
 
