@@ -26,7 +26,7 @@ def rosrun(package: str, executable: str, arguments: Iterable[str] = ()) -> Laun
         elif old == "__ns":
             namespace = f"/{new.strip('/')}"
         elif old.startswith("_") and not old.startswith("__"):
-            private.append(LaunchParameter(old[1:], new, wrap(new), _HERE))
+            private.append(LaunchParameter(old[1:], wrap(new), _HERE))
         elif not old.startswith("__"):
             remaps.append(Remap(wrap(old), wrap(new), _HERE))
     started = Started(

@@ -23,9 +23,7 @@ from .result import EMPTY, Launched, LaunchParameter, LaunchSources, Remap, Sett
 from .text import (
     LaunchText,
     make_unknown,
-    parse_ros1_value,
     parse_truth,
-    parse_yaml_value,
     resolve,
     show,
     show_condition,
@@ -273,12 +271,8 @@ class _Launch(Filling):
         name = self.read_name(action)
         if name is None:
             return None
-        text = self.read_field(action, "value")
-        type_ = find_literal(action.get("type")) or ""
-        value: Any = text.value
-        if value is not None and type_ not in ("str", "string"):
-            value = parse_yaml_value(value)
-        return LaunchParameter(name, value, text, self.locate_line(action.line), tuple(self.open[self.scope.open :]))
+        text, at = self.read_field(action, "value"), self.locate_line(action.line)
+        return LaunchParameter(name, text, at, tuple(self.open[self.scope.open :]))
 
     def make_setting_file(self, action: Action) -> SettingFile:
         """A parameter file of a ROS 2 node."""
@@ -315,18 +309,13 @@ class _Launch(Filling):
             text = self.read_field(action, "value")
         else:
             text = make_unknown(show(action.get(given) or make_literal("")), f"it is {OF_RUNNING[given]}")
-        value = None
-        if text.value is not None:
-            value = parse_ros1_value(text.value.strip(), find_literal(action.get("type")) or "auto")
-        self.put(full.value, value, text, action.line)
+        self.put(full.value, text, action.line)
 
-    def put(self, name: str, value: Any, text: LaunchText, line: int) -> None:
-        if self.open:
-            before = self.server.get(name)
-            if before is not None and before.text.value != text.value:
-                text, value = make_unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}"), None
-        self.server.pop(name, None)
-        self.server[name] = LaunchParameter(name, value, text, self.locate_line(line), tuple(self.open))
+    def put(self, name: str, text: LaunchText, line: int) -> None:
+        before = self.server.pop(name, None)
+        if self.open and before is not None and before.text.value != text.value:
+            text = make_unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}")
+        self.server[name] = LaunchParameter(name, text, self.locate_line(line), tuple(self.open))
 
     def serve_file(self, action: Action, namespace: LaunchText) -> None:
         """Does a <rosparam>."""
@@ -353,7 +342,7 @@ class _Launch(Filling):
             entries, fill = parameters(self.fill(content or make_literal("")).shown).entries, False
         for entry in self.substitute_entries(entries or ()) if fill else entries or ():
             key = "/".join(part.strip("/") for part in (full.value or "/", *entry.path) if part.strip("/"))
-            self.put(f"/{key}", entry.value, wrap(str(entry.value)), action.line)
+            self.put(f"/{key}", wrap(str(entry.value)), action.line)
 
     def do_node(self, action: Action) -> None:
         if self.generation == 1:
@@ -433,7 +422,7 @@ class _Launch(Filling):
                     else:
                         remaps.append(Remap(wrap(old), wrap(new), self.locate_line(line)))
                 elif option in ("-p", "--param"):
-                    settings.append(LaunchParameter(old, parse_yaml_value(new), wrap(new), self.locate_line(line)))
+                    settings.append(LaunchParameter(old, wrap(new), self.locate_line(line)))
                 elif option == "--params-file":
                     settings.append(SettingFile(text, self.read_entries(word), self.locate_line(line)))
                 option = ""
@@ -515,7 +504,7 @@ class _Launch(Filling):
                 continue
             if old.startswith("_"):
                 if full.value is not None:
-                    self.put(f"{full.value}/{old[1:]}", parse_ros1_value(new), wrap(new), action.line)
+                    self.put(f"{full.value}/{old[1:]}", wrap(new), action.line)
             else:
                 remaps.append(Remap(wrap(old), wrap(new), self.locate_line(action.line)))
         kind, plugin = ("test" if action.kind == "test" else "node"), EMPTY

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterEntry, ParameterFile
@@ -43,10 +43,9 @@ class Remap(NamedTuple):
 
 class LaunchParameter(NamedTuple):
     """A parameter. name: private to its node (`scan_topic`), or global on ROS 1's parameter server (`/robot/scan`).
-    value: bool, int, float, str, None or list, if text.value is known. conditions: as in Started."""
+    conditions: as in Started."""
 
     name: str
-    value: Any
     text: LaunchText
     at: ShareLine
     conditions: tuple[str, ...] = ()
@@ -126,8 +125,7 @@ class Launched(NamedTuple):
                 continue
             for key, entry in select_file_values(setting, full).items():
                 found.pop(key, None)
-                shown = str(entry.value)
-                found[key] = LaunchParameter(key, entry.value, wrap(shown), setting.at, setting.conditions)
+                found[key] = LaunchParameter(key, wrap(str(entry.value)), setting.at, setting.conditions)
         return found
 
 

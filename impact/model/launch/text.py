@@ -233,30 +233,18 @@ class _Evaluator:
         raise CannotTell(f"`{ast.unparse(node)[:80]}` is not evaluated")
 
 
-def parse_ros1_value(text: str, type_: str = "auto") -> Any:
-    """A parameter of ROS 1 from its text, as roslaunch's convert_value() makes it; the text where that would fail."""
-    kind = type_.lower().strip() or "auto"
+def parse_ros1_value(text: str) -> Any:
+    """An argument of ROS 1 as an expression sees it, as roslaunch's convert_value() makes it; the text where it is no
+    number and no bool."""
     try:
-        if kind == "auto":
-            if "." in text:
-                return float(text)
-            if "_" not in text:
-                return int(text)
-        elif kind == "int":
-            return int(text)
-        elif kind == "double":
+        if "." in text:
             return float(text)
+        if "_" not in text:
+            return int(text)
     except ValueError:
         pass
-    if kind in ("auto", "bool", "boolean"):
-        word = text.lower().strip()
-        if word in ("true", "false"):
-            return word == "true"
-        if kind != "auto" and word in ("1", "0"):
-            return word == "1"
-    if kind == "yaml":
-        return parse_yaml_value(text)
-    return text
+    word = text.lower().strip()
+    return word == "true" if word in ("true", "false") else text
 
 
 def parse_yaml_value(text: str) -> Any:
