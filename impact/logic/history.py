@@ -322,6 +322,3 @@ def _parse_time(text: str) -> int:
     except ValueError:
         raise ValueError(f"`{shown(text)}` is no date; write it as 2024-03-01") from None
     return int((when if when.tzinfo else when.replace(tzinfo=timezone.utc)).timestamp())
-
-
-__all__ = ["Commit", "CommitHistory", "PackageFile", "PackageState", "TreeError"]

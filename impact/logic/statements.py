@@ -14,7 +14,7 @@ from ..model.flow.code import FlowCode, Fn, get_tail
 from ..model.flow.endpoints import Site, Statement, unparse
 from ..model.flow.graph import GuardAt, Node, Trigger, Way
 from ..model.flow.join import Join, Owner
-from ..model.flow.nodes import BuiltPackage
+from ..model.flow.nodes import BuiltPackage, asks_for_name, find_entry_point
 from ..model.flow.qos import find_qos
 from ..model.flow.values import FlowValue
 from .history import PackageFile, PackageState
@@ -397,14 +397,14 @@ def read_build(state: PackageState, facts: Mapping[str, Any]) -> BuiltPackage:
                         components[name] = (*components.get(name, ()), *((program,) if program else ()))
         elif file.kind == "setup_py":
             for name, module, _, _ in one.entry_points:
-                module, _, function = module.partition(":")
-                stem = module.strip().replace(".", "/")
-                where = next((p for p in (f"{stem}.py", f"src/{stem}.py", f"{stem}/__init__.py") if p in paths), None)
-                if where is not None:
-                    scripts[name] = f"{where}:{function.strip() or 'main'}"
+                where = find_entry_point(module, "", paths)
+                if where:
+                    scripts[name] = where
     reached = {where.partition(":")[0] for where in scripts.values()}
     for file in state.files:
-        if file.kind == "python" and file.path not in reached and _starts(facts.get(file.path)):
+        one = facts.get(file.path)
+        program = file.kind == "python" and isinstance(one, FlowFile) and asks_for_name(one)
+        if program and file.path not in reached:
             scripts.setdefault(file.path.rpartition("/")[2].removesuffix(".py"), file.path)
     return BuiltPackage(state.name, executables, libraries, components, scripts, links)
 
@@ -430,14 +430,6 @@ def _iterate_commands(facts: Any) -> Iterator[tuple[str, list[str]]]:
         elif command.name == "project" and arguments:
             values["PROJECT_NAME"] = arguments[:1]
         yield command.name, arguments
-
-
-def _starts(facts: Any) -> bool:
-    """Whether a Python file is a program: one that asks for `__main__`, or that talks outside of any function."""
-    if not isinstance(facts, FlowFile):
-        return False
-    body = next((fn for fn in facts.functions if not fn.name), None)
-    return body is not None and any("__main__" in guard.text for guard in body.guards)
 
 
 def find_facts_kind(file: PackageFile) -> str:

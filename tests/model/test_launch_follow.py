@@ -6,6 +6,7 @@ from xml.sax.saxutils import quoteattr
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from launched_names import full_name
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.model.launch.follow import MOST_ACTIONS, follow
@@ -38,7 +39,7 @@ def launched(files, top="p/a.launch", **options):
 
 
 def names(launch):
-    return [started.full_name.value or started.full_name.shown for started in launch.started]
+    return [full_name(started).value or full_name(started).shown for started in launch.started]
 
 
 def remaps(started):
@@ -46,7 +47,8 @@ def remaps(started):
 
 
 def values(launch, place=0, name=""):
-    found = launch.collect_parameters(launch.started[place], name)
+    started = launch.started[place]
+    found = launch.collect_parameters(started, name or full_name(started).value or "")
     return {key: setting.text.value for key, setting in found.items()}
 
 
@@ -174,7 +176,7 @@ def test_nodelets():
 
 def test_tests_of_ros1():
     launch = launched(f'<launch>{node("n")}<test pkg="k" type="t" name="m" test-name="tries"/></launch>')
-    assert [(s.kind, s.full_name.value) for s in launch.started] == [("node", "/n"), ("test", "/m")]
+    assert [(s.kind, full_name(s).value) for s in launch.started] == [("node", "/n"), ("test", "/m")]
 
 
 # ROS 2
@@ -288,7 +290,7 @@ def test_composables():
             ComposableNode(package='k', plugin='k::B', condition=IfCondition('false'))]),
         LoadComposableNodes(target_container='other', composable_node_descriptions=[
             ComposableNode(package='k', plugin='k::C', name='c')])""")
-    assert [(s.kind, s.plugin.value, s.full_name.value) for s in launch.started] == [
+    assert [(s.kind, s.plugin.value, full_name(s).value) for s in launch.started] == [
         ("container", "", "/g/s/box"), ("composable", "k::A", "/g/t/a"), ("composable", "k::C", "/g/c"),
     ]  # fmt: skip
     assert remaps(launch.started[1]) == [("x", "y")]
@@ -449,8 +451,8 @@ def test_following_never_raises(elements, generation):
     text = f"<launch>{''.join(map(written, elements))}</launch>"
     launch = launched(text, generation=generation)
     for started in launch.started:
-        launch.collect_parameters(started)
-        assert started.full_name.value is None or started.full_name.value.startswith("/")
+        launch.collect_parameters(started, full_name(started).value or "")
+        assert full_name(started).value is None or full_name(started).value.startswith("/")
 
 
 def test_no_launch_file():

@@ -14,6 +14,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from launched_names import full_name
 from rosimpact.impact.facts.launch.flow import extract
 from rosimpact.impact.facts.launch.parameter_files import extract as parameters
 from rosimpact.impact.model.flow.names import join_name, parse_ros2_rule, remap_ros1_name, remap_ros2_name
@@ -76,7 +77,7 @@ def runs(started: Started, row):
 def answer(started: Started, asks, named):
     """What a node calls a name, or itself; the reasons where that is not known."""
     if asks == "node":
-        return started.full_name.value or started.full_name.reasons
+        return full_name(started).value or full_name(started).reasons
     name, namespace = started.name.value or named or "unnamed", started.namespace.value or "/"
     remaps = [(r.old.value, r.new.value) for r in started.remaps if r.old.value and r.new.value]
     if started.generation == 1:

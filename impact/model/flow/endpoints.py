@@ -224,7 +224,7 @@ class Sites:
             return found
         lost = "the namespace of its node handle is not known"
         return tuple(
-            FlowValue(None, "unresolved", f"`{prefix}/{value.text}`: {lost}", value.parameter)
+            FlowValue(None, "unresolved", f"`{prefix}/{value.text}`: {lost}")
             if value.text is not None and value.text[:1] not in ("/", "~")
             else value
             for value in found

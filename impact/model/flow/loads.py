@@ -20,12 +20,11 @@ _MOST = 64
 
 class Loaded(NamedTuple):
     """A nodelet in a node. name: full. plugin: as pluginlib knows it (`image_proc/rectify`). remaps: pairs of names as
-    written, resolved as the nodelet's own are. use: the call that loads it."""
+    written, resolved as the nodelet's own are."""
 
     name: str
     plugin: str
     remaps: tuple[tuple[str, str], ...]
-    use: FrameworkCall
 
     def remap_name(self, name: str) -> str:
         """The full name of a name that the nodelet uses."""
@@ -45,7 +44,7 @@ def list_loaded(calls: Calls, functions: set[Fn], values: FlowValues, node: str)
                     if name.text and plugin.text:
                         full = name.text.replace(NODE, node)
                         full = full if full.startswith("/") else f"{node.rpartition('/')[0]}/{full}"
-                        yield Loaded(full, plugin.text, tuple(_list_remaps(calls, use, inside)), use)
+                        yield Loaded(full, plugin.text, tuple(_list_remaps(calls, use, inside)))
 
 
 def _list_ways(calls: Calls, fn: Fn, functions: set[Fn], depth: int = 0) -> Iterator[dict[Fn, FlowCall]]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...facts.flow import FlowExpr
+from ...facts.flow import FlowExpr, FlowFile
 from .code import FlowCode, Fn, get_tail, list_made
 from .endpoints import Sites
 from .modules import CodeFile
@@ -47,6 +47,24 @@ class BuiltPackage(NamedTuple):
     scripts: Mapping[str, str]
     links: Mapping[str, tuple[str, ...]]
     plugins: Mapping[str, str] = {}
+
+
+def find_entry_point(target: str, folder: str, paths: Collection[str]) -> str:
+    """The file and, behind a colon, the function that an entry point of a setup.py in a folder names; empty for a file
+    that is not among the paths."""
+    module, _, function = target.partition(":")
+    stem = module.strip().replace(".", "/")
+    for inside in (f"{stem}.py", f"src/{stem}.py", f"{stem}/__init__.py"):
+        path = f"{folder}/{inside}".lstrip("/")
+        if path in paths:
+            return f"{path}:{function.strip() or 'main'}"
+    return ""
+
+
+def asks_for_name(file: FlowFile) -> bool:
+    """Whether a Python file asks for its `__name__`, as programs do."""
+    top = (function for function in file.functions if not function.name)
+    return any("__main__" in guard.text for function in top for guard in function.guards)
 
 
 class CodeReach:

@@ -50,7 +50,10 @@ def select_graph(
         if not kept_nodes:
             raise NothingSelected(_explain("package with nodes", packages, [node.package for node in graph.nodes]))
     if nodes:
-        kept_nodes &= _select_nodes(graph, nodes)
+        named = _select_named(graph.nodes, nodes)
+        if not named:
+            raise NothingSelected(_explain("node", nodes, _list_names(graph.nodes)))
+        kept_nodes &= named
     if topics:
         fitting = {name for name in names if name and _fits(name, topics, ("", "/"))}
         if not fitting:
@@ -90,7 +93,7 @@ def check_names(
         raise NothingSelected(_explain("package", packages, known))
     if topics and not any(name and _fits(name, topics, ("", "/")) for name in names):
         raise NothingSelected(_explain("topic, service or action", topics, names))
-    if nodes and not any(name and _fits(name, nodes, ("",)) for node in every for name in _get_names(node)):
+    if nodes and not _select_named(every, nodes):
         raise NothingSelected(_explain("node", nodes, _list_names(every)))
 
 
@@ -118,11 +121,9 @@ def _list_names(nodes: Iterable[Node]) -> list[str]:
     return [name for node in nodes for name in _get_names(node)]
 
 
-def _select_nodes(graph: Graph, patterns: Sequence[str]) -> set[str]:
-    found = {node.id for node in graph.nodes if any(name and _fits(name, patterns, ("",)) for name in _get_names(node))}
-    if not found:
-        raise NothingSelected(_explain("node", patterns, _list_names(graph.nodes)))
-    return found
+def _select_named(nodes: Iterable[Node], patterns: Sequence[str]) -> set[str]:
+    """The ids of nodes of which a name fits."""
+    return {node.id for node in nodes if any(name and _fits(name, patterns, ("",)) for name in _get_names(node))}
 
 
 def _select_users(graph: Graph, names: Collection[str]) -> set[str]:
@@ -131,9 +132,7 @@ def _select_users(graph: Graph, names: Collection[str]) -> set[str]:
 
 def _find_near(graph: Graph, around: str, hops: int) -> tuple[set[str], set[str]]:
     """Nodes and names within some steps of a node or a name."""
-    begun = {
-        node.id for node in graph.nodes if any(name and _fits(name, (around,), ("",)) for name in _get_names(node))
-    }
+    begun = _select_named(graph.nodes, (around,))
     names = {e.topic for e in graph.endpoints if e.topic and _fits(e.topic, (around,), ("", "/"))}
     if not begun and not names:
         known = [node.id for node in graph.nodes] + [e.topic for e in graph.endpoints]

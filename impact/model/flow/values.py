@@ -44,12 +44,11 @@ _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
 
 class FlowValue(NamedTuple):
-    """text: what it is worth, None when it is not known; reason says why then. parameter: whose default it is."""
+    """text: what it is worth, None when it is not known; reason says why then."""
 
     text: str | None
     how: How = "literal"
     reason: str = ""
-    parameter: str = ""
 
 
 class FlowValues:
@@ -144,8 +143,7 @@ class FlowValues:
             hows = {one.how for one in row}
             known: list[How] = [how for how in _LEAST if how in hows]
             how = known[0] if known else _LEAST[-1]
-            named = next((one.parameter for one in row if one.parameter), "")
-            yield FlowValue("".join(one.text or "" for one in row), how, "", named)
+            yield FlowValue("".join(one.text or "" for one in row), how)
 
     @cached_property
     def command_line(self) -> CommandLine:
@@ -405,16 +403,13 @@ class FlowValues:
         given = self.settings.get(setting) if name else None
         self.asked[setting] = given
         if given is not None:
-            yield FlowValue(given, "launch", "", name)
+            yield FlowValue(given, "launch")
             return
         default = self.calls.find_argument(use, use.row.default) if use.row.default else None
         target = self.calls.find_argument(use, use.row.variable) if use.row.variable else None
         if default is not None and not (default.kind == "name" and default == target):
             for one in self._evaluate(default, use.fn, use.call.line, seen):
-                if one.text is None:
-                    yield one
-                else:
-                    yield FlowValue(one.text, "default", "", name or one.parameter)
+                yield one if one.text is None else FlowValue(one.text, "default")
             return
         yielded = False
         mark = ("parameter", name)
@@ -427,7 +422,7 @@ class FlowValues:
                     yield one
         if not yielded:
             reason = f"the parameter `{name}` has no default here" if name else "which parameter it is, is not known"
-            yield FlowValue(None, "unresolved", reason, name)
+            yield FlowValue(None, "unresolved", reason)
 
     @cached_property
     def declared(self) -> dict[str, list[FrameworkCall]]:

@@ -20,11 +20,9 @@ from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
 from .file_selection import compute_stamp, make_code_selector
 from .graph import Graph
-
-# What is remembered is read without them.
 from .join import Join
 from .launches import Launch
-from .nodes import BuiltPackage
+from .nodes import BuiltPackage, asks_for_name, find_entry_point
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
 _BUILD = frozenset(
@@ -120,8 +118,6 @@ def list_code(workspace: Workspace) -> dict[str, str]:
 
 def list_built(workspace: Workspace, files: Mapping[str, FlowFile]) -> Iterator[BuiltPackage]:
     """What the build of each package makes. files: flow facts by path."""
-    from .nodes import BuiltPackage
-
     libraries = {
         target.name: target.sources
         for package in workspace
@@ -163,12 +159,9 @@ def _find_scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, 
     for path, setup in package.linked.setup:
         folder = path.rpartition("/")[0]
         for name, target, _, _ in setup.entry_points:
-            module, _, function = target.partition(":")
-            stem = module.strip().replace(".", "/")
-            for inside in (f"{folder}/{stem}.py", f"{folder}/src/{stem}.py", f"{folder}/{stem}/__init__.py"):
-                if inside.lstrip("/") in present:
-                    found[name] = f"{inside.lstrip('/')}:{function.strip() or 'main'}"
-                    break
+            where = find_entry_point(target, folder, present)
+            if where:
+                found[name] = where
     reached = {where.partition(":")[0] for where in found.values()}
     programs = {item for install in package.build.installs if install.kind == "programs" for item in install.items}
     runs = [path for path in package.linked.files if path in files and _runs(files[path])]
@@ -182,17 +175,13 @@ def _find_scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, 
 
 def _runs(file: FlowFile) -> bool:
     """Whether a Python file does something when it is started: it asks for its name, or makes itself a node."""
-    if file.language != "python":
-        return False
-    top = [function for function in file.functions if not function.name]
-    asks = any("__main__" in guard.text for function in top for guard in function.guards)
-    return asks or any(call.callee == "rospy.init_node" for function in top for call in function.calls)
+    top = (function for function in file.functions if not function.name)
+    begins = any(call.callee == "rospy.init_node" for function in top for call in function.calls)
+    return file.language == "python" and (begins or asks_for_name(file))
 
 
 def join_code(workspace: Workspace) -> Join:
     """The code of a workspace, joined."""
-    from .join import Join
-
     extraction = get_facts(workspace)
     packages = list_code(workspace)
     extraction.preload(packages)

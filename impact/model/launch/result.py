@@ -7,8 +7,8 @@ from typing import NamedTuple, Protocol
 
 from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterEntry, ParameterFile
-from ..flow.names import join_name, normalise
-from .text import LaunchText, resolve, wrap
+from ..flow.names import normalise
+from .text import LaunchText, wrap
 
 EMPTY = wrap("")
 
@@ -86,18 +86,6 @@ class Started(NamedTuple):
     settings: tuple[LaunchParameter | SettingFile, ...] = ()
     arguments: tuple[LaunchText, ...] = ()
 
-    @property
-    def full_name(self) -> LaunchText:
-        """Namespace and name together; unknown where either is, or where the name is left to the program."""
-        if self.name.value == "":
-            return LaunchText(
-                None, join_name(self.namespace.shown or "/", "<its own>"), ("the name is left to the program",)
-            )
-        full = resolve(self.namespace if self.namespace.value != "" else wrap("/"), self.name)
-        if full.value is not None and full.value[:1] != "/":
-            return LaunchText(None, full.shown, (f"`{full.value}` is no name of a node",))
-        return full
-
 
 class Launched(NamedTuple):
     """All that a launch does. server: ROS 1's parameters by their global names. files: (package, path) of the launch
@@ -108,10 +96,8 @@ class Launched(NamedTuple):
     files: tuple[tuple[str, str], ...]
     actions: int = 0
 
-    def collect_parameters(self, started: Started, name: str = "") -> dict[str, LaunchParameter]:
-        """The private parameters of a node. name: its full name where the launch leaves it to the program; without one
-        only what holds for any node is given."""
-        full = name or started.full_name.value or ""
+    def collect_parameters(self, started: Started, full: str) -> dict[str, LaunchParameter]:
+        """The private parameters of a node. full: its full name; of one that is empty, only what holds for any node."""
         if started.generation == 1:
             below = f"{full}/"
             return {
