@@ -53,7 +53,7 @@ def _describe_undeclared(workspace: Workspace, launch: str, arguments: Mapping[s
     """A note for each argument that neither the launch file nor any that it includes declares."""
     from ..model.flow.started import follow_workspace_launch  # of no use to a graph of code alone
 
-    declared = sorted({argument.name for argument in follow_workspace_launch(workspace, launch, arguments).arguments})
+    declared = sorted(follow_workspace_launch(workspace, launch, arguments).arguments)
     known = f"it declares {', '.join(f'`{name}`' for name in declared)}" if declared else "it declares none"
     return tuple(
         f"--set {name}: `{launch}` has no such argument; {known}" for name in arguments if name not in declared

@@ -261,6 +261,7 @@ def test_includes_of_ros2():
     # What an included file declares stays: launch has one set of configurations unless a group scopes it
     assert names(launch) == ["/r1", "/r1_c", "/over"]
     assert remaps(launch.started[0]) == [("/tf", "tf"), ("a", "b")]
+    assert launch.arguments == {"robot", "name", "left"}
 
 
 def test_one_argument_given_may_name_another():

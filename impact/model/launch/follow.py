@@ -54,8 +54,8 @@ def follow(
     launch = _Launch(sources, given, variables, generation, most, changed or ChangedFiles())
     with contextlib.suppress(RecursionError):  # what is nested too deeply is not followed
         launch.include((package, posixpath.normpath(path).lstrip("/")))
-    files = tuple(dict.fromkeys(launch.files))
-    return Launched(tuple(launch.started), launch.server, files, most - max(0, launch.budget))
+    files, done = tuple(dict.fromkeys(launch.files)), most - max(0, launch.budget)
+    return Launched(tuple(launch.started), launch.server, files, frozenset(launch.declared), done)
 
 
 class _Launch(Filling):
@@ -78,6 +78,7 @@ class _Launch(Filling):
         self.started: list[Started] = []
         self.server: dict[str, LaunchParameter] = {}
         self.files: list[tuple[str, str]] = []
+        self.declared: set[str] = set()
 
     def include(self, place: tuple[str, str], action: Action | None = None) -> None:
         """Follows a file that an action includes; without one the file that is launched."""
@@ -155,6 +156,7 @@ class _Launch(Filling):
                 self.scope.arguments[name] = make_unknown(f"{name}", reason)
             else:
                 self.set(name, self.fill(default))
+        self.declared.add(name)
 
     def do_let(self, action: Action) -> None:
         name = self.read_name(action)

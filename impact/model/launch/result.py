@@ -89,11 +89,12 @@ class Started(NamedTuple):
 
 class Launched(NamedTuple):
     """All that a launch does. server: ROS 1's parameters by their global names. files: (package, path) of the launch
-    files read. actions: how many were done."""
+    files read. arguments: those that they declare. actions: how many were done."""
 
     started: tuple[Started, ...]
     server: Mapping[str, LaunchParameter]
     files: tuple[tuple[str, str], ...]
+    arguments: frozenset[str] = frozenset()
     actions: int = 0
 
     def collect_parameters(self, started: Started, full: str) -> dict[str, LaunchParameter]:
