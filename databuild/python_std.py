@@ -88,9 +88,7 @@ class Stubs:
         for name, path in self.files.items():
             first, last = self._find_lifetime(name)
             if first <= minor <= last:
-                tree = _Resolver(minor).visit(ast.parse(path.read_bytes()))
-                tree = _Hider(tree).visit(tree)
-                surface = extract(ast.unparse(ast.fix_missing_locations(tree)).encode())
+                surface = extract(prepare_stub(path.read_bytes(), minor))
                 public = tuple(bound for bound in surface.names if not bound.private)
                 surface = msgspec.structs.replace(surface, names=public)
                 yield name, InstalledModule(name, "", path.name == "__init__.pyi", surface)
@@ -196,6 +194,13 @@ class _Resolver(ast.NodeTransformer):
 
     def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef):
         return self.visit_FunctionDef(node)
+
+
+def prepare_stub(data: bytes, minor: int) -> bytes:
+    """A stub as a module of one minor version of Python 3."""
+    tree = _Resolver(minor).visit(ast.parse(data))
+    tree = _Hider(tree).visit(tree)
+    return ast.unparse(ast.fix_missing_locations(tree)).encode()
 
 
 # A decorator, and bases without members, that readers of surfaces know by their names.

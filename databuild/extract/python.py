@@ -13,6 +13,7 @@ from ...impact.facts.python.reader import EXCEPT, IMPORT_ERRORS, TRY
 from ...impact.facts.python.source import read
 from ...impact.facts.python.surface import LATE, Bound, ImportedName, ModuleSurface, make_parameters, unparse_even
 from ...impact.facts.python.text import format_dotted, list_caught_exceptions
+from .module_getattr import read_module_getattr
 
 LONGEST = 80
 _WARNINGS = frozenset(("DeprecationWarning", "PendingDeprecationWarning", "FutureWarning"))
@@ -36,7 +37,7 @@ def extract(data: bytes) -> ModuleSurface:
     if source.tree is None:
         problems = source.problems or tuple(source.python2_only[:1])
         return ModuleSurface((), (), parsed=False, problems=problems)
-    reader = _Module()
+    reader = _Module(source.tree.body)
     try:
         reader.visit_block(source.tree.body, "", ())
     except RecursionError:
@@ -56,7 +57,8 @@ def extract(data: bytes) -> ModuleSurface:
 class _Module:
     """One walk over what runs when the module is imported, and over the bodies of its classes' methods."""
 
-    def __init__(self) -> None:
+    def __init__(self, body: list[ast.stmt]) -> None:
+        self.body = body
         self.names: list[Bound] = []
         self.imports: list[ImportedName] = []
         self.all: list[str] | None = None
@@ -164,11 +166,22 @@ class _Module:
                 deprecated=_find_deprecation(node.decorator_list) or _find_warning(node.body), conditions=conditions,
             )
         )  # fmt: skip
-        if node.name == "__getattr__":
+        if node.name == "__getattr__" and not scope and isinstance(node, ast.FunctionDef):
+            self.add_served(node, conditions)
+        elif node.name == "__getattr__":
             self.open.append((scope, "__getattr__"))
         elif scope and node.name == "__getattribute__":
             self.open.append((scope, "__getattribute__"))
         self.visit_function_body(node, scope if kind != "staticmethod" else "", conditions)
+
+    def add_served(self, node: ast.FunctionDef, conditions: tuple[Condition, ...]) -> None:
+        """What a module's `__getattr__` serves."""
+        found = read_module_getattr(node, self.body)
+        if found.served is None:
+            self.open.append(("", "__getattr__"))
+        for name in sorted(found.served or found.warned):
+            warning = "deprecated" if name in found.warned else ""
+            self.names.append(Bound(name, "attribute", node.lineno, deprecated=warning, conditions=conditions))
 
     def visit_function_body(self, node, scope: str, conditions: tuple[Condition, ...]) -> None:
         """What a function binds outside of itself: attributes of `self`, names that it declares global."""

@@ -159,6 +159,37 @@ def test_all(text, everything, more):
     assert (found.all, found.all_open) == (everything, more)
 
 
+SERVES = [
+    ("if name == 'a':\n    return 1", {"a": ""}),
+    (
+        "if name in ('a', 'b'):\n    warnings.warn('x', DeprecationWarning)\n    return load(name)",
+        {"a": "deprecated", "b": "deprecated"},
+    ),
+    ("if name not in OLD:\n    raise AttributeError(name)\nreturn OLD[name]", {"c": "", "d": ""}),
+    ("try:\n    made, why = MADE[name]\nexcept KeyError:\n    pass\nelse:\n    return made", {"e": "", "f": ""}),
+    ("try:\n    return globals()[name]\nexcept KeyError:\n    pass", {}),
+    ("if name in OLD:\n    return importlib.import_module(f'arm.{name}')", {}),
+    ("if name in OLD:\n    raise AttributeError(OLD[name])", {}),
+    ("if name in elsewhere.NAMES:\n    return 1", None),
+    ("if name in TAKEN:\n    return 1", None),
+    ("if name in GROWN:\n    return 1", None),
+    ("return load(name)", None),
+    ("for one in OLD:\n    return 1", None),
+]
+
+
+@pytest.mark.parametrize(("body", "served"), SERVES)
+def test_what_a_module_getattr_serves(body, served):
+    text = (
+        "from elsewhere import TAKEN\nOLD = {'c': 1}\nOLD['d'] = 2\nGROWN = []\nGROWN.append(n)\n"
+        "PAIRS = [('e', 1), ('f', 2)]\nMADE = {}\nMADE.update({n: (a, n) for n, a in PAIRS})\n"
+        f"def __getattr__(name):\n{textwrap.indent(body, '    ')}\n    raise AttributeError(name)\n"
+    )
+    found = surface(text)
+    names = {one.name: one.deprecated for one in found.names if one.name in "abcdef"}
+    assert (None if found.open else names) == served
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [

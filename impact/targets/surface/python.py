@@ -38,6 +38,8 @@ class SurfaceNames:
     def __init__(self, surface: PythonSurface):
         self.surface = surface
         self.modules: dict[str, InstalledModule] = {module.name: module for module in surface.modules}
+        # What modules lie in, with or without a file of its own.
+        self._folders = {name[:at] for name in self.modules for at, char in enumerate(name) if char == "."}
         self._bound: dict[str, dict[str, list[Bound]]] = {}
         self._taken: dict[str, dict[str, list[ImportedName]]] = {}
 
@@ -51,7 +53,7 @@ class SurfaceNames:
                 return self.follow_names(self.make_module_entry(module), parts[length:])
         if self._is_hidden(dotted) or self.surface.unresolved:
             return UNKNOWN
-        if any(name.startswith(f"{dotted}.") for name in self.modules):
+        if dotted in self._folders:
             return PythonName(dotted, "module")  # a folder without __init__.py
         return None
 
@@ -98,7 +100,7 @@ class SurfaceNames:
                 return _make_entry(dotted, written)
             for taken in reversed(self.index_imports(module).get(name, ())):
                 return self._resolve_import(module, taken, depth)
-        if dotted in self.modules or any(other.startswith(f"{dotted}.") for other in self.modules):
+        if dotted in self.modules or dotted in self._folders:
             return PythonName(dotted, "module")
         if self._is_hidden(dotted):
             return UNKNOWN
