@@ -54,7 +54,7 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     packages' surfaces are read; empty for those of the shipped ones. lists: the folder of lists of an apt, with its
     Contents indices, by platform (`debian bookworm`). apt: an apt configuration with folders of its own, by release
     of Debian. gcc: a folder of unpacked packages, by version. stubs: folders `stdlib` of typeshed, oldest first.
-    commands: folders of packages that define CMake commands."""
+    commands: folders of packages that define CMake commands. pypi: whether pip may download wheels."""
 
     rosdistro: str = ""
     meta_ros: str = ""
@@ -67,6 +67,7 @@ class Sources(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     commands: tuple[str, ...] = ()
     cmake: CMakeSources = CMakeSources()
     includes: IncludeSources = IncludeSources()
+    pypi: bool = False
 
 
 class BuildStep(NamedTuple):
@@ -188,7 +189,9 @@ STEPS = (
     BuildStep("libraries", ("libraries.sqlite", "changes_debian.json", "uses_debian.json", "changes_library_tags.json"),
          ("surfaces", "providers"), _build_libraries),
     BuildStep("includes", ("includes.json.zst",), ("surfaces",), _build_includes),
-    BuildStep("superseded", (), ("python-std", "libraries"),
+    BuildStep("pypi", ("changes_pypi.json.zst",), (),
+         lambda sources, data, own: _call("databuild.pypi", own, "--output", data) if sources.pypi else None),
+    BuildStep("superseded", (), ("python-std", "libraries", "pypi"),
          lambda sources, data, own: _call("databuild.superseded", "--write") if sources.clones else None),
 )  # fmt: skip
 """Every builder, each behind those whose files it reads."""
@@ -230,6 +233,7 @@ def read_sources(file: Path) -> Sources:
         includes=IncludeSources(
             named.includes.clones, tuple(f"{version}={locate(path)}" for version, path in installed)
         ),
+        pypi=named.pypi,
     )
 
 

@@ -15,10 +15,11 @@ stored, each stored version tells whether the name is there. A row is
 Of rows that were derived from release tags, which are what surfaces are made from too, only the unknown ones and those
 that say more stay, and of reviewed rows all but the answered, wrong and bare ones. A contradicted bound is first
 replaced by the versions that the stored ones tell, of each generation of ROS (see derive_bounds). Platform libraries
-have no stored surfaces, and their rows stay. Of interfaces, their fields and constants, and of what is generated from
-them, the table of interfaces alone is asked, so that a row only lends a replacement. Rows of uses stay too: a pattern
-that is only a qualified name is answered by the surfaces, and still finds places that the resolver does not see, such
-as template arguments and braced initialisers.
+have no stored surfaces. Their rows stay, but for those of Python that changes_pypi.json answers for every version that
+a platform has: where they name a replacement, that alone is kept. Of interfaces, their fields and constants, and of
+what is generated from them, the table of interfaces alone is asked, so that a row only lends a replacement. Rows of
+uses stay too: a pattern that is only a qualified name is answered by the surfaces, and still finds places that the
+resolver does not see, such as template arguments and braced initialisers.
 
     python -P -m rosimpact.databuild.superseded [--write]
 """
@@ -49,6 +50,8 @@ from ..impact.targets.surface.offers import find_standing
 from ..impact.targets.surface.store import load_shipped
 from ..impact.targets.symbol import Symbol
 from ..impact.targets.version import is_at_least
+from .includes import list_platform_versions
+from .pypi import FILE as PYPI_FILE
 
 _SIDES = {"api": ("c++",), "python": ("python",), "header": ("header",), "cmake": ("command", "target", "variable")}
 _SEPARATOR = {"c++": "::", "python": ".", "header": "\0"}
@@ -298,6 +301,9 @@ def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]
         # Of platform libraries nothing is stored; a name that comes back, or is only deprecated, says more.
         asked = not group.get("library") and not group["kind"].startswith("package")
         ros = _find_generation(group) if asked else None
+        if group.get("library") and file.name != PYPI_FILE:
+            kept += _drop_read_from_pypi(group, count)
+            continue
         by_bound: dict[tuple[tuple[str, str | int], ...], dict[str, str]] = {}
         for old, new in group["names"].items():
             found, rows = _judge(group, ros, old, new) if ros is not None else ("unknown", [{}])
@@ -307,6 +313,45 @@ def drop_superseded(file: Path) -> tuple[dict[str, Any], Counter[tuple[str, str]
                     by_bound.setdefault(tuple(bounds.items()), {})[old] = new
         kept += [{**group, **dict(bounds), "names": names} for bounds, names in by_bound.items()]
     return {**content, "changes": kept}, count
+
+
+def _drop_read_from_pypi(group: dict[str, Any], count: Counter[tuple[str, str]]) -> Iterator[dict[str, Any]]:
+    """A group of rows on a library without those that wheels answer, and what these say to write instead."""
+    left, instead = {}, {}
+    for old, new in group["names"].items():
+        told = _load_read_from_pypi().get((group["kind"], group["package"], old))
+        found = "unknown" if told is None else _compare_bounds(group, told)
+        bare = not group.get("removed_in") and not group.get("deprecated_in")
+        count[group["kind"], "more" if found == "answered" and new else found] += 1
+        if found == "answered" and new and not bare:
+            instead[old] = new
+        elif found != "answered" or new:
+            left[old] = new
+    shared = {key: value for key, value in group.items() if key not in ("removed_in", "deprecated_in", "names")}
+    for fields, names in ((group, left), (shared, instead)):
+        if names:
+            yield {**fields, "names": names}
+
+
+@cache
+def _load_read_from_pypi() -> dict[tuple[str, str, str], dict[str, Any]]:
+    groups = read_table(DATA / PYPI_FILE, dict[str, Any])["changes"]
+    return {(group["kind"], group["package"], old): group for group in groups for old in group["names"]}
+
+
+def _compare_bounds(group: dict[str, Any], told: dict[str, Any]) -> str:
+    """What wheels make of the bounds of a row, by the versions that platforms have; `unknown` where they say less."""
+    if group.get("back_in") or group.get("new_since") or group.get("unless"):
+        return "unknown"
+    versions = list_platform_versions(group["package"])
+    for bound in ("removed_in", "deprecated_in"):
+        said, read = group.get(bound, ""), told.get(bound, "")
+        if said and not read:
+            return "unknown"
+        gone = {version for version in versions if said and is_at_least(version, said)}
+        if said and gone != {version for version in versions if is_at_least(version, read)}:
+            return "contradicted"
+    return "answered"
 
 
 def _find_generation(group: dict[str, Any]) -> int | None:
@@ -353,15 +398,20 @@ def _judge(group: dict[str, Any], ros: int, old: str, new: str) -> tuple[str, li
     return found, rows
 
 
-def format_content(content: dict[str, Any]) -> str:
-    """A file's content, a line for each name."""
+def format_content(content: dict[str, Any], parting: str = "\n  ") -> str:
+    """A file's content. parting: what stands before each name, a line for each or a space."""
     groups = []
     for group in content["changes"]:
         head = ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in group.items() if key != "names")
-        names = ",\n  ".join(f"{json.dumps(old)}: {json.dumps(new)}" for old, new in group["names"].items())
-        groups.append(f'{{{head}, "names": {{\n  {names}\n}}}}')
-    rest = ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items() if key != "changes")
-    return '{"changes": [\n' + ",\n".join(groups) + "\n], " + rest + "}\n"
+        names = f",{parting}".join(f"{json.dumps(old)}: {json.dumps(new)}" for old, new in group["names"].items())
+        listed = names if parting == " " else f"{parting}{names}\n"
+        groups.append(f'{{{head}, "names": {{{listed}}}}}')
+    rest = {key: value for key, value in content.items() if key != "changes"}
+    if parting == " ":
+        lists = [f'"{key}": [\n' + ",\n".join(map(json.dumps, value)) + "\n]" for key, value in rest.items()]
+        return '{"changes": [\n' + "\n],\n".join([",\n".join(groups), *lists]) + "}\n"
+    last = ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in rest.items())
+    return '{"changes": [\n' + ",\n".join(groups) + "\n], " + last + "}\n"
 
 
 def write_table(file: Path, content: dict[str, Any]) -> None:
@@ -369,7 +419,8 @@ def write_table(file: Path, content: dict[str, Any]) -> None:
     if file.suffix == ".zst":
         write_file(file, zstandard.ZstdCompressor(level=19).compress(json.dumps(content).encode()))
     else:
-        write_file(file, format_content(content).encode())
+        parting = "\n  " if b'"names": {\n' in file.read_bytes() else " "
+        write_file(file, format_content(content, parting).encode())
 
 
 def main(arguments: list[str]) -> None:

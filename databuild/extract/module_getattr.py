@@ -41,6 +41,7 @@ class _Reader:
 
     def __init__(self, asked: str, module: list[ast.stmt]):
         self.asked, self.module = asked, module
+        self.blocks = _number_blocks(module)
         self.served: set[str] = set()
         self.warned: set[str] = set()
         self.refused: set[str] = set()
@@ -165,7 +166,7 @@ class _Reader:
                 return self._list_elements(node.args[0], depth + 1)
             return [] if maker in ("frozenset", "set", "dict", "list", "tuple") and not node.args else None
         elif isinstance(node, ast.Name):
-            parts = [self._list_elements(value, depth + 1) for value in self._list_values(node.id)] or [None]
+            parts = [self._list_elements(value, depth + 1) for value in self._list_values(node)] or [None]
         else:
             return None
         return None if None in parts else [one for part in parts for one in part or ()]
@@ -188,24 +189,45 @@ class _Reader:
             return None
         return [one.elts[place] for one in over if isinstance(one, ast.Tuple)]
 
-    def _list_values(self, name: str) -> list[ast.expr | None]:
-        """What is put into a variable of the module, anywhere in it; None for what cannot be read."""
-        found: list[ast.expr | None] = []
+    def _list_values(self, name: ast.Name) -> list[ast.expr | None]:
+        """What is put into a variable of the module, anywhere in it; None for what cannot be read. What stands in one
+        block with a later assignment, before a use, does not get there."""
+        found: list[tuple[int, ast.expr | None]] = []
+        start, block = 0, self.blocks.get(name.lineno)
         for node in (inner for statement in self.module for inner in ast.walk(statement)):
             if isinstance(node, (ast.Assign, ast.AnnAssign, ast.AugAssign)):
                 for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
-                    if isinstance(target, ast.Name) and target.id == name:
-                        found.append(node.value)
-                    elif isinstance(target, ast.Subscript) and ast.unparse(target.value) == name:
-                        found.append(ast.Set([target.slice]))
+                    if isinstance(target, ast.Name) and target.id == name.id:
+                        found.append((node.lineno, node.value))
+                        plain = not isinstance(node, ast.AugAssign) and self.blocks.get(node.lineno) == block
+                        start = max(start, node.lineno) if plain and block and node.lineno < name.lineno else start
+                    elif isinstance(target, ast.Subscript) and ast.unparse(target.value) == name.id:
+                        found.append((node.lineno, ast.Set([target.slice])))
             elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.args:
-                if ast.unparse(node.func.value) == name and node.func.attr in ("update", "extend"):
-                    found.extend(node.args)
-                elif ast.unparse(node.func.value) == name and node.func.attr in ("add", "append", "insert"):
-                    found.append(None)
+                if ast.unparse(node.func.value) == name.id and node.func.attr in ("update", "extend"):
+                    found += [(node.lineno, one) for one in node.args]
+                elif ast.unparse(node.func.value) == name.id and node.func.attr in ("add", "append", "insert"):
+                    found.append((node.lineno, None))
             elif isinstance(node, (ast.Import, ast.ImportFrom)):
-                found += [None for alias in node.names if (alias.asname or alias.name) == name]
-        return found
+                found += [(node.lineno, None) for alias in node.names if (alias.asname or alias.name) == name.id]
+        return [value for line, value in found if line >= start and (line < name.lineno or not start)]
+
+
+def _number_blocks(module: Iterable[ast.stmt]) -> dict[int, int]:
+    """Of each line of what runs on import, the innermost block that it stands in."""
+    found: dict[int, int] = {}
+    blocks = [list(module)]
+    for number, block in enumerate(blocks, 1):
+        for node in block:
+            lines = range(node.lineno, (node.end_lineno or node.lineno) + 1)
+            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                found = {line: at for line, at in found.items() if line not in lines}
+            else:
+                found.update(dict.fromkeys(lines, number))
+                blocks += [inner for _, inner in ast.iter_fields(node)
+                           if isinstance(inner, list) and inner and isinstance(inner[0], ast.stmt)]  # fmt: skip
+                blocks += [handler.body for handler in getattr(node, "handlers", ())]
+    return found
 
 
 def _warns(node: ast.stmt) -> bool:

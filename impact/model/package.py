@@ -1243,7 +1243,7 @@ class PackageJoin:
             names.extend(
                 NameUse(text, At(path, place.line, place.column), role, False, "python", place.conditions)
                 for text, place in mentioned
-                if text in self.watched.python
+                if text in self.watched.python and text.partition(".")[0] not in modules
             )
             syntax.extend(_list_syntax(path, role, facts))
         return imports, names, syntax, modules

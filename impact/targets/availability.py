@@ -107,7 +107,7 @@ def _is_coming(row: ChangeRow, target: DistroTarget, ahead: Horizon) -> bool:
         return True
     if ahead.platform and not row.library:
         return False
-    return find_version(row.package, row.library, target) != find_version(row.package, row.library, then)
+    return find_row_version(row, target) != find_row_version(row, then)
 
 
 class Availabilities:

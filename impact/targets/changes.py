@@ -3,9 +3,9 @@ no longer in a call, or does differently.
 
 The facts are in `data/changes*.json` (names), `uses*.json` (calls and members that only some versions take) and
 `behaviour.json` (the name and the call stay, and another result comes out), reviewed, each with its source; those of
-changes_debian.json are read from packages (databuild/debian.py), and count where no other file treats the name. A
-change is judged on a target by versions; for headers of ROS packages whose source trees are in the provider table, by
-what the very release has.
+changes_debian.json and changes_pypi.json are read from packages (databuild/debian.py, pypi.py), and count where no
+other file treats the name, or none says of which versions it is gone. A change is judged on a target by versions; for
+headers of ROS packages whose source trees are in the provider table, by what the very release has.
 """
 
 from __future__ import annotations
@@ -137,7 +137,9 @@ def _load_files() -> list[_File]:
     """All data/changes*.json. A name that two files treat counts as in the more special one; what that does not say of
     it is taken from the other. What was read from packages comes last, since nobody reviewed it; before it the general
     table, since the others were compared with headers and tags."""
-    return _read("changes*.json*", "changes.json", "changes_debian.json", "changes_library_tags.json")
+    return _read(
+        "changes*.json*", "changes.json", "changes_debian.json", "changes_library_tags.json", "changes_pypi.json.zst"
+    )
 
 
 def _get_shared_fields(group: _Group) -> dict:
@@ -156,9 +158,14 @@ def load_rows() -> tuple[ChangeRow, ...]:
             if first is not row:
                 both = tuple(dict.fromkeys(first.unless + row.unless))
                 since = first.new_since or (row.new_since if new == first.new else "")
-                merged = msgspec.structs.replace(first, unless=both, new_since=since)
+                bounds = {} if first.removed_in or first.deprecated_in else {b: getattr(row, b) for b in _BOUNDS}
+                merged = msgspec.structs.replace(first, **{"unless": both, "new_since": since, **bounds})
                 known[row.kind, row.package, old, row.ros] = merged
     return tuple(known.values())
+
+
+_BOUNDS = ("last_in", "removed_in", "deprecated_in")
+"""What a row that only says what to write instead takes from a derived one."""
 
 
 @cache
@@ -292,9 +299,9 @@ def find_row_version(row: ChangeRow, target: DistroTarget) -> str:
 def find_version(package: str, library: bool, target: DistroTarget, derived: bool = False) -> str | None:
     """Version of a released package, or of a platform library, on a target; None when it is not there or not known.
 
-    derived: what is asked was read from Debian's packages of the library. ROS releases some of those itself (urdfdom,
-    ompl), under upstream's numbers and ahead of the platform's own. Where no table has the platform's version, that is
-    the oldest which Debian's releases allow.
+    derived: what is asked was read from packages of the library. ROS releases some of those itself (urdfdom, ompl),
+    under upstream's numbers and ahead of the platform's own. Where no table has the platform's version, that is the
+    oldest which Debian's releases allow.
     """
     if not library:
         return target.find_version(package)
@@ -303,7 +310,9 @@ def find_version(package: str, library: bool, target: DistroTarget, derived: boo
     if package == "python" and getattr(target, "python_major", 3) == 2:
         return "2.7"
     return target.find_library(package) or (
-        load_libraries().find_range(package, target.platform)[0] if derived else None
+        load_libraries().find_range(package, target.platform)[0] or target.find_oldest_library(package)
+        if derived
+        else None
     )
 
 

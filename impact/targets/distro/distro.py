@@ -22,7 +22,7 @@ from ....edges.reach import walk
 from ...conditions import Environment
 from ...conditions.manifest import evaluate
 from .. import snapshot as snapshots
-from ..platform import normalize_library_name, normalize_platform, parse_python_minor
+from ..platform import find_neighbours, normalize_library_name, normalize_platform, parse_python_minor
 from ..snapshot import KINDS, Snapshot
 from ..target import ReleasedDependency, Resolution
 from ..version import parse_number
@@ -643,6 +643,12 @@ class DistroTarget:
                 return
         if (cell := self._load_libraries().get(wanted)) is not None and cell.version:
             yield cell.version
+
+    def find_oldest_library(self, name: str) -> str | None:
+        """The oldest version that a platform library of unknown version may have here: that of the platform which was
+        frozen last before this one."""
+        known = dict(self._data.fetch("SELECT platform, version FROM library WHERE name = ?", (name,)))
+        return known.get(find_neighbours(self.platform, known)[0])
 
     def was_added_with_release(self, name: str) -> bool:
         """True for platform libraries that everybody has in this version since the distro's release: it stays on one

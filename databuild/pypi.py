@@ -1,0 +1,427 @@
+"""Builds data/changes_pypi.json.zst: names that versions of Python libraries lost or deprecate, by PyPI's wheels.
+
+    python -P -m rosimpact.databuild.pypi WORK [--only NAME ...]
+
+Of each library the versions that some platform has are read, an older one and the newest; where one lost names that the
+one before has, the first releases of the minor versions between them are read too, until the one is found that lost
+them. Wheels are downloaded with pip, read as archives and deleted; nothing is installed or run. WORK keeps what was
+read of each.
+
+A name is in a version when a module, or its stub, binds it. It is gone from a version on when from then on no version
+has it and each surely lacks it: its module can be read in full and does not bind it, its module's `__getattr__` lists
+it only to raise for it, or its stub had it and no longer has, and no file says it any more. Names that are private,
+that tests have, or that stand in what is gone itself, are left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import zipfile
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import zstandard
+
+from ..edges.console import UserError
+from ..edges.files import write_file
+from ..edges.memory import cache_method
+from ..impact.facts.python.source import read
+from ..impact.facts.python.surface import ModuleSurface, is_private
+from ..impact.targets.snapshot import DATA, read_table
+from ..impact.targets.surface.python import UNKNOWN, PythonName, SurfaceNames
+from ..impact.targets.surface.surface import InstalledModule, PythonSurface
+from ..impact.targets.version import is_at_least, parse
+from .extract.module_getattr import read_module_getattr
+from .extract.python import extract
+from .includes import list_platform_versions
+from .python_std import prepare_stub
+
+FILE = "changes_pypi.json.zst"
+PROJECTS = {name: name for name in (
+    "flask", "jinja2", "matplotlib", "networkx", "numpy", "paho-mqtt", "pillow", "pyserial", "scikit-image", "scipy",
+    "shapely", "transforms3d",
+)}  # fmt: skip
+"""Platform libraries, by their names in platform_versions.yaml, with what PyPI calls them: those behind rosdep's keys
+`python3-*` that released packages name, and that PyPI has under the versions of the platforms."""
+_PYTHONS = ("3.12", "3.10", "3.8", "3.6", "3.14", "2.7")
+_MACHINES = ("manylinux_2_28_x86_64", "manylinux_2_17_x86_64", "manylinux2014_x86_64", "manylinux2010_x86_64",
+             "manylinux1_x86_64")  # fmt: skip
+_LAST_PYTHON = 14
+_MANY = 12
+"""So many deprecated names of one module are one fact: that the module is not to be used."""
+_OLDER = 8
+"""So many minor versions before the first that a platform has may be read: code may still be written for them."""
+_FINAL = re.compile(r"\d+(?:\.\d+)+\Z")
+_ASIDE = re.compile(r"(?:.*[._])?(?:tests?|conftest|setup|examples?|benchmarks?|docs?|vendor|extern|externals)"
+                    r"(?:[._].*)?\Z")  # fmt: skip
+_NATIVE = (".so", ".pyd")
+_WORD = re.compile(rb"[A-Za-z_]\w{2,}")
+
+
+class Release(msgspec.Struct, frozen=True, array_like=True):
+    """What a version of a library offers. modules: as written in Python. stubs: modules as `.pyi` files tell them.
+    native: modules that are built. refused: dotted names that a module's `__getattr__` only raises for. words: where
+    there are stubs, what any other file says, a word on each line."""
+
+    version: str
+    modules: tuple[InstalledModule, ...] = ()
+    stubs: tuple[InstalledModule, ...] = ()
+    native: tuple[str, ...] = ()
+    refused: tuple[str, ...] = ()
+    words: str = ""
+
+
+class OfferedNames:
+    """A release, ready to be asked."""
+
+    def __init__(self, release: Release):
+        self.release = release
+        self._refused = frozenset(release.refused)
+        self._python = SurfaceNames(PythonSurface("", release.modules, release.native))
+        self._stubbed = {stub.name for stub in release.stubs}
+        beside = (module for module in release.modules if module.name not in self._stubbed)
+        built = tuple(name for name in release.native if name not in self._stubbed)
+        self._stubs = SurfaceNames(PythonSurface("", (*release.stubs, *beside), built))
+        self._sides = (self._python, self._stubs) if self._stubbed else (self._python,)
+
+    @cache_method
+    def find_each(self, name: str) -> tuple[PythonName | None, ...]:
+        """What Python and the stubs say of a name: None for what they have not, UNKNOWN where that cannot be told."""
+        return tuple(names.find(name) for names in self._sides)
+
+    @cache_method
+    def find(self, name: str) -> PythonName | None:
+        """What a name surely is; None where it is not there, or that cannot be told."""
+        each = self.find_each(name)[: 1 if name in self._refused else None]
+        return next((one for one in each if one is not None and one is not UNKNOWN), None)
+
+    def lacks(self, name: str, before: OfferedNames) -> bool:
+        """Whether a name is surely not there. before: a version that has it. Python's word counts for what Python had
+        before. Stubs leave out what is there: their word counts for what stubs had, where no file says the name."""
+        if self.find(name) is not None:
+            return False
+        if name in self._refused:
+            return True
+        here, had = self.find_each(name), before.find_each(name)
+        module, _, last = name.rpartition(".")
+        if any(module in one.modules and last in (one.modules[module].surface.all or ()) for one in self._sides):
+            return False  # it says that it has it: another module puts it there
+        if here[0] is None:
+            return had[0] not in (None, UNKNOWN)
+        if len(here) == 1 or len(had) == 1 or here[1] is not None or had[1] in (None, UNKNOWN):
+            return False
+        of = next((scope for scope in _list_scopes(name) if scope in self._stubbed), None)
+        return of is not None and f"{name.rpartition('.')[2]}\n" not in self.release.words
+
+    @cached_property
+    def public(self) -> frozenset[str]:
+        """All that others may use: modules and what they offer."""
+        found: set[str] = set()
+        for names in self._sides:
+            found.update(module for module in names.modules if _is_public(module))
+            for name, entry in names.offered.items():
+                of = names.modules.get(name.rpartition(".")[0])
+                if _is_public(name) and (of is None or names is self._stubs or _is_meant_for_others(of, name, entry)):
+                    found.add(name)
+        return frozenset(found)
+
+
+def _is_meant_for_others(module: InstalledModule, name: str, entry: PythonName) -> bool:
+    """Whether a name of a module is for those who import it: one that its `__all__` lists; without that, what is no
+    variable that it needs itself."""
+    listed, last = module.surface.all, name.rpartition(".")[2]
+    if listed and not module.surface.all_open and not any(one.startswith("+") for one in listed):
+        return last in listed or bool(entry.bound is not None and entry.bound.deprecated)
+    # A variable in lower case may be set by another module, which is not followed.
+    if entry.bound is not None and entry.bound.deprecated:
+        return True
+    return entry.kind != "attribute" or last[:1].isupper()
+
+
+def _list_scopes(name: str) -> Iterator[str]:
+    """What a dotted name stands in, the nearest first."""
+    while "." in name:
+        name = name.rpartition(".")[0]
+        yield name
+
+
+def _is_public(name: str) -> bool:
+    return not any(is_private(part) or part.startswith("__") for part in name.split(".")) and not _ASIDE.match(name)
+
+
+# -- reading -----------------------------------------------------------------------------------------------------------
+
+
+def read_wheel(file: Path, version: str) -> Release:
+    """What a wheel holds."""
+    modules, stubs, native, refused, words = {}, {}, set(), set(), set()
+    with zipfile.ZipFile(file) as archive:
+        for path in sorted(archive.namelist()):
+            parts = path.split("/")
+            if ".dist-info" in parts[0] or ".data" in parts[0] or _is_test(parts):
+                continue
+            stem, _, ending = parts[-1].partition(".")
+            name = ".".join([*parts[:-1], stem]).removesuffix(".__init__").removesuffix("-stubs")
+            if not all(part.isidentifier() for part in name.split(".")):
+                continue
+            if path.endswith((*_NATIVE, ".py")):
+                words.update(_WORD.findall(archive.read(path)))
+            if path.endswith(_NATIVE):
+                native.add(name)
+            elif ending in ("py", "pyi"):
+                data = archive.read(path)
+                if ending == "py":
+                    listed = _list_refused(data, partial(_read_sibling, archive, path))
+                    refused.update(f"{name}.{one}" for one in listed)
+                else:
+                    data = _prepare_stub(data)
+                kept = modules if ending == "py" else stubs
+                kept[name] = InstalledModule(name, "", stem == "__init__", _strip_surface(extract(data)))
+    return Release(version, tuple(modules.values()), tuple(stubs.values()),
+                   tuple(sorted(native - modules.keys())), tuple(sorted(refused)),
+                   "\n".join(sorted(word.decode() for word in words)) + "\n" if stubs else "")  # fmt: skip
+
+
+def _prepare_stub(data: bytes) -> bytes:
+    """A stub as a module; as it is where it has the syntax of a newer Python than this one, and cannot be read."""
+    try:
+        return prepare_stub(data, _LAST_PYTHON)
+    except SyntaxError:
+        return data
+
+
+def _is_test(parts: Sequence[str]) -> bool:
+    return any(part in ("tests", "test") or part.startswith(("test_", "conftest")) for part in parts)
+
+
+def _strip_surface(surface: ModuleSurface) -> ModuleSurface:
+    """A module without what is not asked: parameters, values and lines."""
+    replace = msgspec.structs.replace
+    names = (replace(one, line=0, parameters=(), value="", annotation="") for one in surface.names
+             if one.kind not in ("method", "property", "instance"))  # fmt: skip
+    return replace(surface, names=tuple(names), problems=())
+
+
+def _list_refused(data: bytes, load: Callable[[str], bytes]) -> frozenset[str]:
+    """What a module's `__getattr__` lists to raise for it. load: reads a module beside it."""
+    tree = read(data).tree if b"def __getattr__" in data else None
+    if tree is None:
+        return frozenset()
+    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and node.name == "__getattr__"
+                 and node.args.args and node.args.args[0].arg != "self"]  # fmt: skip
+    body = []
+    for node in tree.body:
+        beside = read(load(node.module or "")).tree if isinstance(node, ast.ImportFrom) and node.level == 1 else None
+        taken = {alias.name for alias in node.names} if isinstance(node, ast.ImportFrom) else set()
+        assigned = [one for one in (beside.body if beside is not None else ())
+                    if isinstance(one, ast.Assign) and ast.unparse(one.targets[0]) in taken]  # fmt: skip
+        body += assigned or [node]
+    return read_module_getattr(functions[0], body).refused if len(functions) == 1 else frozenset()
+
+
+def _read_sibling(archive: zipfile.ZipFile, path: str, module: str) -> bytes:
+    """The source of a module in the folder of another; empty for one that is not there."""
+    beside = f"{path.rpartition('/')[0]}/{module.replace('.', '/')}.py"
+    return archive.read(beside) if module and beside in archive.NameToInfo else b""
+
+
+class Index:
+    """PyPI, as pip shows it, and what was read of it. work: the folder that keeps that."""
+
+    def __init__(self, work: Path):
+        self.work = work
+        self.downloaded = 0
+        self._python = _PYTHONS[0]  # of the last wheel, which the next one is likely to be for
+
+    def list_versions(self, project: str) -> list[str]:
+        """The final releases of a project, oldest first."""
+        said = self._run("index", "versions", "--ignore-requires-python", project)
+        found = re.search(r"^Available versions: (.+)$", said or "", re.MULTILINE)
+        versions = found[1].split(", ") if found else []
+        return sorted(filter(_FINAL.match, versions), key=parse)
+
+    def read(self, project: str, version: str) -> Release | None:
+        """A release; None for one without a wheel for Linux."""
+        kept = self.work / f"{project}-{version}.msgpack.zst"
+        if kept.exists():
+            data = kept.read_bytes()
+            return msgspec.msgpack.decode(zstandard.decompress(data), type=Release) if data else None
+        with tempfile.TemporaryDirectory(dir=self.work) as folder:
+            wheel = self._download(project, version, Path(folder))
+            release = read_wheel(wheel, version) if wheel is not None else None
+        packed = zstandard.ZstdCompressor(level=9).compress(msgspec.msgpack.encode(release)) if release else b""
+        write_file(kept, packed)
+        return release
+
+    def _download(self, project: str, version: str, folder: Path) -> Path | None:
+        machines = [word for machine in _MACHINES for word in ("--platform", machine)]
+        for python in sorted(_PYTHONS, key=lambda one: one != self._python):
+            self._run("download", "--quiet", "--no-deps", "--only-binary=:all:", "--python-version", python, *machines,
+                      "--dest", str(folder), f"{project}=={version}")  # fmt: skip
+            wheel = next(folder.glob("*.whl"), None)
+            if wheel is not None:
+                self.downloaded += wheel.stat().st_size
+                self._python = python
+                return wheel
+        return None
+
+    def _run(self, *arguments: str) -> str | None:
+        command = [sys.executable, "-m", "pip", "--disable-pip-version-check", *arguments]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, env={**os.environ}, timeout=900)
+        if done.returncode and "No matching distribution" not in done.stderr:
+            raise UserError(f"pip {' '.join(arguments)}: {done.stderr.strip()[-300:]}")
+        return done.stdout if done.returncode == 0 else None
+
+
+# -- comparing ---------------------------------------------------------------------------------------------------------
+
+
+def read_versions(
+    wanted: Iterable[str], available: Sequence[str], load: Callable[[str], Release | None]
+) -> list[OfferedNames]:
+    """The wanted versions, the newest, an old one, which code may still be written for, and those first
+    ones of minor versions between them that tell where names went; oldest first. load: reads a release."""
+    known = {parse(version): version for version in available}
+    ends = {parse(known[key]) for version in wanted if (key := parse(version)) in known}
+    if not ends:
+        return []
+    minors = {}
+    for key in sorted(known):
+        minors.setdefault(key[:2], key)
+    ends.add(max(minors.values()))
+    read: dict[tuple[int, ...], OfferedNames | None] = {}
+
+    def get(key: tuple[int, ...]) -> OfferedNames | None:
+        if key not in read:
+            release = load(known[key])
+            read[key] = OfferedNames(release) if release is not None else None
+        return read[key]
+
+    def narrow(first: tuple[int, ...], last: tuple[int, ...]) -> None:
+        before, after = get(first), get(last)
+        if before is None or after is None or not any(_iterate_losses(before, after)):
+            return
+        between = [key for key in sorted(minors.values()) if first < key < last]
+        while between:
+            middle = between[len(between) // 2]
+            if get(middle) is not None:
+                narrow(first, middle)
+                narrow(middle, last)
+                return
+            between.remove(middle)
+
+    older = [key for key in sorted(minors.values()) if key < min(ends)][-_OLDER:]
+    starts = (older[len(older) * part // 4] for part in range(3) if older)
+    ends.add(next((key for key in starts if get(key) is not None), min(ends)))
+    told = [key for key in sorted(ends) if get(key) is not None]
+    for first, last in pairwise(told):
+        narrow(first, last)
+    return [found for _, found in sorted(read.items()) if found is not None]
+
+
+def _iterate_losses(before: OfferedNames, after: OfferedNames) -> Iterator[str]:
+    return (name for name in before.public if after.lacks(name, before))
+
+
+class Loss(NamedTuple):
+    """What became of a name. last_in: the last version that may have it. removed_in: the first one that has not, empty
+    while all have it. deprecated_in: the first one from which on it warns."""
+
+    name: str
+    last_in: str
+    removed_in: str
+    deprecated_in: str
+
+
+def find_losses(versions: Sequence[OfferedNames]) -> list[Loss]:
+    """The names that versions, oldest first, lost or deprecate."""
+    found = {}
+    for name in sorted({name for one in versions for name in one.public}):
+        entries = [one.find(name) for one in versions]
+        has = max((place for place, entry in enumerate(entries) if entry is not None), default=None)
+        if has is None:
+            continue
+        gone = len(versions)
+        while gone > has + 1 and versions[gone - 1].lacks(name, versions[has]):
+            gone -= 1
+        warned = [bool(e.bound is not None and e.bound.deprecated) if e is not None else None for e in entries]
+        since = next((n for n in range(has + 1) if all(warned[n:gone])), None)
+        removed = versions[gone].release.version if gone < len(versions) else ""
+        if removed or since is not None:
+            deprecated = versions[since].release.version if since is not None else ""
+            found[name] = Loss(name, versions[gone - 1].release.version, removed, deprecated)
+
+    shares = Counter(loss.name.rpartition(".")[0] for loss in found.values() if not loss.removed_in)
+
+    def is_told(loss: Loss) -> bool:
+        """Whether what it stands in tells it, or so much of a module is deprecated that the module itself is."""
+        scopes = [found[scope] for scope in _list_scopes(loss.name) if scope in found]
+        gone = (scope for scope in scopes if scope.removed_in)
+        if any(not loss.removed_in or is_at_least(loss.removed_in, scope.removed_in) for scope in gone):
+            return True
+        return not loss.removed_in and shares[loss.name.rpartition(".")[0]] > _MANY
+
+    return [loss for loss in found.values() if not is_told(loss)]
+
+
+def group_losses(library: str, project: str, losses: Iterable[Loss]) -> list[dict[str, Any]]:
+    """Losses as rows of a table of changes, by their versions."""
+    groups: dict[tuple[str, str, str], dict[str, str]] = {}
+    for loss in losses:
+        bounds = loss.removed_in and loss.last_in, loss.removed_in, loss.deprecated_in
+        groups.setdefault(bounds, {})[loss.name] = ""
+    made = []
+    for (last, removed, deprecated), names in sorted(groups.items(), key=lambda item: tuple(map(parse, item[0]))):
+        group = {"kind": "python-removed", "package": library, "library": True, "source": f"wheels of {project}"}
+        bounds = {"last_in": last, "removed_in": removed, "deprecated_in": deprecated}
+        made.append({**group, **{key: value for key, value in bounds.items() if value}, "names": names})
+    return made
+
+
+def build_groups(projects: Mapping[str, str], index: Index, report: Callable[[str], None]) -> list[dict[str, Any]]:
+    """The rows of all projects. report: is told what was read of each."""
+    groups: list[dict[str, Any]] = []
+    for library, project in sorted(projects.items()):
+        wanted, available = list_platform_versions(library), index.list_versions(project)
+        versions = read_versions(wanted, available, lambda version, project=project: index.read(project, version))
+        made = group_losses(library, project, find_losses(versions))
+        groups += made
+        rows = sum(len(group["names"]) for group in made)
+        report(f"{library}: {len(versions)} versions read, of {len(wanted)} that platforms have; {rows} names")
+    return groups
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """The command line described at the top."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("work", type=Path, help="folder that keeps what was read")
+    parser.add_argument("--only", action="append", default=[], metavar="NAME", help="read these libraries alone")
+    parser.add_argument("--output", type=Path, default=DATA)
+    given = parser.parse_args(arguments)
+    given.work.mkdir(parents=True, exist_ok=True)
+    index, file = Index(given.work), given.output / FILE
+    projects = {name: project for name, project in PROJECTS.items() if not given.only or name in given.only}
+    kept = []
+    if given.only and file.exists():
+        kept = [one for one in read_table(file, dict[str, Any])["changes"] if one["package"] not in projects]
+    made = build_groups(projects, index, lambda text: print(text, flush=True))
+    groups = sorted([*kept, *made], key=lambda group: group["package"])
+    data = zstandard.ZstdCompressor(level=19).compress(json.dumps({"changes": groups}, separators=(",", ":")).encode())
+    write_file(file, data)
+    print(f"{len(data)} bytes, {index.downloaded / 1e6:.0f} MB downloaded")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+"""What versions of a library on PyPI lost or deprecate, told from wheels."""
+
+import zipfile
+
+import pytest
+from rosimpact.databuild.pypi import OfferedNames, find_losses, group_losses, read_versions, read_wheel
+
+
+def make_release(folder, version, files):
+    """A wheel of a package `arm`, read. files: sources by path."""
+    path = folder / f"arm-{version}-py3-none-any.whl"
+    with zipfile.ZipFile(path, "w") as wheel:
+        for name, text in {"arm/__init__.py": "", **files}.items():
+            wheel.writestr(name, text)
+        wheel.writestr(f"arm-{version}.dist-info/METADATA", f"Name: arm\nVersion: {version}\n")
+    return read_wheel(path, version)
+
+
+def list_losses(folder, *versions):
+    """Names with removed_in and deprecated_in. versions: sources of 1.0, 1.1 and so on."""
+    read = [make_release(folder, f"1.{minor}", files) for minor, files in enumerate(versions)]
+    return {loss.name: (loss.removed_in, loss.deprecated_in) for loss in find_losses([*map(OfferedNames, read)])}
+
+
+INIT, STUB, TABLE = "arm/__init__.py", "arm/__init__.pyi", "arm/_gone.py"
+REFUSES = """
+{table}
+def __getattr__(name):
+    if name in GONE:
+        raise AttributeError(GONE[name])
+    if name == "late":
+        import warnings
+        warnings.warn("late goes", DeprecationWarning)
+        return 3
+    raise AttributeError(name)
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "lost"),
+    [
+        ({INIT: "def move(): ..."}, {INIT: ""}, {"arm.move": ("1.1", "")}),
+        ({INIT: "def move(): ..."}, {INIT: "from elsewhere import move"}, {}),
+        ({INIT: "def move(): ..."}, {INIT: "from arm._own import *", "arm/_own.py": "def move(): ..."}, {}),
+        ({INIT: "class Arm:\n    SPEED = 3"}, {INIT: "class Arm: ..."}, {}),
+        # What it stands in tells it.
+        ({"arm/tool.py": "def open(): ..."}, {}, {"arm.tool": ("1.1", "")}),
+        # Private names, those of tests, and what an `__all__` leaves out, are nobody's.
+        ({INIT: "def _move(): ...", "arm/tests/test_a.py": "def f(): ...", "arm/_own.py": "A = 1"}, {}, {}),
+        ({INIT: "__all__ = ['move']\ndef move(): ...\ndef own(): ..."}, {INIT: "def move(): ..."}, {}),
+        # What may be put there in other ways is not surely gone.
+        ({INIT: "def move(): ..."}, {INIT: "globals().update(load())"}, {}),
+        ({INIT: "def move(): ..."}, {INIT: "from elsewhere import *"}, {}),
+        ({INIT: "def move(): ..."}, {INIT: "def __getattr__(name): return load(name)"}, {}),
+        ({INIT: "def move(): ..."}, {INIT: "from arm.fast import *", "arm/fast.cpython-310.so": ""}, {}),
+        ({INIT: "def move(): ..."}, {INIT: "type x = ?"}, {}),
+        ({INIT: "move = 1"}, {INIT: "", "arm/_own.py": "import arm\narm.move = 2"}, {}),
+        ({INIT: "def move(): ..."}, {INIT: "__all__ = ['move']"}, {}),
+        # `__getattr__` lists what it raises for, here or in a module beside it.
+        ({INIT: "MOVE = 1"}, {INIT: REFUSES.format(table="GONE = {'MOVE': 'use go'}\nfrom elsewhere import *")},
+         {"arm.MOVE": ("1.1", ""), "arm.late": ("", "1.1")}),
+        ({INIT: "MOVE = 1"}, {INIT: REFUSES.format(table="from ._gone import GONE\nfrom elsewhere import *"),
+                              TABLE: "GONE = {'MOVE': 1}"},
+         {"arm.MOVE": ("1.1", ""), "arm.late": ("", "1.1")}),
+        ({INIT: "late = 1"}, {INIT: REFUSES.format(table="GONE = {}")}, {"arm.late": ("", "1.1")}),
+        # A stub tells what is built; it may leave out what it never had, and Python may not see what only a stub has.
+        ({STUB: "def move() -> int: ...", INIT: "from elsewhere import *"}, {STUB: "", INIT: "from elsewhere import *"},
+         {"arm.move": ("1.1", "")}),
+        ({STUB: "def move() -> int: ...", INIT: "from elsewhere import *"},
+         {STUB: "", INIT: "from elsewhere import *", "arm/_own.py": "TABLE = {'move': 3}"}, {}),
+        ({STUB: "def move() -> int: ...", INIT: "from elsewhere import *"},
+         {STUB: "", INIT: "from elsewhere import *", "arm/_own.so": "\0remove\0move\0"}, {}),
+        ({STUB: "def move() -> int: ...", INIT: "from elsewhere import *"}, {STUB: "type x = ?"}, {}),
+        ({INIT: "def move(): ..."}, {STUB: "", INIT: "from elsewhere import *"}, {}),
+        ({STUB: "def move() -> int: ..."}, {}, {}),
+        ({"arm/fast.so": "", "arm/fast.pyi": "def move() -> int: ..."}, {"arm/fast.so": "", "arm/fast.pyi": ""},
+         {"arm.fast.move": ("1.1", "")}),
+        ({"arm/fast.so": "", "arm/fast.pyi": "def move() -> int: ..."}, {"arm/fast.so": ""}, {}),
+    ],
+)  # fmt: skip
+def test_what_is_lost(before, after, lost, tmp_path):
+    assert list_losses(tmp_path, before, after) == lost
+
+
+WARNS = "import warnings\ndef move():\n    warnings.warn('use go', DeprecationWarning)"
+
+
+def test_a_name_that_comes_back_is_not_lost(tmp_path):
+    there = {INIT: "def move(): ..."}
+    assert list_losses(tmp_path, there, {}, there) == {}
+
+
+def test_a_loss_is_told_from_the_version_on_that_surely_lacks_it(tmp_path):
+    unknown = {INIT: "from elsewhere import *"}
+    versions = [{INIT: "def move(): ..."}, {INIT: WARNS}, unknown, {INIT: "import os"}]
+    assert list_losses(tmp_path, *versions[:2], {INIT: "import os"}) == {"arm.move": ("1.2", "1.1")}
+    (loss,) = find_losses([OfferedNames(make_release(tmp_path, f"1.{n}", v)) for n, v in enumerate(versions)])
+    # It may not have been deprecated at last.
+    assert loss == ("arm.move", "1.2", "1.3", "")
+    (group,) = group_losses("arm", "arm", [loss])
+    assert {key: group[key] for key in ("last_in", "removed_in", "names")} == {
+        "last_in": "1.2", "removed_in": "1.3", "names": {"arm.move": ""}
+    }  # fmt: skip
+
+
+def test_versions_between_are_read_where_something_went(tmp_path):
+    asked = []
+
+    def load(version):
+        asked.append(version)
+        return make_release(tmp_path, version, {INIT: "def move(): ..."} if version < "1.5" else {})
+
+    available = [f"1.{minor}.{patch}" for minor in range(10) for patch in range(3)]
+    read = read_versions(["1.1.2", "1.2.1", "1.8.0", "3.0"], available, load)
+    # Of the others it is clear what they have.
+    assert [one.release.version for one in read] == ["1.0.0", "1.1.2", "1.2.1", "1.4.0", "1.5.0", "1.8.0", "1.9.0"]
+    assert len(asked) == len(set(asked))
+
+
+def test_what_has_no_wheel_is_left_out(tmp_path):
+    read = read_versions(["1.0.0", "1.2.0"], ["1.0.0", "1.1.0", "1.2.0"], lambda version: None)
+    assert read == []
