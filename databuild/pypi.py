@@ -142,11 +142,11 @@ def _is_meant_for_others(module: InstalledModule, name: str, entry: PythonName) 
     """Whether a name of a module is for those who import it: one that its `__all__` lists; without that, what is no
     variable that it needs itself."""
     listed, last = module.surface.all, name.rpartition(".")[2]
-    if listed and not module.surface.all_open and not any(one.startswith("+") for one in listed):
-        return last in listed or bool(entry.bound is not None and entry.bound.deprecated)
-    # A variable in lower case may be set by another module, which is not followed.
     if entry.bound is not None and entry.bound.deprecated:
         return True
+    if listed and not module.surface.all_open and not any(one.startswith("+") for one in listed) and last not in listed:
+        return False
+    # A variable in lower case may be set by another module, which is not followed.
     return entry.kind != "attribute" or last[:1].isupper()
 
 

@@ -29,6 +29,9 @@ class Machine(DistroTarget):
     def find_version(self, package):
         return self.versions.get(package)
 
+    def find_oldest_library(self, name):
+        return None
+
     def find_library(self, name):
         return self.versions.get(name)
 
