@@ -70,7 +70,7 @@ _NATIVE = (".so", ".pyd")
 _WORD = re.compile(rb"[A-Za-z_]\w{2,}")
 
 
-class Release(msgspec.Struct, frozen=True, array_like=True):
+class PyPIRelease(msgspec.Struct, frozen=True, array_like=True):
     """What a version of a library offers. modules: as written in Python. stubs: modules as `.pyi` files tell them.
     native: modules that are built. refused: dotted names that a module's `__getattr__` only raises for. words: where
     there are stubs, what any other file says, a word on each line."""
@@ -86,7 +86,7 @@ class Release(msgspec.Struct, frozen=True, array_like=True):
 class OfferedNames:
     """A release, ready to be asked."""
 
-    def __init__(self, release: Release):
+    def __init__(self, release: PyPIRelease):
         self.release = release
         self._refused = frozenset(release.refused)
         self._python = SurfaceNames(PythonSurface("", release.modules, release.native))
@@ -164,7 +164,7 @@ def _is_public(name: str) -> bool:
 # -- reading -----------------------------------------------------------------------------------------------------------
 
 
-def read_wheel(file: Path, version: str) -> Release:
+def read_wheel(file: Path, version: str) -> PyPIRelease:
     """What a wheel holds."""
     modules, stubs, native, refused, words = {}, {}, set(), set(), set()
     with zipfile.ZipFile(file) as archive:
@@ -189,7 +189,7 @@ def read_wheel(file: Path, version: str) -> Release:
                     data = _prepare_stub(data)
                 kept = modules if ending == "py" else stubs
                 kept[name] = InstalledModule(name, "", stem == "__init__", _strip_surface(extract(data)))
-    return Release(version, tuple(modules.values()), tuple(stubs.values()),
+    return PyPIRelease(version, tuple(modules.values()), tuple(stubs.values()),
                    tuple(sorted(native - modules.keys())), tuple(sorted(refused)),
                    "\n".join(sorted(word.decode() for word in words)) + "\n" if stubs else "")  # fmt: skip
 
@@ -237,7 +237,7 @@ def _read_sibling(archive: zipfile.ZipFile, path: str, module: str) -> bytes:
     return archive.read(beside) if module and beside in archive.NameToInfo else b""
 
 
-class Index:
+class PyPIIndex:
     """PyPI, as pip shows it, and what was read of it. work: the folder that keeps that."""
 
     def __init__(self, work: Path):
@@ -252,12 +252,12 @@ class Index:
         versions = found[1].split(", ") if found else []
         return sorted(filter(_FINAL.match, versions), key=parse)
 
-    def read(self, project: str, version: str) -> Release | None:
+    def read(self, project: str, version: str) -> PyPIRelease | None:
         """A release; None for one without a wheel for Linux."""
         kept = self.work / f"{project}-{version}.msgpack.zst"
         if kept.exists():
             data = kept.read_bytes()
-            return msgspec.msgpack.decode(zstandard.decompress(data), type=Release) if data else None
+            return msgspec.msgpack.decode(zstandard.decompress(data), type=PyPIRelease) if data else None
         with tempfile.TemporaryDirectory(dir=self.work) as folder:
             wheel = self._download(project, version, Path(folder))
             release = read_wheel(wheel, version) if wheel is not None else None
@@ -289,7 +289,7 @@ class Index:
 
 
 def read_versions(
-    wanted: Iterable[str], available: Sequence[str], load: Callable[[str], Release | None]
+    wanted: Iterable[str], available: Sequence[str], load: Callable[[str], PyPIRelease | None]
 ) -> list[OfferedNames]:
     """The wanted versions, the newest, an old one, which code may still be written for, and those first
     ones of minor versions between them that tell where names went; oldest first. load: reads a release."""
@@ -390,7 +390,7 @@ def group_losses(library: str, project: str, losses: Iterable[Loss]) -> list[dic
     return made
 
 
-def build_groups(projects: Mapping[str, str], index: Index, report: Callable[[str], None]) -> list[dict[str, Any]]:
+def build_groups(projects: Mapping[str, str], index: PyPIIndex, report: Callable[[str], None]) -> list[dict[str, Any]]:
     """The rows of all projects. report: is told what was read of each."""
     groups: list[dict[str, Any]] = []
     for library, project in sorted(projects.items()):
@@ -411,7 +411,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--output", type=Path, default=DATA)
     given = parser.parse_args(arguments)
     given.work.mkdir(parents=True, exist_ok=True)
-    index, file = Index(given.work), given.output / FILE
+    index, file = PyPIIndex(given.work), given.output / FILE
     projects = {name: project for name, project in PROJECTS.items() if not given.only or name in given.only}
     kept = []
     if given.only and file.exists():

@@ -41,7 +41,7 @@ class _Reader:
 
     def __init__(self, asked: str, module: list[ast.stmt]):
         self.asked, self.module = asked, module
-        self.blocks = _number_blocks(module)
+        self.blocks = _assign_blocks(module)
         self.served: set[str] = set()
         self.warned: set[str] = set()
         self.refused: set[str] = set()
@@ -76,7 +76,7 @@ class _Reader:
                 self.imported.update(alias.asname or alias.name for alias in node.names)
             elif not isinstance(node, (ast.FunctionDef, ast.ClassDef)):
                 names = self._narrow(names, self._find_subscripted(node))
-                warns = warns or _warns(node)
+                warns = warns or _is_warning(node)
             if names is _ENDED:
                 return _ENDED
         return names
@@ -213,7 +213,7 @@ class _Reader:
         return [value for line, value in found if line >= start and (line < name.lineno or not start)]
 
 
-def _number_blocks(module: Iterable[ast.stmt]) -> dict[int, int]:
+def _assign_blocks(module: Iterable[ast.stmt]) -> dict[int, int]:
     """Of each line of what runs on import, the innermost block that it stands in."""
     found: dict[int, int] = {}
     blocks = [list(module)]
@@ -230,6 +230,6 @@ def _number_blocks(module: Iterable[ast.stmt]) -> dict[int, int]:
     return found
 
 
-def _warns(node: ast.stmt) -> bool:
+def _is_warning(node: ast.stmt) -> bool:
     call = node.value if isinstance(node, ast.Expr) else None
     return isinstance(call, ast.Call) and format_dotted(call.func).rpartition(".")[2] == "warn"
