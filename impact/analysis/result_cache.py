@@ -16,7 +16,7 @@ from ..model import tracked_names as watch
 from ..model.cmake.build import At
 from ..model.flow.file_selection import compute_stamp
 from ..model.package import Watched
-from ..model.view import TargetView, UnresolvedName
+from ..model.view import TargetView, UnresolvedUse
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
 from ..source_keys import compute_code_stamp
@@ -39,7 +39,7 @@ class _Stored(msgspec.Struct, frozen=True, array_like=True):
 
 class _Judgement(msgspec.Struct, frozen=True, array_like=True):
     diagnostics: tuple[_Stored, ...]
-    unresolved: tuple[UnresolvedName, ...]
+    unresolved: tuple[UnresolvedUse, ...]
 
 
 def load_tracked_names(store: Store) -> Watched:
@@ -87,14 +87,14 @@ def make_flow_key(workspace: Workspace, before: Workspace | None, rules: Iterabl
 
 
 def store_yielded(
-    store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: Iterable[UnresolvedName] = ()
+    store: Store, key: bytes, diagnostics: Iterable[Yielded], unresolved: Iterable[UnresolvedUse] = ()
 ) -> None:
     """Keeps what rules yielded, and what they could not resolve, for later runs."""
     stored = tuple(_Stored(rule, At(*one.place), one._replace(at=None)) for rule, one in diagnostics)
     store.remember("judgement", encode_rows([(key, _Judgement(stored, tuple(sorted(unresolved))))]))
 
 
-def load_yielded(store: Store, key: bytes) -> tuple[list[Yielded], tuple[UnresolvedName, ...]] | None:
+def load_yielded(store: Store, key: bytes) -> tuple[list[Yielded], tuple[UnresolvedUse, ...]] | None:
     """What store_yielded() kept; None when there is none."""
     data = store.find_memo("judgement", key)
     if data is None:

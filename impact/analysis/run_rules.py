@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from ...edges import processes
 from ...edges.console import describe_unforeseen
 from ...edges.groups import group_pairs
-from ..model.view import TargetView, UnresolvedName
+from ..model.view import TargetView, UnresolvedUse
 from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic, Rule
 from ..targets.snapshot import SnapshotError
@@ -56,7 +56,7 @@ class _Done(NamedTuple):
     rules that failed."""
 
     hits: list[tuple[int, Yielded]]
-    unresolved: set[UnresolvedName]
+    unresolved: set[UnresolvedUse]
     failures: Crashes
 
 

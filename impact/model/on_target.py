@@ -63,7 +63,7 @@ _UNCONFIGURED = Config()
 _LASTING = (frozenset, MappingProxyType)
 
 
-class UnresolvedName(NamedTuple):
+class UnresolvedUse(NamedTuple):
     """What a package uses and nobody is known to have. kind: cmake, include or import."""
 
     package: str
@@ -98,7 +98,7 @@ class WorkspaceOnTarget:
         self._own_headers = self._owned = 0
         # What others worked out about it, see cache_in_derived().
         self.derived: dict[Any, Any] = {}
-        self.unresolved: set[UnresolvedName] = set()
+        self.unresolved: set[UnresolvedUse] = set()
 
     def __iter__(self) -> Iterator[Package]:
         """Packages that are built on this target and that rules are to report on: all of them, or those of `part`."""

@@ -16,7 +16,7 @@ from ..facts.condition import Condition
 from ..targets.changes import DISTROS
 from ..targets.target import Provider
 from .cmake.build import At, FoundPackage, Stop, is_for_tests
-from .on_target import INTERFACES, PACKAGE, UnresolvedName, WorkspaceOnTarget
+from .on_target import INTERFACES, PACKAGE, UnresolvedUse, WorkspaceOnTarget
 from .package import find_folder_role
 from .roles import Roles
 from .unknown_contents import UnknownContents
@@ -148,7 +148,7 @@ class TargetView(WorkspaceOnTarget):
                 continue
             providers = self.find_cmake(found.name) or self._guess_by_form(found.name, found.how == "catkin")
             if not providers:
-                self.unresolved.add(UnresolvedName(package.name, "cmake", found.name))
+                self.unresolved.add(UnresolvedUse(package.name, "cmake", found.name))
                 continue
             role, how = _find_role(found.conditions), "find_package" if found.how == "find_package" else "component"
             in_tests = find_folder_role(package.strip_path(found.at.path)) == "test"
@@ -169,7 +169,7 @@ class TargetView(WorkspaceOnTarget):
                 continue
             providers = self.find_header(include.path)
             if not providers:
-                self.unresolved.add(UnresolvedName(package.name, "include", include.path))
+                self.unresolved.add(UnresolvedUse(package.name, "include", include.path))
                 continue
             if not providers[0].name:
                 continue  # the compiler has it, and nobody else is asked
@@ -188,7 +188,7 @@ class TargetView(WorkspaceOnTarget):
                 self._guess_by_form(head) if rest.partition(".")[0] in ("msg", "srv", "action") else ()
             )
             if not providers:
-                self.unresolved.add(UnresolvedName(package.name, "import", item.module))
+                self.unresolved.add(UnresolvedUse(package.name, "import", item.module))
                 continue
             if any(not p.name for p in providers):
                 continue
