@@ -1,8 +1,10 @@
-"""Which names of a Python source nothing in it binds, and which ones others can import from it, as Python itself scopes
-them."""
+"""Which names a block of a Python source binds, and which are there without."""
 
+import ast
 import builtins
-import symtable
+from typing import Any
+
+from .text import iterate_children
 
 PYTHON2_BUILTINS = frozenset((
     "StandardError", "apply", "basestring", "buffer", "cmp", "coerce", "execfile", "file", "intern", "long",
@@ -12,34 +14,36 @@ PYTHON2_BUILTINS = frozenset((
 PYTHON2_METHODS = frozenset(("has_key", "iteritems", "iterkeys", "itervalues", "viewitems", "viewkeys", "viewvalues"))
 """Methods of dictionaries in Python 2 alone. Source: "What's New In Python 3.0"."""
 # What modules, classes and sessions have besides, and what only some versions or machines have. Source: as above.
-_ALWAYS = frozenset(dir(builtins)) | {
+ALWAYS = frozenset(dir(builtins)) | {
     "__annotations__", "__builtins__", "__class__", "__dict__", "__file__", "__module__", "__path__", "__qualname__",
     "BaseExceptionGroup", "EncodingWarning", "ExceptionGroup", "PythonFinalizationError", "WindowsError", "_", "aiter",
     "anext", "display", "get_ipython", "profile", "reveal_type",
 }  # fmt: skip
 # What may bind names that no scope shows.
-_DYNAMIC = frozenset(("__builtin__", "__builtins__", "__getattr__", "builtins", "exec", "execfile", "globals", "locals",
-                      "vars"))  # fmt: skip
+DYNAMIC = frozenset(("__builtin__", "__builtins__", "__getattr__", "builtins", "exec", "execfile", "globals", "locals",
+                     "vars"))  # fmt: skip
+_SCOPES = frozenset((ast.AsyncFunctionDef, ast.ClassDef, ast.FunctionDef, ast.Lambda))
+COMPREHENSIONS = frozenset((ast.DictComp, ast.GeneratorExp, ast.ListComp, ast.SetComp))
 
 
-def find_scope_names(text: str) -> tuple[frozenset[str], frozenset[str]] | None:
-    """Names that some scope looks up in the module and nothing gives, and names that the module binds; None where that
-    cannot be told, star imports aside."""
-    if "sys.modules" in text:
-        return None
-    try:
-        top = symtable.symtable(text, "module", "exec")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
-    bound: set[str] = set()
-    asked: set[str] = set()
-    tables = [top]
-    for table in tables:
-        tables += table.get_children()
-        for symbol in table.get_symbols():
-            binds = symbol.is_assigned() or symbol.is_imported()
-            if binds and (table is top or symbol.is_declared_global()):
-                bound.add(symbol.get_name())
-            elif symbol.is_referenced() and (table is top or symbol.is_global()):
-                asked.add(symbol.get_name())
-    return None if _DYNAMIC & (asked | bound) else (frozenset(asked - bound - _ALWAYS), frozenset(bound))
+def list_bound_names(body: list[ast.stmt]) -> set[str]:
+    """Names that statements bind in the scope that they stand in."""
+    found: set[str] = set()
+    rest: list[tuple[Any, bool]] = [(node, False) for node in body]
+    for node, inside in rest:
+        cls = node.__class__
+        if cls is ast.Name:
+            if node.ctx.__class__ is not ast.Load and not inside:
+                found.add(node.id)
+        elif cls is ast.Import or cls is ast.ImportFrom:
+            found.update(alias.asname or alias.name.partition(".")[0] for alias in node.names)
+        else:
+            for name in (getattr(node, "name", None), getattr(node, "rest", None)):
+                if name.__class__ is str:
+                    found.add(name)
+            if cls not in _SCOPES:
+                if cls is ast.NamedExpr:
+                    found.add(node.target.id)
+                inner = inside or cls in COMPREHENSIONS
+                rest += [(child, inner) for child in iterate_children(node)]
+    return found

@@ -9,7 +9,7 @@ import msgspec
 from ....edges.dispatch import collect_node_methods
 from ..condition import UNDECIDED, Condition
 from ..place import Problem, Reference
-from .bound import PYTHON2_BUILTINS, PYTHON2_METHODS
+from .bound import ALWAYS, DYNAMIC, PYTHON2_BUILTINS, PYTHON2_METHODS, list_bound_names
 from .constants import MORE
 from .text import CHILD_FIELDS, SourceText, format_dotted, gives_up, list_caught_exceptions, list_parameters
 from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, join_dotted, make_field_type
@@ -106,12 +106,16 @@ class PythonReader(ObjectUses, SourceText):
         self.function = False
         self.conditions: tuple[Condition, ...] = ()
         self.consumed: set[int] = set()
-        # Whether annotations are not evaluated.
-        self.postponed = False
+        # Whether annotations are not evaluated, whether one is read, and the heads of names used elsewhere.
+        self.postponed = self.annotating = False
+        self.asked: set[str] = set()
+        # Members of what names hold of which nothing shows the type.
+        self.untyped: list[tuple[PythonScope, str, ast.Attribute]] = []
 
     def read(self, tree: ast.Module) -> None:
         future = (node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module == "__future__")
         self.postponed = any(alias.name == "annotations" for node in future for alias in node.names)
+        self.module_names = list_bound_names(tree.body)
         self.walk_all(tree.body)
         self.add_lookup_calls()
 
@@ -142,18 +146,22 @@ class PythonReader(ObjectUses, SourceText):
             self.needs = (minor, node.lineno, reason)
 
     def visit_Name(self, node: ast.Name) -> None:
-        if node.ctx.__class__ is ast.Store:
-            self.scope.bound.add(node.id)
-            self.scope.objects[node.id] = ""
-        elif node.id in self.unbound:
-            self.note_use(node.id, node.lineno, node.col_offset)
+        name = node.id
+        if node.ctx.__class__ is not ast.Load:
+            self.scope.bound.add(name)
+            if node.ctx.__class__ is ast.Store:
+                self.scope.objects[name] = ""
+        elif name not in self.scope.bound and name not in self.module_names and name not in _SURE:
+            self.note_use(name, node.lineno, node.col_offset)
 
     def note_use(self, text: str, line: int, offset: int) -> None:
         """Notes where a name, dotted or not, is used first; that of a method begins with the dot."""
-        conditions, head = self.use_conditions, text.partition(".")[0]
-        if head in self.unbound and head not in PYTHON2_BUILTINS:
-            conditions = tuple(one for one in conditions if one is not _EXCEPT_ANY)
-        key = (self.scope, text, conditions)
+        head = text.partition(".")[0]
+        if not self.annotating:
+            self.asked.add(head)
+        if head in DYNAMIC and not self.scope.knows(head):
+            self.watches_names = False
+        key = (self.scope, text, self.use_conditions)
         known = self.uses.get(key)
         if known is None:
             self.uses[key] = (line, offset, self.may_not_run)
@@ -187,8 +195,8 @@ class PythonReader(ObjectUses, SourceText):
             self.use_member(type_, steps, call)
         elif self.has_interfaces:
             self.use_constant(steps, call)
-        if not type_ and head not in self.classes and head not in self.unbound and not self.find_imported(head):
-            self.note_unknown(steps[0])
+        if not type_ and head not in self.classes and not self.find_imported(head):
+            self.untyped.append((self.scope, head, steps[0]))
         if own and len(steps) == 1 and node.ctx.__class__ is ast.Store:
             self.hold_own(node, None)
         if head == "self" or head == "cls":
@@ -221,7 +229,17 @@ class PythonReader(ObjectUses, SourceText):
             for (text, conditions), (line, column, lazy) in sorted(found.items(), key=lambda item: item[1][:2])
         )
 
-    def list_unbound_names(self) -> tuple[AttributeUse, ...]:
+    def find_bound_names(self) -> set[str] | None:
+        """Names that the module binds, for those who import it; None where that cannot be told."""
+        bound = self.module_names
+        bound |= {name for scope, name in self.declared_global if name in scope.bound or scope.imports.get(name)}
+        certain = self.watches_names and DYNAMIC.isdisjoint(bound)
+        for scope, head, member in self.untyped:
+            if not certain or head in bound or head in ALWAYS or scope.knows(head):
+                self.note_unknown(member)
+        return bound if certain and not self.starred else None
+
+    def list_unbound_names(self, bound: set[str] | None) -> tuple[AttributeUse, ...]:
         """The first use of each name that nothing binds, a sure one where there is any; and calls of methods that only
         Python 2 has and the file does not define, each with its dot."""
         found: dict[str, AttributeUse] = {}
@@ -230,10 +248,12 @@ class PythonReader(ObjectUses, SourceText):
         for (scope, text, conditions), (line, offset, lazy) in self.uses.items():
             lazy = lazy or line in unstarted
             head = text.partition(".")[0]
-            if head not in self.unbound and head:
+            if head and (bound is None or head in bound or head in ALWAYS or head not in self.asked):
                 continue
-            if any(head in s.bound or head in s.imports for s in scope.chain):
+            if scope.knows(head):
                 continue
+            if head not in PYTHON2_BUILTINS:
+                conditions = tuple(one for one in conditions if one is not _EXCEPT_ANY)
             name = head or text
             if not head and any(f"def {text[1:]}" in one for one in self.lines):
                 continue
@@ -319,10 +339,11 @@ class PythonReader(ObjectUses, SourceText):
 
     def visit_ListComp(self, node) -> None:
         outer = self.scope
-        self.scope = PythonScope(outer, False)
-        self.scope.parameters = outer.parameters
+        inner = PythonScope(outer, False)
+        inner.parameters, inner.binder = outer.parameters, outer.binder
         for generator in node.generators:
             self.visit(generator.iter)
+            self.scope = inner
             self.bind_element(generator.target, generator.iter)
             self.walk_all(generator.ifs)
         self.walk_all([node.key, node.value] if node.__class__ is ast.DictComp else [node.elt])
@@ -514,7 +535,9 @@ class PythonReader(ObjectUses, SourceText):
 
     def walk_annotation(self, annotation: ast.expr) -> None:
         """Visits an annotation. Where it is sure to be evaluated, what it needs is a need of the file."""
+        self.annotating = self.postponed
         self.visit(annotation)
+        self.annotating = False
         simple = isinstance(annotation, (ast.Name, ast.Attribute, ast.Constant))
         if simple or self.postponed or self.function or self.conditions:
             return
@@ -553,6 +576,7 @@ class PythonReader(ObjectUses, SourceText):
         self.walk_all(keyword.value for keyword in node.keywords)
         if getattr(node, "type_params", None):
             self.need(12, "type parameters", node)
+            self.walk_all(node.type_params)
         before = self.scope, self.inside_class, self.me
         self.inside_class, self.me = self.enter_class(node), ""
         self.scope = PythonScope(self.scope, True)
@@ -564,8 +588,8 @@ class PythonReader(ObjectUses, SourceText):
 
     def visit_Global(self, node: ast.Global) -> None:
         # An import or assignment here binds the module's name.
-        self.declared_global.update(node.names)
         for name in node.names:
+            self.declared_global.append((self.scope, name))
             self.scope.imports.setdefault(name, self.scope.chain[-1].imports.setdefault(name, []))
 
     def visit_Assign(self, node: ast.Assign) -> None:
@@ -613,6 +637,16 @@ class PythonReader(ObjectUses, SourceText):
         self.visit(node.value)
         self.visit(node.target)
         self.scope.objects[node.target.id] = self.find_type(node.value)
+        self.scope.binder.bound.add(node.target.id)
+
+    def visit_MatchAs(self, node) -> None:
+        """A pattern or parameter of a type, of which the name is no node."""
+        name = getattr(node, "name", None) or getattr(node, "rest", None)
+        if name:
+            self.scope.bound.add(name)
+        self.walk_children(node)
+
+    visit_MatchStar = visit_MatchMapping = visit_TypeVar = visit_ParamSpec = visit_TypeVarTuple = visit_MatchAs
 
     def visit_Match(self, node) -> None:
         self.need(10, "match statement", node)
@@ -838,4 +872,6 @@ class PythonReader(ObjectUses, SourceText):
             self.refer_to(kind, package, name, node)
 
 
+# What Python has itself, and what tells nothing of other names.
+_SURE = ALWAYS - DYNAMIC
 _HANDLERS = collect_node_methods(PythonReader, "visit_")

@@ -14,7 +14,6 @@ from ..markup import find_text_encoding
 from ..place import Problem, Reference
 from ..words import list_words
 from . import python2
-from .bound import find_scope_names
 from .reader import TRY, AttributeUse, Import, PythonReader
 from .text import drop_surrogates
 from .uses import FieldUse, PythonUse, TypedName
@@ -165,11 +164,10 @@ def extract(data: bytes) -> PythonFile:
         try:
             reader = PythonReader(parsed, text)
             # What was rewritten may have lost names that it binds.
-            reader.unbound, bound = (None if old else find_scope_names(parsed)) or (frozenset(), None)
+            reader.watches_names = reader.watches_names and not old
             reader.read(tree)
+            bound = reader.find_bound_names()
             uses = reader.list_object_uses(reader.find_column)
-            if reader.starred:
-                reader.unbound, bound = frozenset(), None
             return PythonFile(
                 imports=tuple(reader.imports),
                 attributes=reader.list_attributes(),
@@ -181,7 +179,7 @@ def extract(data: bytes) -> PythonFile:
                 uses=uses,
                 words=list_words(data),
                 fields=reader.list_field_uses(reader.find_column),
-                unbound=() if old else reader.list_unbound_names(),
+                unbound=() if old else reader.list_unbound_names(bound),
                 bound="" if bound is None else f" {' '.join(sorted(bound))} ",
                 typed=reader.list_typed_names(),
                 unknown=reader.unknown,

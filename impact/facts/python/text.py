@@ -49,11 +49,31 @@ _NO_NODES = frozenset((
     "name", "op", "ops", "rest", "simple", "str", "tag", "type_comment", "type_ignores",
 ))  # fmt: skip
 CHILD_FIELDS: dict[type, tuple[str, ...]] = {
-    cls: tuple(field for field in cls._fields if field not in _NO_NODES)
+    cls: tuple(field for field in cls._fields if field not in _NO_NODES or (field == "name" and "value" in cls._fields))
     for cls in vars(ast).values()
     if isinstance(cls, type) and issubclass(cls, ast.AST)
 } | dict.fromkeys((ast.Constant, ast.Global, ast.Nonlocal, ast.MatchSingleton), ())
 """For every node class the fields that can hold nodes; those of the last ones hold strings and constants."""
+
+
+def iterate_children(node: ast.AST) -> Iterator[ast.AST]:
+    """The nodes right below a node, in the order of the source as far as fields have it."""
+    for field in CHILD_FIELDS[node.__class__]:
+        child = getattr(node, field, None)
+        if child.__class__ is list:
+            for one in child:  # type: ignore[union-attr]
+                if one is not None:
+                    yield one
+        elif child is not None:
+            yield child
+
+
+def walk_nodes(node: ast.AST) -> Iterator[ast.AST]:
+    """A node and all below it, but for those that only tell of an operator or of how a name is used."""
+    rest = [node]
+    for one in rest:
+        rest += iterate_children(one)
+        yield one
 
 
 def list_parameters(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, ast.expr | None]]:

@@ -14,8 +14,9 @@ from typing import NamedTuple
 import msgspec
 
 from ..condition import Condition
+from .bound import ALWAYS
 from .constants import MORE
-from .values import PythonValues
+from .values import PythonScope, PythonValues
 
 
 class CallArguments(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -130,12 +131,14 @@ class ObjectUses(PythonValues):
         # What functions of the module give, by name, and what the one that is read gave so far; None for a generator.
         self.results: dict[str, str] = {}
         self.given: set[str] | None = set()
-        # Names that nothing in the file binds, see bound.py, and the modules whose star imports may.
-        self.unbound: frozenset[str] = frozenset()
+        # Names that the module itself binds, here or further below, and the modules whose star imports may.
+        self.module_names: set[str] = set()
         self.starred: list[str] = []
+        # Whether names that nothing binds tell anything.
+        self.watches_names = "sys.modules" not in text
         # Members of objects whose types do not show, with the number of places.
         self.unknown: dict[str, int] = {}
-        self.declared_global: set[str] = set()
+        self.declared_global: list[tuple[PythonScope, str]] = []
         self.inside_class: _Class | None = None
         # First parameters of the methods around, by which the object is called.
         self.me = ""
@@ -181,6 +184,11 @@ class ObjectUses(PythonValues):
             return make_field_type(self.find_type(node.value), ELEMENT)
         return ""
 
+    def is_unbound(self, name: str) -> bool:
+        """Whether nothing is known to bind a name that is used here."""
+        known = name in ALWAYS or name in self.module_names or not self.watches_names
+        return not known and not self.scope.knows(name)
+
     def is_me(self, node) -> bool:
         """Whether an expression is the object whose method is read."""
         return node.__class__ is ast.Name and node.id == self.me and self.inside_class is not None
@@ -202,7 +210,7 @@ class ObjectUses(PythonValues):
             if node.id in looking.bound:
                 own = not parts and (node.id in self.classes or (looking.parent is None and node.id in self.results))
                 return f"{OWN}{node.id}" if own else ""
-        if self.starred and node.id in self.unbound:
+        if self.starred and self.is_unbound(node.id):
             only = join_dotted(self.starred[0], node.id) if len(self.starred) == 1 else f"{STARRED}.{node.id}"
             return ".".join([only, *reversed(parts)])
         return ""
@@ -495,7 +503,8 @@ class ObjectUses(PythonValues):
 
     def list_typed_names(self) -> tuple[TypedName, ...]:
         """What the names are that others can import, as far as types show."""
-        objects = {name: self.scope.objects.get(name, "") for name in self.scope.bound - self.declared_global}
+        own = self.scope.bound.difference(name for _, name in self.declared_global)
+        objects = {name: self.scope.objects.get(name, "") for name in own}
         found = [TypedName(name, (reported,)) for name, type_ in {**objects, **self.results}.items()
                  if name not in self.classes and (reported := self._tell_type(type_))]  # fmt: skip
         for name in self.scope.bound & self.classes.keys():

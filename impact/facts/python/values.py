@@ -31,7 +31,9 @@ VALUED = frozenset((ast.Constant, ast.Name, ast.BinOp, ast.JoinedStr, ast.List, 
 class PythonScope:
     """Names of a module, class or function: imported, otherwise bound, and bound to a known value."""
 
-    __slots__ = ("bound", "chain", "imports", "is_class", "machine", "objects", "parameters", "parent", "values")
+    __slots__ = (
+        "binder", "bound", "chain", "imports", "is_class", "machine", "objects", "parameters", "parent", "values",
+    )  # fmt: skip
 
     def __init__(self, parent: "PythonScope | None", is_class: bool) -> None:
         # A class body is no scope for the functions in it.
@@ -47,8 +49,14 @@ class PythonScope:
         # Types of what variables hold, see uses.py.
         self.objects: dict[str, str] = {}
         self.parameters: list[str] = []
+        # Where `:=` binds: of a comprehension the scope around it.
+        self.binder = self
         # From the innermost scope on.
         self.chain: tuple[PythonScope, ...] = (self, *(parent.chain if parent is not None else ()))
+
+    def knows(self, name: str) -> bool:
+        """Whether the scope, or one around it, has bound a name so far."""
+        return any(name in scope.bound or name in scope.imports for scope in self.chain)
 
 
 class PythonValues(Constants):
