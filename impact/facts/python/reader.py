@@ -11,7 +11,16 @@ from ..condition import UNDECIDED, Condition
 from ..place import Problem, Reference
 from .bound import ALWAYS, DYNAMIC, PYTHON2_BUILTINS, PYTHON2_METHODS, list_bound_names
 from .constants import MORE
-from .text import CHILD_FIELDS, SourceText, format_dotted, gives_up, list_caught_exceptions, list_parameters
+from .text import (
+    CHILD_FIELDS,
+    SourceText,
+    format_dotted,
+    gives_up,
+    iterate_children,
+    list_caught_exceptions,
+    list_parameters,
+    walk_nodes,
+)
 from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, join_dotted, make_field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
 
@@ -88,6 +97,7 @@ class PythonReader(ObjectUses, SourceText):
         # The two differ where Python 2 syntax was rewritten; lines are the same, indentation may not be.
         self.original = original.split("\n") if original != text else []
         self.has_paths = "package://" in text or "$(find" in text
+        self.handlers = _HANDLERS if self.has_paths else _WITHOUT_STRINGS
         self.imports: list[Import] = []
         # Line, offset, and whether only functions that may not run have it.
         self.uses: dict[tuple[PythonScope, str, tuple[Condition, ...]], tuple[int, int, bool]] = {}
@@ -120,19 +130,18 @@ class PythonReader(ObjectUses, SourceText):
         self.add_lookup_calls()
 
     def walk_all(self, nodes) -> None:
+        handlers = self.handlers
         for node in nodes:
-            self.visit(node)
+            handler = handlers.get(node.__class__)
+            if handler is not None:
+                handler(self, node)
 
     def visit(self, node) -> None:
-        _HANDLERS.get(node.__class__, PythonReader.walk_children)(self, node)
+        self.walk_all((node,))
 
     def walk_children(self, node) -> None:
         """Visits the children of a node."""
-        for field in CHILD_FIELDS.get(node.__class__, ()):
-            child = getattr(node, field)
-            for one in child if child.__class__ is list else (child,):
-                if one is not None:
-                    self.visit(one)
+        self.walk_all(iterate_children(node))
 
     def find_column(self, line: int, offset: int) -> int:
         """The same, in the text as it was before Python 2 was rewritten."""
@@ -377,7 +386,7 @@ class PythonReader(ObjectUses, SourceText):
         """The source of a test, names that stand for a variable of the environment replaced by what reads it."""
         test = self.format_source(node)
         known = any(scope.machine for scope in self.scope.chain)
-        for name in {part.id for part in ast.walk(node) if isinstance(part, ast.Name)} if known else ():
+        for name in {part.id for part in walk_nodes(node) if isinstance(part, ast.Name)} if known else ():
             holder = next((scope for scope in self.scope.chain if name in scope.bound), None)
             if holder is not None and name in holder.machine:
                 test = re.sub(rf"(?<![\w.'\"]){name}(?![\w'\"])", lambda _, text=holder.machine[name]: text, test)
@@ -541,7 +550,7 @@ class PythonReader(ObjectUses, SourceText):
         simple = isinstance(annotation, (ast.Name, ast.Attribute, ast.Constant))
         if simple or self.postponed or self.function or self.conditions:
             return
-        for node in ast.walk(annotation):
+        for node in walk_nodes(annotation):
             if isinstance(node, ast.Subscript) and self.is_type(node.value, _GENERIC):
                 self.need(9, f"annotation {ast.unparse(node.value)}[...]", node)
             sides = (node.left, node.right) if isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitOr) else ()
@@ -672,7 +681,7 @@ class PythonReader(ObjectUses, SourceText):
         self.walk_children(node)
 
     def visit_Constant(self, node: ast.Constant) -> None:
-        if self.has_paths and node.value.__class__ is str:
+        if node.value.__class__ is str:
             self.add_mentions(node.value, node)  # type: ignore[arg-type]
 
     def add_mentions(self, text: str, node) -> None:
@@ -711,9 +720,7 @@ class PythonReader(ObjectUses, SourceText):
         if sys.version_info >= (3, 12):
             self.check_quotes(node)
         self.add_path(node)
-        for value in node.values:
-            if self.has_paths or value.__class__ is ast.FormattedValue:
-                self.visit(value)
+        self.walk_all(node.values)
 
     def check_quotes(self, node: ast.JoinedStr) -> None:
         """Before 3.12 an expression in an f-string could hold neither the f-string's own quotes nor a backslash."""
@@ -740,7 +747,7 @@ class PythonReader(ObjectUses, SourceText):
             return
         value = self.find_text(node)
         if isinstance(value, PackagePath) and value.path:
-            self.consumed.update(map(id, ast.walk(node)))
+            self.consumed.update(map(id, walk_nodes(node)))
             self.refer_to("file", value.package, value.path, node, value.assumed)
 
     def visit_Call(self, node: ast.Call) -> None:
@@ -815,7 +822,7 @@ class PythonReader(ObjectUses, SourceText):
         argument = node.args[0] if node.args else node.keywords[0].value if node.keywords else node
         if isinstance(value, PackagePath):
             if id(node) not in self.consumed:
-                self.consumed.update(map(id, ast.walk(node)))
+                self.consumed.update(map(id, walk_nodes(node)))
                 self.refer_to("package", value.package, "", argument, value.assumed)
         elif function == "find" or self.defining is None or not isinstance(argument, ast.Name):
             return
@@ -874,4 +881,7 @@ class PythonReader(ObjectUses, SourceText):
 
 # What Python has itself, and what tells nothing of other names.
 _SURE = ALWAYS - DYNAMIC
-_HANDLERS = collect_node_methods(PythonReader, "visit_")
+# By the class of a node; one of which nothing is said has no children.
+_HANDLERS = {cls: PythonReader.walk_children for cls, fields in CHILD_FIELDS.items() if fields}
+_HANDLERS |= collect_node_methods(PythonReader, "visit_")
+_WITHOUT_STRINGS = {cls: handler for cls, handler in _HANDLERS.items() if cls is not ast.Constant}

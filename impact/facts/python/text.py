@@ -72,8 +72,13 @@ def walk_nodes(node: ast.AST) -> Iterator[ast.AST]:
     """A node and all below it, but for those that only tell of an operator or of how a name is used."""
     rest = [node]
     for one in rest:
-        rest += iterate_children(one)
         yield one
+        for field in CHILD_FIELDS[one.__class__]:
+            child = getattr(one, field, None)
+            if child.__class__ is list:
+                rest += [each for each in child if each is not None]  # type: ignore[union-attr]
+            elif child is not None:
+                rest.append(child)
 
 
 def list_parameters(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, ast.expr | None]]:

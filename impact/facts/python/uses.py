@@ -16,6 +16,7 @@ import msgspec
 from ..condition import Condition
 from .bound import ALWAYS
 from .constants import MORE
+from .text import walk_nodes
 from .values import PythonScope, PythonValues
 
 
@@ -239,7 +240,7 @@ class ObjectUses(PythonValues):
         """A loop begins, in which a variable that it binds itself has a type only where that stays the same."""
         objects = self.scope.objects
         same: set[int] = set()
-        for node in ast.walk(loop) if any(objects.values()) else ():
+        for node in walk_nodes(loop) if any(objects.values()) else ():
             if node.__class__ is ast.Assign:
                 type_ = self.find_type(node.value)  # type: ignore[attr-defined]
                 targets = node.targets if type_ else ()  # type: ignore[attr-defined]
