@@ -41,6 +41,7 @@ from .python_values import (
     get_source,
     join_conditions,
     make_parent_path,
+    split_conditions,
 )
 from .python_walk import MOST_TURNS, Walker
 
@@ -83,7 +84,7 @@ class LaunchCall(NamedTuple):
     def list_texts(self, value: Any) -> list[Value]:
         """A list of texts, one each."""
         items = value.items if isinstance(value, Items) else [value]
-        return [self.make_text(item.value if isinstance(item, ConditionalValue) else item) for item in items]
+        return [self.make_text(split_conditions(item)[0]) for item in items]
 
     def make_piece(self, kind: str, *values: Any, is_str: bool = False) -> TextValue:
         """A substitution of several values."""
@@ -155,11 +156,9 @@ class LaunchCall(NamedTuple):
             of_tuples = isinstance(first, Items) and first.kind == "tuple"
             of_pair = isinstance(held, Items) and held.kind == "tuple" and first is not None and not of_tuples
             if isinstance(first, TextValue) or of_pair:
-                second = items[1]
-                if isinstance(second, ConditionalValue):
-                    conditions, second = (*conditions, *second.conditions), second.value
+                second, more = split_conditions(items[1])
                 texts = (self.make_text(first), self.make_text(second))
-                yield Action(kind, self.line, tuple(zip(keys, texts, strict=True)), conditions)
+                yield Action(kind, self.line, tuple(zip(keys, texts, strict=True)), (*conditions, *more))
                 continue
             for item in items:
                 yield from self.list_pairs(argument, kind, keys, item, conditions)
@@ -472,7 +471,7 @@ def _rewrite_yaml(call: LaunchCall) -> Any:
     parts = [call.make_text(call.get(0, "source_file")), make_literal("") if root is None else call.make_text(root)]
     rewrites = call.get(1, "param_rewrites")
     for key, value in rewrites.items if isinstance(rewrites, Pairs) else ():
-        parts += (call.make_text(key), call.make_text(value.value if isinstance(value, ConditionalValue) else value))
+        parts += (call.make_text(key), call.make_text(split_conditions(value)[0]))
     value = (ValuePart("rewritten", "", tuple(parts)),)
     # Values that stand for others, wherever they are
     values = call.get(-1, "value_rewrites")

@@ -161,11 +161,13 @@ def join_conditions(conditions: Sequence[ActionCondition]) -> Value:
 
 def add_conditions(value: Any, conditions: tuple[ActionCondition, ...]) -> Any:
     """A value under conditions, itself where there are none."""
-    if not conditions:
-        return value
-    if isinstance(value, ConditionalValue):
-        return ConditionalValue(value.value, (*conditions, *value.conditions))
-    return ConditionalValue(value, conditions)
+    inner, more = split_conditions(value)
+    return ConditionalValue(inner, (*conditions, *more)) if conditions else value
+
+
+def split_conditions(value: Any) -> tuple[Any, tuple[ActionCondition, ...]]:
+    """A value without the conditions that it stands under, and these."""
+    return (value.value, value.conditions) if isinstance(value, ConditionalValue) else (value, ())
 
 
 def find_index(holder: Items, key: Any) -> int | None:

@@ -12,7 +12,7 @@ from typing import Any
 
 from ....edges.dispatch import collect_node_methods
 from ..place import Problem
-from ..python.text import fill_format, fill_percent, list_parameters, make_mapping
+from ..python.text import fill_format, fill_percent, list_imported, list_parameters, make_mapping
 from .actions import (
     TEXT_METHODS,
     Action,
@@ -51,6 +51,7 @@ from .python_values import (
     get_source,
     join_conditions,
     make_parent_path,
+    split_conditions,
 )
 
 MOST_STEPS = 200_000
@@ -201,17 +202,11 @@ class Walker:
             self.bind_unknown(statement.target)
             self.walk_under(statement.body, ActionCondition("each", (make_other(over),), statement.lineno))
         else:
-            for turn in turns:
-                extra = self.bind_turn(statement.target, turn)
+            for value, extra in map(split_conditions, turns):
+                self.bind(statement.target, value)
                 if self.walk_under(statement.body, *extra) and not _jumps_to_next_turn(statement.body):
                     break
         self.walk_block(statement.orelse)
-
-    def bind_turn(self, target: ast.expr, turn: Any) -> tuple[ActionCondition, ...]:
-        """Binds the variable of a loop for one turn; gives the conditions that this one stands under."""
-        value, extra = (turn.value, turn.conditions) if isinstance(turn, ConditionalValue) else (turn, ())
-        self.bind(target, value)
-        return extra
 
     def bind_unknown(self, target: ast.expr) -> None:
         for node in ast.walk(target):
@@ -255,14 +250,10 @@ class Walker:
                 type_.methods[inner.name] = LaunchFunction(inner, self.scope)
         self.scope.names[statement.name] = type_
 
-    def run_Import(self, statement: ast.Import) -> None:
-        for alias in statement.names:
-            top = alias.name.partition(".")[0]
-            self.scope.names[alias.asname or top] = LaunchModule(alias.name if alias.asname else top)
+    def run_Import(self, statement: ast.Import | ast.ImportFrom) -> None:
+        self.scope.names.update((name, LaunchModule(path)) for name, path in list_imported(statement))
 
-    def run_ImportFrom(self, statement: ast.ImportFrom) -> None:
-        for alias in statement.names:
-            self.scope.names[alias.asname or alias.name] = LaunchModule(f"{statement.module or ''}.{alias.name}")
+    run_ImportFrom = run_Import
 
     def evaluate_test(self, node: ast.expr) -> bool | Value:
         """Whether an expression is true: known, or a value that tells at launch."""
@@ -531,12 +522,13 @@ class Walker:
                 over = f"for {get_source(generator.target)} in {get_source(generator.iter)}"
                 self.conditions.append(ActionCondition("each", (make_other(over),), node.lineno))
                 turns = [None]
-            for turn in turns:
+            for value, extra in map(split_conditions, turns):
                 start = len(self.conditions)
                 if unknown:
                     self.bind_unknown(generator.target)
                 else:
-                    self.conditions += self.bind_turn(generator.target, turn)
+                    self.bind(generator.target, value)
+                    self.conditions += extra
                 truths = [self.evaluate_test(test) for test in generator.ifs]
                 if not any(truth is False for truth in truths):
                     self.conditions += [
@@ -653,10 +645,7 @@ class Walker:
         if isinstance(receiver, Pairs):
             depth = len(self.conditions)
             if name == "items":
-                pairs = [
-                    (k, v.value, v.conditions) if isinstance(v, ConditionalValue) else (k, v, ())
-                    for k, v in receiver.items
-                ]
+                pairs = [(key, *split_conditions(value)) for key, value in receiver.items]
                 return Items([add_conditions(Items([k, v], depth), c) for k, v, c in pairs], depth)
             if name in ("keys", "values"):
                 return Items([pair[name == "values"] for pair in receiver.items], depth)

@@ -4,7 +4,7 @@ import ast
 import builtins
 from typing import Any
 
-from .text import iterate_children
+from .text import iterate_children, list_imported
 
 PYTHON2_BUILTINS = frozenset((
     "StandardError", "apply", "basestring", "buffer", "cmp", "coerce", "execfile", "file", "intern", "long",
@@ -36,7 +36,7 @@ def list_bound_names(body: list[ast.stmt]) -> set[str]:
             if node.ctx.__class__ is not ast.Load and not inside:
                 found.add(node.id)
         elif cls is ast.Import or cls is ast.ImportFrom:
-            found.update(alias.asname or alias.name.partition(".")[0] for alias in node.names)
+            found.update(name for name, _ in list_imported(node))
         else:
             for name in (getattr(node, "name", None), getattr(node, "rest", None)):
                 if name.__class__ is str:

@@ -20,8 +20,7 @@ from .flow_conditions import (
 )
 from .flow_expressions import ANY, Expressions
 from .source import PythonSource, read
-from .text import SIGNS
-from .uses import join_dotted
+from .text import SIGNS, list_imported
 
 # Calls that never return.
 EXITS = frozenset(("sys.exit", "exit", "quit", "os._exit", "os.abort"))
@@ -417,20 +416,11 @@ class PythonStatements(Expressions):
 
     read_Nonlocal = read_Global
 
-    def read_Import(self, node: ast.Import) -> Leaving:
-        scope = self.body.name
-        for alias in node.names:
-            head = alias.name.partition(".")[0]
-            self.aliases.append(Alias(alias.asname or head, alias.name if alias.asname else head, scope))
+    def read_Import(self, node: ast.Import | ast.ImportFrom) -> Leaving:
+        self.aliases += (Alias(name, meant, self.body.name) for name, meant in list_imported(node))
         return STAYS
 
-    def read_ImportFrom(self, node: ast.ImportFrom) -> Leaving:
-        scope = self.body.name
-        module = "." * node.level + (node.module or "")
-        for alias in node.names:
-            meant = module if alias.name == "*" else join_dotted(module, alias.name)
-            self.aliases.append(Alias(alias.asname or alias.name, meant, scope))
-        return STAYS
+    read_ImportFrom = read_Import
 
     def list_decorators(self, node) -> tuple[str, ...]:
         found: list[str] = []

@@ -12,7 +12,7 @@ import ast
 from ....edges.dispatch import collect_node_methods
 from ..flow import Access, Assignment, DataMember, FlowCall, FlowExpr, FlowParameter, Guard
 from .flow_body import Body, ClassBody
-from .text import CHILD_FIELDS, SourceText, drop_surrogates, format_pieces, list_parameters, split_percent_format
+from .text import SourceText, drop_surrogates, format_pieces, iterate_children, list_parameters, split_percent_format
 
 # Tables of numbers are no part of any flow.
 LONGEST_LIST = 500
@@ -145,11 +145,8 @@ class Expressions(SourceText):
         if visitor is not None:
             visitor(self, node)
             return
-        for field in CHILD_FIELDS[node.__class__]:
-            child = getattr(node, field)
-            for one in child if child.__class__ is list else (child,):
-                if one is not None:
-                    self.visit(one)
+        for one in iterate_children(node):
+            self.visit(one)
 
     def visit_Attribute(self, node) -> None:
         self.reach(node)

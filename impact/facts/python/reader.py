@@ -18,10 +18,11 @@ from .text import (
     gives_up,
     iterate_children,
     list_caught_exceptions,
+    list_imported,
     list_parameters,
     walk_nodes,
 )
-from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, join_dotted, make_field_type
+from .uses import CALLBACK_CALLS, ELEMENT, OWN, SURE_TO_RUN, ObjectUses, make_field_type
 from .values import JOINS, PACKAGE_CALLS, PACKAGE_NAME, WRAPPERS, PackagePath, PythonScope
 
 
@@ -271,37 +272,36 @@ class PythonReader(ObjectUses, SourceText):
             found[name] = min(known, use, key=lambda one: (bool(one.conditions), one.lazy, one.line, one.column))
         return tuple(sorted(found.values(), key=lambda one: (one.line, one.column)))
 
-    def bind_import(self, name: str, dotted: str, relevant: tuple[Condition, ...]) -> None:
-        known = self.scope.imports.setdefault(name, [])
-        if (dotted, relevant) not in known:
-            known.append((dotted, relevant))
+    def bind_imported(self, node: ast.Import | ast.ImportFrom) -> None:
+        for name, dotted in list_imported(node):
+            if name == "*":
+                self.starred.append(dotted)
+                continue
+            known = self.scope.imports.setdefault(name, [])
+            if (dotted, self.use_conditions) not in known:
+                known.append((dotted, self.use_conditions))
 
     def visit_Import(self, node: ast.Import) -> None:
         for alias in node.names:
             column = self.find_column(alias.lineno, alias.col_offset)
             module = sys.intern(alias.name)
             self.imports.append(Import(module, (), 0, alias.lineno, column, self.function, self.conditions))
-            head = module.partition(".")[0]
-            self.bind_import(alias.asname or head, module if alias.asname else head, self.use_conditions)
+        self.bind_imported(node)
 
     def visit_ImportFrom(self, node: ast.ImportFrom) -> None:
         module = sys.intern(node.module or "")
-        dotted = "." * node.level + module
         column = self.find_column(node.lineno, node.col_offset)
         names = tuple(sys.intern(alias.name) for alias in node.names)
         called = tuple(sys.intern(alias.asname or alias.name) for alias in node.names)
         self.imports.append(Import(module, names, node.level, node.lineno, column, self.function, self.conditions,
                                    () if called == names else called))  # fmt: skip
         for alias in node.names:
-            if alias.name == "*":
-                self.starred.append(dotted)
-                continue
-            self.bind_import(alias.asname or alias.name, join_dotted(dotted, alias.name), self.use_conditions)
-            if not node.level:
+            if alias.name != "*" and not node.level:
                 column = self.find_column(alias.lineno, alias.col_offset)
                 self.imported_names.append(
-                    AttributeUse(f"{dotted}.{alias.name}", alias.lineno, column, self.use_conditions, self.may_not_run)
+                    AttributeUse(f"{module}.{alias.name}", alias.lineno, column, self.use_conditions, self.may_not_run)
                 )
+        self.bind_imported(node)
 
     def walk_under(self, nodes, condition: Condition | None, use: Condition | None) -> None:
         """Visits statements with one more condition for imports and one for uses."""

@@ -95,6 +95,23 @@ def list_parameters(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, as
         yield "kwargs", arguments.kwarg, None
 
 
+def join_dotted(module: str, name: str) -> str:
+    """The dotted name of what a module has; of a relative one that is only dots, these before the name."""
+    return f"{module}{'' if module.endswith('.') else '.'}{name}"
+
+
+def list_imported(node: ast.Import | ast.ImportFrom) -> Iterator[tuple[str, str]]:
+    """Names that an import binds and what they stand for, dotted; `*` and the module for all that one has."""
+    if isinstance(node, ast.Import):
+        for alias in node.names:
+            name = alias.name if alias.asname else alias.name.partition(".")[0]
+            yield alias.asname or name, name
+        return
+    module = "." * node.level + (node.module or "")
+    for alias in node.names:
+        yield alias.asname or alias.name, module if alias.name == "*" else join_dotted(module, alias.name)
+
+
 def make_mapping(call: ast.Call) -> ast.Dict:
     """The keyword arguments of a call as the mapping that `dict(...)` would make of them."""
     keys: list[ast.expr | None] = [

@@ -16,7 +16,7 @@ import msgspec
 from ..condition import Condition
 from .bound import ALWAYS
 from .constants import MORE
-from .text import walk_nodes
+from .text import join_dotted, walk_nodes
 from .values import PythonScope, PythonValues
 
 
@@ -534,11 +534,6 @@ class ObjectUses(PythonValues):
                 seen.add(base)
                 yield "", base[1:]
                 todo += self.classes[base[1:]].bases
-
-
-def join_dotted(module: str, name: str) -> str:
-    """The dotted name of what a module has; of a relative one that is only dots, these before the name."""
-    return f"{module}{'' if module.endswith('.') else '.'}{name}"
 
 
 def _has_fields(type_: str) -> bool:

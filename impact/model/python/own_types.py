@@ -8,7 +8,8 @@ from collections.abc import Collection, Mapping
 
 from ...facts.python.reader import Import
 from ...facts.python.source import PythonFile
-from ...facts.python.uses import CONSTRUCTORS, OWN, STARRED, TypedName, join_dotted
+from ...facts.python.text import join_dotted
+from ...facts.python.uses import CONSTRUCTORS, OWN, STARRED, TypedName
 from .undefined import PackageModules
 
 # Steps from one name to another, which may go in circles.
