@@ -27,7 +27,6 @@ from .python_values import (
     ConditionalValue,
     ConditionValue,
     Context,
-    Either,
     FilledFile,
     Items,
     LaunchConstant,
@@ -38,8 +37,11 @@ from .python_values import (
     TypedValue,
     Unknown,
     YamlContent,
+    add_action_conditions,
     get_source,
+    is_given,
     join_conditions,
+    list_branches,
     make_parent_path,
     split_conditions,
 )
@@ -96,18 +98,6 @@ class LaunchCall(NamedTuple):
     def make_pairs(self, pairs: Iterable[tuple[Any, Any]] = ()) -> Pairs:
         return Pairs(list(pairs), len(self.walker.conditions))
 
-    def list_branches(
-        self, value: Any, extra: tuple[ActionCondition, ...] = ()
-    ) -> Iterator[tuple[Any, tuple[ActionCondition, ...]]]:
-        """What a value may be, with the conditions under which it is; nothing for None."""
-        if isinstance(value, ConditionalValue):
-            yield from self.list_branches(value.value, (*extra, *value.conditions))
-        elif isinstance(value, Either):
-            yield from self.list_branches(value.yes, (*extra, ActionCondition("if", value.condition, self.line)))
-            yield from self.list_branches(value.no, (*extra, ActionCondition("unless", value.condition, self.line)))
-        elif is_given(value):
-            yield value, extra
-
     def make_action(
         self,
         kind: str,
@@ -147,7 +137,7 @@ class LaunchCall(NamedTuple):
         self, argument: str, kind: str, keys: tuple[str, str], value: Any, extra: tuple[ActionCondition, ...] = ()
     ) -> Iterator[Action]:
         """Actions with two attributes of what an argument gives as pairs: a dict, a pair, or a list of any of these."""
-        for held, conditions in self.list_branches(value, extra):
+        for held, conditions in list_branches(value, self.line, extra):
             if not isinstance(held, (Items, Pairs)):
                 yield self.skip_argument(argument, held, conditions)
                 continue
@@ -164,7 +154,7 @@ class LaunchCall(NamedTuple):
                 yield from self.list_pairs(argument, kind, keys, item, conditions)
 
     def list_parameters(self, value: Any, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:
-        for held, conditions in self.list_branches(value, extra):
+        for held, conditions in list_branches(value, self.line, extra):
             if isinstance(held, Items):
                 for item in held.items:
                     yield from self.list_parameters(item, conditions)
@@ -222,11 +212,6 @@ class LaunchCall(NamedTuple):
 Maker = Callable[[LaunchCall], Any]
 
 
-def is_given(value: Any) -> bool:
-    """False for an argument that is left out or None."""
-    return value is not None and value != LaunchConstant(None)
-
-
 def _define_node(kind: str) -> Maker:
     def make(call: LaunchCall) -> Any:
         attributes = call.list_attributes(
@@ -273,7 +258,7 @@ def _make_simple(kind: str, *names: tuple[str, int, str]) -> Maker:
 
 def _set_parameter(call: LaunchCall) -> Any:
     found = call.expand_parameter(call.make_text(call.get(0, "name")), call.get(1, "value"))
-    made = [Action(a.kind, a.line, a.attributes, (*call.list_conditions(), *a.conditions)) for a in found]
+    made = [add_action_conditions(action, call.list_conditions()) for action in found]
     return made[0] if len(made) == 1 else call.make_list(made)
 
 
@@ -347,10 +332,7 @@ def _make_handler(call: LaunchCall) -> Any:
 def _register(call: LaunchCall) -> Any:
     handler = call.get(0, "event_handler")
     if isinstance(handler, Action):
-        if not handler.children:
-            return call.make_list(())
-        conditions = (*call.list_conditions(), *handler.conditions)
-        return Action(handler.kind, handler.line, handler.attributes, conditions, handler.children)
+        return add_action_conditions(handler, call.list_conditions()) if handler.children else call.make_list(())
     return handler if handler is not None else call.unknown
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import msgspec
+from msgspec import structs
 
 from ..python.text import ARITHMETIC, COMPARISONS
-from .actions import ActionCondition, Value, ValuePart, make_literal
+from .actions import Action, ActionCondition, Value, ValuePart, make_literal
 
 
 class TooMuch(Exception):
@@ -168,6 +169,31 @@ def add_conditions(value: Any, conditions: tuple[ActionCondition, ...]) -> Any:
 def split_conditions(value: Any) -> tuple[Any, tuple[ActionCondition, ...]]:
     """A value without the conditions that it stands under, and these."""
     return (value.value, value.conditions) if isinstance(value, ConditionalValue) else (value, ())
+
+
+def list_branches(
+    value: Any, line: int, extra: tuple[ActionCondition, ...] = ()
+) -> Iterator[tuple[Any, tuple[ActionCondition, ...]]]:
+    """What a value may be, with the conditions under which it is; nothing for one that is left out."""
+    value, more = split_conditions(value)
+    conditions = (*extra, *more)
+    if isinstance(value, ConditionalValue):
+        yield from list_branches(value, line, conditions)
+    elif isinstance(value, Either):
+        yield from list_branches(value.yes, line, (*conditions, ActionCondition("if", value.condition, line)))
+        yield from list_branches(value.no, line, (*conditions, ActionCondition("unless", value.condition, line)))
+    elif is_given(value):
+        yield value, conditions
+
+
+def is_given(value: Any) -> bool:
+    """False for an argument that is left out or None."""
+    return value is not None and value != LaunchConstant(None)
+
+
+def add_action_conditions(action: Action, conditions: tuple[ActionCondition, ...]) -> Action:
+    """An action under more conditions around its own."""
+    return structs.replace(action, conditions=(*conditions, *action.conditions)) if conditions else action
 
 
 def find_index(holder: Items, key: Any) -> int | None:

@@ -45,11 +45,13 @@ from .python_values import (
     TypedValue,
     Unknown,
     YamlContent,
+    add_action_conditions,
     add_conditions,
     calculate_result,
     find_index,
     get_source,
     join_conditions,
+    list_branches,
     make_parent_path,
     split_conditions,
 )
@@ -442,15 +444,11 @@ class Walker:
         if isinstance(left, Items) and isinstance(right, Items):
             self.count_steps(len(left.items) + len(right.items))
             return Items([*left.items, *right.items], len(self.conditions), left.kind)
-        if isinstance(left, TextValue) or isinstance(right, TextValue):
-            if isinstance(left, (TextValue, Either)) and isinstance(right, (TextValue, Either)):
-                parts = [self.make_text(left, node), self.make_text(right, node)]
-                return TextValue(join_all(parts), all(getattr(v, "is_str", True) for v in (left, right)))
-            if isinstance(left, Items) or isinstance(right, Items):
-                # A substitution and a list of them
-                return TextValue(join_all([self.make_text(left, node), self.make_text(right, node)]), False)
-            if isinstance(left, Unknown) or isinstance(right, Unknown):
-                return TextValue(join_all([self.make_text(left, node), self.make_text(right, node)]))
+        kinds = {type(left), type(right)}
+        if TextValue in kinds and kinds <= {TextValue, Either, Items, Unknown}:
+            # A list beside a substitution is one of these
+            is_str = Items not in kinds and (Unknown in kinds or all(getattr(v, "is_str", True) for v in (left, right)))
+            return TextValue(join_all([self.make_text(left, node), self.make_text(right, node)]), is_str)
         if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant) and isinstance(node, ast.BinOp):
             return calculate_result(node, left.value, right.value)
         return Unknown(get_source(node))
@@ -723,27 +721,18 @@ class Walker:
 
     def list_actions(self, value: Any, line: int, extra: tuple[ActionCondition, ...] = ()) -> Iterator[Action]:
         """The actions that a value given for actions holds."""
-        self.count_steps(1)
-        if isinstance(value, Action):
-            if extra:
-                value = Action(value.kind, value.line, value.attributes, (*extra, *value.conditions), value.children)
-            yield value
-        elif isinstance(value, Items):
-            for item in value.items:
-                yield from self.list_actions(item, line, extra)
-        elif isinstance(value, ConditionalValue):
-            yield from self.list_actions(value.value, line, (*extra, *value.conditions))
-        elif isinstance(value, Either):
-            yield from self.list_actions(value.yes, line, (*extra, ActionCondition("if", value.condition, line)))
-            yield from self.list_actions(value.no, line, (*extra, ActionCondition("unless", value.condition, line)))
-        elif isinstance(value, LaunchConstant) or (isinstance(value, Unknown) and value.source.startswith(_NO_ACTION)):
-            return
-        elif isinstance(value, Pairs):
-            for _, item in value.items:
-                yield from self.list_actions(item, line, extra)
-        else:
-            source = value.source if isinstance(value, Unknown) else getattr(value, "path", type(value).__name__)
-            yield Action("unknown", line, (("text", (make_other(str(source)),)),), extra)
+        for held, conditions in list_branches(value, line, extra):
+            self.count_steps(1)
+            if isinstance(held, Action):
+                yield add_action_conditions(held, conditions)
+            elif isinstance(held, (Items, Pairs)):
+                for item in held.items if isinstance(held, Items) else [each for _, each in held.items]:
+                    yield from self.list_actions(item, line, conditions)
+            elif isinstance(held, Unknown) and not held.source.startswith(_NO_ACTION):
+                yield Action("unknown", line, (("text", (make_other(held.source),)),), conditions)
+            elif not isinstance(held, (LaunchConstant, Unknown)):
+                source = getattr(held, "path", type(held).__name__)
+                yield Action("unknown", line, (("text", (make_other(str(source)),)),), conditions)
 
 
 # Calls whose result is no action, where a lambda stands for an action that is run for its effect.

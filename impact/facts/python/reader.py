@@ -98,6 +98,7 @@ class PythonReader(ObjectUses, SourceText):
         # The two differ where Python 2 syntax was rewritten; lines are the same, indentation may not be.
         self.original = original.split("\n") if original != text else []
         self.has_paths = "package://" in text or "$(find" in text
+        self.has_variables = "ROS_" in text
         self.handlers = _HANDLERS if self.has_paths else _WITHOUT_STRINGS
         self.imports: list[Import] = []
         # Line, offset, and whether only functions that may not run have it.
@@ -626,7 +627,8 @@ class PythonReader(ObjectUses, SourceText):
 
     def remember(self, name: str, node: ast.expr, annotated: str = "") -> None:
         scope = self.scope
-        source = self.format_source(node) if name not in scope.bound and node.__class__ in _READING else ""
+        reading = self.has_variables and name not in scope.bound and node.__class__ in _READING
+        source = self.format_source(node) if reading else ""
         if _ROS_VARIABLE.search(source):
             scope.machine[name] = source
         else:

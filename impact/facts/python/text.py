@@ -49,6 +49,7 @@ _NO_NODES = frozenset((
     "name", "op", "ops", "rest", "simple", "str", "tag", "type_comment", "type_ignores",
 ))  # fmt: skip
 CHILD_FIELDS: dict[type, tuple[str, ...]] = {
+    # Only of a type alias the name is a node.
     cls: tuple(field for field in cls._fields if field not in _NO_NODES or (field == "name" and "value" in cls._fields))
     for cls in vars(ast).values()
     if isinstance(cls, type) and issubclass(cls, ast.AST)

@@ -88,7 +88,8 @@ class PythonValues(Constants):
 
     def find_unpacked(self, name: str, node: ast.expr) -> dict[str, Any] | None:
         """The mapping that a name is bound to, where all that is done with the name in the file is to unpack it."""
-        if node.__class__ not in (ast.Dict, ast.Call) or f"**{name}" not in self.text:
+        made = node.__class__ is ast.Dict or (isinstance(node, ast.Call) and self.find_callee(node.func) == "dict")
+        if not made or f"**{name}" not in self.text:
             return None
         if re.search(rf"(?<!\*\*)\b{name}\b(?!\s*=\s*(?:\{{|dict\())", self.text):
             return None
