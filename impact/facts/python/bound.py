@@ -39,7 +39,7 @@ def list_bound_names(body: list[ast.stmt]) -> set[str]:
             found.update(name for name, _ in list_imported(node))
         else:
             for name in (getattr(node, "name", None), getattr(node, "rest", None)):
-                if name.__class__ is str:
+                if isinstance(name, str):
                     found.add(name)
             if cls not in _SCOPES:
                 if cls is ast.NamedExpr:

@@ -490,9 +490,7 @@ class PythonReader(ObjectUses, SourceText):
             self.need(8, "positional-only parameters", node)
         elif arguments.kwonlyargs:
             self.need(0, "keyword-only parameters", node)
-        if getattr(node, "type_params", None):
-            self.need(12, "type parameters", node)
-            self.walk_all(node.type_params)
+        self.bind_type_parameters(node)
         self.walk_defaults(arguments)
         if node.returns is not None:
             self.need(0, "annotations", node)
@@ -521,6 +519,12 @@ class PythonReader(ObjectUses, SourceText):
         self.scope, self.function, self.defining, self.lazy, self.me = before
         self.note_result(node, annotated)
         self.given = outer
+
+    def bind_type_parameters(self, node) -> None:
+        parameters = getattr(node, "type_params", ())
+        if parameters:
+            self.need(12, "type parameters", node)
+            self.walk_all(parameters)
 
     def visit_Return(self, node: ast.Return) -> None:
         if node.value is not None:
@@ -584,9 +588,7 @@ class PythonReader(ObjectUses, SourceText):
         self.walk_all(node.decorator_list)
         self.walk_all(node.bases)
         self.walk_all(keyword.value for keyword in node.keywords)
-        if getattr(node, "type_params", None):
-            self.need(12, "type parameters", node)
-            self.walk_all(node.type_params)
+        self.bind_type_parameters(node)
         before = self.scope, self.inside_class, self.me
         self.inside_class, self.me = self.enter_class(node), ""
         self.scope = PythonScope(self.scope, True)
