@@ -74,12 +74,7 @@ def walk_nodes(node: ast.AST) -> Iterator[ast.AST]:
     rest = [node]
     for one in rest:
         yield one
-        for field in CHILD_FIELDS[one.__class__]:
-            child = getattr(one, field, None)
-            if child.__class__ is list:
-                rest += [each for each in child if each is not None]  # type: ignore[union-attr]
-            elif child is not None:
-                rest.append(child)
+        rest += iterate_children(one)
 
 
 def list_parameters(arguments: ast.arguments) -> Iterator[tuple[str, ast.arg, ast.expr | None]]:
