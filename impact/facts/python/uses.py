@@ -118,6 +118,7 @@ _INTERFACE = re.compile(rf"\w+\.(?:{'|'.join(sorted(KINDS))})\.[A-Z]\w*(?:\.(?:{
 _MENTIONS_INTERFACES = re.compile(r"\b(?:msg|srv|action)\b")
 _ASK_FOR_MESSAGES = frozenset(("create_subscription", "Subscriber"))
 CALLBACK_CALLS = _ASK_FOR_MESSAGES | {"create_service", "Service"}
+_ASKS_FOR_MEMBER = "hasattr("
 _DEEPEST = 40
 _QUOTED_TYPE = re.compile(r"[A-Za-z_][\w.\[\], |]*\Z")
 SURE_TO_RUN = frozenset(("generate_launch_description", "main"))
@@ -354,6 +355,8 @@ class ObjectUses(PythonValues):
         return CallArguments(positional, named, positional < len(call.args) or len(named) < len(keywords))
 
     def use_field(self, type_: str, name: str, place: tuple[int, int]) -> None:
+        if any(_ASKS_FOR_MEMBER in condition.text for condition in self.use_conditions):
+            return  # for interfaces of several versions, whether they have it or not
         self.raw_fields[type_, name] = min(place, self.raw_fields.get((type_, name), place))
 
     def note(self, type_: str, member: str, given: CallArguments | None, node) -> None:
