@@ -217,7 +217,7 @@ def test_a_folder_that_cannot_be_listed(tmp_path, monkeypatch, message):
     scandir = os.scandir
 
     def refuse(place):
-        if os.fspath(place).endswith("secret"):
+        if not isinstance(place, int) and os.fspath(place).endswith("secret"):
             raise OSError(13, message)
         return scandir(place)
 

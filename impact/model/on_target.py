@@ -64,7 +64,8 @@ _LASTING = (frozenset, MappingProxyType)
 
 
 class UnresolvedUse(NamedTuple):
-    """What a package uses and nobody is known to have. kind: cmake, include or import."""
+    """What a package uses and nobody is known to have. kind: cmake, include, import or shared
+    library, which is of no package."""
 
     package: str
     kind: str

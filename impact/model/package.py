@@ -43,6 +43,7 @@ from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .cpp.offered_headers import OfferedHeaders, collect_words
 from .macros import Macros
+from .python.api import find_top_modules
 from .python.undefined import (
     PythonOffer,
     list_siblings,
@@ -1221,7 +1222,7 @@ class PackageJoin:
 
     def collect_python(self, files: dict[str, PythonFile]):
         """Imports, watched names and syntax of Python files, and the modules that the package has itself."""
-        modules = self.list_python_modules()
+        modules, own = self.list_python_modules(), find_top_modules(files)
         imports: list[ImportUse] = []
         names: list[NameUse] = []
         syntax: list[SyntaxUse] = []
@@ -1243,7 +1244,7 @@ class PackageJoin:
             names.extend(
                 NameUse(text, At(path, place.line, place.column), role, False, "python", place.conditions)
                 for text, place in mentioned
-                if text in self.watched.python and text.partition(".")[0] not in modules
+                if text in self.watched.python and text.partition(".")[0] not in own
             )
             syntax.extend(_list_syntax(path, role, facts))
         return imports, names, syntax, modules

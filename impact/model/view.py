@@ -169,7 +169,10 @@ class TargetView(WorkspaceOnTarget):
                 continue
             providers = self.find_header(include.path)
             if not providers:
-                self.unresolved.add(UnresolvedUse(package.name, "include", include.path))
+                path = include.path.lstrip("./")
+                known = path != include.path and self.find_header(path)
+                if not known and not self.offers.list_packages_with(path, self.build_environment(package)):
+                    self.unresolved.add(UnresolvedUse(package.name, "include", include.path))
                 continue
             if not providers[0].name:
                 continue  # the compiler has it, and nobody else is asked

@@ -65,6 +65,13 @@ def find_python_packages(files: Iterable[str]) -> set[str]:
     return {path.split("/")[-2] for path in files if path.endswith("/__init__.py")}
 
 
+def find_top_modules(files: Iterable[str]) -> set[str]:
+    """The Python modules among some files that lie in no other one, each called as an import begins."""
+    packages = {path.removesuffix("/__init__.py") for path in files if path.endswith("/__init__.py")}
+    modules = packages.union(path.removesuffix(".py") for path in files if path.endswith(".py"))
+    return {path.rpartition("/")[2] for path in modules if path.rpartition("/")[0] not in packages}
+
+
 def find_uses(facts: PythonFile, own: frozenset[str], changing: Changing, types: OwnTypes,
               path: str) -> Iterator[PythonUse]:  # fmt: skip
     """Uses in one file of names that may have changed, or never been. own: top-level modules of the package itself.

@@ -27,7 +27,7 @@ import posixpath
 import re
 
 from ...model.cmake.installed import collect_installed_headers
-from ...model.package import IncludeUse, find_folder_role
+from ...model.package import IncludeUse, find_folder_role, is_header
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .dependants import is_compiled_elsewhere
 
@@ -57,7 +57,9 @@ def uninstalled_header(view: TargetView, package: Package):
         lost = [to for to in inner if to not in installed.headers and to not in reported and not to.endswith(".in")]
         for to in lost if lost else ():
             include = _find_include(view, written.get(path, ()), to)
-            if include is None or to in made or _is_answered(installed.headers, place, include.path):
+            if include is None or not is_header(to) or to in made:
+                continue
+            if _is_answered(installed.headers, place, include.path):
                 continue
             reported.add(to)
             data = {"header": posixpath.basename(path), "file": package.strip_path(to)}

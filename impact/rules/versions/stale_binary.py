@@ -36,6 +36,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from ...model.build_order import build_order
+from ...model.on_target import UnresolvedUse
 from ..vocabulary import At, Diagnostic, TargetView, Text, rule
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ def _find_missing(
     for soname in needed:
         there = libraries.has(soname, binary.elf, binary.folder)
         if there is None:
-            view.unresolved.setdefault("shared library", set()).add(soname)
+            view.unresolved.add(UnresolvedUse("", "shared library", soname))
         elif not there:
             absent.add(soname)
             yield _Missing(soname, soname, libraries.find_other(soname))
