@@ -62,6 +62,7 @@ class _Done(NamedTuple):
 
 _FLOW_TASK = _Task(_FLOW)
 
+
 def run_rules(
     opened: OpenedWorkspace, rules: Iterable[Rule], crashed: Crashes, before: Workspace | None, jobs: int | None = None
 ) -> Iterator[tuple[str, str, Diagnostic]]:
@@ -152,11 +153,12 @@ def _run_remembered(
             unresolved = [each for each in opened.views[place].unresolved if each.package in group]
             result_cache.store_yielded(opened.store, keys[place, at], found[place, at], unresolved)
     crashed.update(failed)
-    order = {name: number for number, name in enumerate((*names, *opened.workspace.packages))}
+    of_rules = {name: number for number, name in enumerate(names)}
+    of_packages = {name: number for number, name in enumerate(opened.workspace.packages)}
     on_views = {}
     for place, view in enumerate(opened.views):
         yielded = [each for at in range(len(groups)) for each in found[place, at]]
-        yielded.sort(key=lambda each: (order[each[0]], order.get(each[1].package, -1)))
+        yielded.sort(key=lambda each: (of_rules[each[0]], of_packages.get(each[1].package, -1)))
         on_views[view.target.name] = lower_repeats(drop_outweighed(yielded, by_name), by_name)
     return on_views, on_flow or []
 

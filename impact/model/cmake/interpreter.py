@@ -577,8 +577,8 @@ class Interpreter:
                 where[name] = held
             if all(sure for _, sure in alternatives) and len(alternatives) in (0, len(held.ways)):
                 return bool(alternatives), ""
-            told = [each for each, _ in alternatives]
-            any_of = " OR ".join(map(group, told)) if told[1:] else told[0]
+            texts = [each for each, _ in alternatives]
+            any_of = " OR ".join(map(group, texts)) if texts[1:] else texts[0]
             return None, any_of if len(any_of) <= _MAX_TEST else text
         return None, text
 
