@@ -11,7 +11,8 @@ Why it breaks
 Severity
     error where the installed package is sure to fail: a library that catkin_package() exports beside installed ones, a
     program that an installed launch file starts in any case. warning otherwise: in a workspace that is never installed
-    all of this works.
+    all of this works. Where more than three programs of a package are not installed beside others, one of them is
+    enough, and the rest are notes.
 
 Example
     add_executable(udp_socket_node src/udp_socket_node.cpp)     # and install(TARGETS tcp_socket_node ...)
@@ -33,6 +34,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
 from .install_rules import is_installed, list_references, read_installs
 
 _ONCE = (Together("no target installed"),)
+_HABIT = (Together("program not installed", few=3),)
 _TARGETS = "add it to install(TARGETS ...)[[, where nothing sets `{unset}`]]"
 
 
@@ -86,7 +88,7 @@ def missing_install(view: TargetView, package: Package):
             # Who finds a package that exports a library stops where the library is neither a target nor installed.
             stops = installed and (why == "exported" or (why == "started" and _is_started(view, package, name)))
             doubts = () if stops and not (unset or package.build.unresolved) else (Doubt.DISTURBS,)
-            together = _ONCE if why == "nothing" else ()
+            together = {"nothing": _ONCE, "program": _HABIT}.get(why, ())
             data = {"unset": min(unset, default="")}
             yield Diagnostic(target.at, name, package.name, data, kind=why, doubts=doubts, together=together)
 
