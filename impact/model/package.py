@@ -1097,11 +1097,11 @@ class PackageJoin:
                     (interface for interface in used if interface.ros == ros), table, asked, self.home
                 )
                 for use, found in find_changing_members(facts.fields, scope) if scope.changing else ():
-                    key = (found.interface, found.section, found.member)
+                    key = (found.interface, found.section, found.member, use.conditions)
                     if key not in seen:
                         seen.add(key)
                         at = At(path, use.line, use.column)
-                        yield _make_member_use(found, at, self.find_python_role(path), "python")
+                        yield _make_member_use(found, at, self.find_python_role(path), "python", use.conditions)
 
     def list_python_api_uses(self, files: dict[str, PythonFile]) -> Iterator[PythonApiUse]:
         """Uses of Python names of other packages that may not be the same in all versions."""

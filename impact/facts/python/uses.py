@@ -68,12 +68,14 @@ class TypedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class FieldUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The first use like it of a member of an interface. type: dotted, `pkg.msg.Name`, `pkg.srv.Name.Request`. steps:
     fields on the way, ELEMENT for an element of a sequence; the last is the member that is used. line, column: of it.
+    conditions: as in PythonUse.
     """
 
     type: str
     steps: tuple[str, ...]
     line: int
     column: int
+    conditions: tuple[Condition, ...] = ()
 
 
 class _Class(msgspec.Struct, eq=False):
@@ -118,7 +120,6 @@ _INTERFACE = re.compile(rf"\w+\.(?:{'|'.join(sorted(KINDS))})\.[A-Z]\w*(?:\.(?:{
 _MENTIONS_INTERFACES = re.compile(r"\b(?:msg|srv|action)\b")
 _ASK_FOR_MESSAGES = frozenset(("create_subscription", "Subscriber"))
 CALLBACK_CALLS = _ASK_FOR_MESSAGES | {"create_service", "Service"}
-_ASKS_FOR_MEMBER = "hasattr("
 _DEEPEST = 40
 _QUOTED_TYPE = re.compile(r"[A-Za-z_][\w.\[\], |]*\Z")
 SURE_TO_RUN = frozenset(("generate_launch_description", "main"))
@@ -147,7 +148,7 @@ class ObjectUses(PythonValues):
         self.raw: dict[tuple, _Raw] = {}
         self.has_interfaces = _MENTIONS_INTERFACES.search(text) is not None
         # Type and member to the place.
-        self.raw_fields: dict[tuple[str, str], tuple[int, int]] = {}
+        self.raw_fields: dict[tuple[str, str, tuple[Condition, ...]], tuple[int, int]] = {}
         # Of functions that are handed over as callbacks, by name: the types of their parameters.
         self.called_back: dict[str, set[tuple[str, ...]]] = {}
         # What names hold at the end of the branches of the statement that is read.
@@ -355,9 +356,8 @@ class ObjectUses(PythonValues):
         return CallArguments(positional, named, positional < len(call.args) or len(named) < len(keywords))
 
     def use_field(self, type_: str, name: str, place: tuple[int, int]) -> None:
-        if any(_ASKS_FOR_MEMBER in condition.text for condition in self.use_conditions):
-            return  # for interfaces of several versions, whether they have it or not
-        self.raw_fields[type_, name] = min(place, self.raw_fields.get((type_, name), place))
+        key = (type_, name, self.use_conditions)
+        self.raw_fields[key] = min(place, self.raw_fields.get(key, place))
 
     def note(self, type_: str, member: str, given: CallArguments | None, node) -> None:
         if not type_ or _is_field(type_):
@@ -429,14 +429,15 @@ class ObjectUses(PythonValues):
 
     def list_field_uses(self, column: Callable[[int, int], int]) -> tuple[FieldUse, ...]:
         """Every use of a field or constant of an interface, in the order of the source."""
-        found: dict[str, FieldUse] = {}
-        for (type_, member), (line, offset) in self.raw_fields.items():
+        found: dict[tuple[str, tuple[Condition, ...]], FieldUse] = {}
+        for (type_, member, conditions), (line, offset) in self.raw_fields.items():
             path = f"{self.resolve(type_)}.{member}"
             known = _INTERFACE.match(path)
             if known is not None and known.end() < len(path):
                 steps = tuple(path[known.end() + 1 :].split("."))
-                use = FieldUse(known.group(), steps, line, column(line, offset))
-                found[path] = min(use, found.get(path, use), key=lambda use: (use.line, use.column))
+                use = FieldUse(known.group(), steps, line, column(line, offset), conditions)
+                key = (path, conditions)
+                found[key] = min(use, found.get(key, use), key=lambda use: (use.line, use.column))
         return tuple(sorted(found.values(), key=lambda use: (use.line, use.column)))
 
     def resolve(self, type_: str) -> str:

@@ -36,6 +36,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming,
 from .diagnosis import UPSTREAM, build_availability_texts, build_data, diagnose, find_missing
 
 _MISSING = f"`{{interface}}` has no field `{{subject}}` in {UPSTREAM}"
+_CODE = ("cpp", "python")
 _HELP = "[[use `{replacement}`]][[perhaps `{alike}` replaces it]]"
 
 
@@ -71,7 +72,7 @@ def _list_members(view: TargetView, package: Package, own: set[str]) -> Iterator
         if (not use.sure and use.member in own) or _is_reviewed(view, *_list_spellings(use)):
             continue
         # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
-        if not view.applies(use.conditions) or not view.is_sure(c for c in use.conditions if c.language == "cpp"):
+        if not view.applies(use.conditions) or not view.is_sure(c for c in use.conditions if c.language in _CODE):
             continue
         if use.ros != view.target.ros:
             continue
