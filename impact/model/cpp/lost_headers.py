@@ -8,6 +8,7 @@ along by an earlier version it is known who brought them.
 from __future__ import annotations
 
 import re
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 from ....edges.memory import cache_method
@@ -136,11 +137,13 @@ def _find_lost(
 
 
 def _list_offering(view: TargetView, name: str) -> tuple[str, ...]:
-    """The headers that offer a name, best first; none for types of interfaces that are the workspace's own, or not
-    known on the target."""
+    """The headers that offer a name, best first; none where they are the workspace's own, nor for types of interfaces
+    that are not known on the target."""
     made = parse_type(name)
     if made is None:
-        return load_offered().get(name) or ()
+        headers = load_offered().get(name) or ()
+        holders = (view.machine.surfaces.list_holders(header) for header in headers)
+        return headers if view.workspace.packages.keys().isdisjoint(chain.from_iterable(holders)) else ()
     known = made.ros == view.target.ros and made.package not in view.workspace.packages
     return made.headers if known and view.machine.tells(made.headers[0]) else ()
 
