@@ -95,14 +95,17 @@ def stops_at_names(view: TargetView) -> bool:
     return is_at_least(view.target.find_version("ament_cmake_target_dependencies") or "0.8.0", "0.8.0")
 
 
-def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, str]]:
-    """Names in ament_target_dependencies and `pkg::target` links that only find_package(pkg) can define."""
+def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, str, str]]:
+    """What only find_package() can define: names in ament_target_dependencies, and what stands before `::` in links,
+    where nothing of the package has targets of that name. Also what is written there."""
     own = {t.name for t in package.build.targets}
+    spaces = {name.partition("::")[0] for name in own if "::" in name}
     for link in package.build.target_links:
         if not view.is_sure(link.conditions) or "$" in link.item or link.item in own or is_for_tests(link.conditions):
             continue
-        if link.how == "ament":
-            yield link.at, link.item
+        head, separator, _ = link.item.partition("::")
+        if link.how == "ament" or (link.how == "link" and separator and head not in spaces):
+            yield link.at, head, link.item
 
 
 @cache_in_derived

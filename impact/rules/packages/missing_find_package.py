@@ -25,7 +25,10 @@ Not reported
     ament_lint_auto or ament_auto finds what is declared for them.
 """
 
+from collections.abc import Collection
+
 from ...model.cmake.build import is_for_tests
+from ...model.cmake.interpreter import calls_unmodelled
 from ...model.cmake.links import describe_finding, list_found_names, list_given_items, list_given_names, stops_at_names
 from ...model.misspelling import SpellingIndex
 from ...model.view import find_included_interface
@@ -45,6 +48,9 @@ _SYSTEM_BY_DEFAULT = (
         "given": Text(
             "`{subject}` is given to a target but find_package(`{subject}`) is not called",
             "add find_package({subject} REQUIRED)",
+        ),
+        "linked": Text(
+            "`{item}` is linked but find_package(`{subject}`) is not called", "add find_package({subject} REQUIRED)"
         ),
         "included": Text(
             "`{header}` is included but CMakeLists.txt does not find `{subject}`",
@@ -68,8 +74,7 @@ def missing_find_package(view: TargetView, package: Package):
     if found is None:
         return
     reachable = view.list_transitive(found) | view.roles.list_found_with(found)
-    tested = {f.name for f in package.build.found if is_for_tests(f.conditions) and f.name in found}
-    outside = {f.name for f in package.build.found if not is_for_tests(f.conditions)}
+    tested, outside = (_list_answered(view, package, testing) & found for testing in (True, False))
     built = view.list_transitive(n for n in found if n in outside or n not in tested) if tested - outside else reachable
     shipped = {t.name for t in package.build.targets if t.kind != "test" and not is_for_tests(t.conditions)}
     closure = view.build_environment(package)
@@ -77,18 +82,26 @@ def missing_find_package(view: TargetView, package: Package):
     finds_tested = any(f.how in ("declared", "ament_lint_auto") for f in build.found)
     near, prefixes = SpellingIndex({*view.collect_declared(package), *found}), {f.prefix for f in package.build.found}
     seen = set()
-    for at, name in list_given_names(view, package):
-        if name in reachable or name in seen or name in package.linked.modules or name == package.name:
+    for at, name, item in list_given_names(view, package):
+        if name in built or name in seen or name in package.linked.modules or name == package.name:
             continue
         seen.add(name)
-        if not view.is_package(name) and (name in prefixes or view.find_cmake(name) or near.find_nearest(name)):
+        linked = "::" in item
+        if linked and _may_be_defined(view, package, item, built):
+            continue
+        known = linked or view.is_package(name)
+        if not known and (name in prefixes or view.find_cmake(name) or near.find_nearest(name)):
             continue  # a library, or a name that is misspelt
         # The configuration of a library whose contents are not known may find others.
         opaque = not view.is_package(name) or any(
             view.unknown_contents.may_hold(package, f.name) for f in package.build.found
         )
-        doubts = (stops_at_names(view) or Doubt.LUCKY, not opaque or Doubt.INCOMPLETE)
-        yield Diagnostic(at, name, package.name, kind="given", doubts=doubts)
+        if linked:
+            opaque, lucky = opaque or calls_unmodelled(build), view.target.ros == 1
+        else:
+            lucky = not stops_at_names(view)
+        doubts = (Doubt.LUCKY if lucky else None, Doubt.INCOMPLETE if opaque else None)
+        yield Diagnostic(at, name, package.name, {"item": item}, "linked" if linked else "given", doubts)
     sought = {strip_to_letters(f.name) for f in package.build.found if f.name in outside}
     linked = sought | {strip_to_letters(link.item) for link in package.build.target_links if link.how == "link"}
     for need in view.sort_needs(package):
@@ -121,6 +134,34 @@ def missing_find_package(view: TargetView, package: Package):
             doubts = (Doubt.INCOMPLETE,)
         data = {"header": need.subject, "how": "" if ros else describe_finding(view, name, need.subject)}
         yield Diagnostic(need.at, name, package.name, data, "included" if ros else "library", doubts)
+
+
+def _list_answered(view: TargetView, package: Package, testing: bool) -> set[str]:
+    """What CMake looks for, for tests alone or not, and who answers."""
+    names = {f.name for f in package.build.found if is_for_tests(f.conditions) is testing}
+    return names.union(p.name for name in names for p in view.find_cmake(name))
+
+
+def _may_be_defined(view: TargetView, package: Package, item: str, found: Collection[str]) -> bool:
+    """Whether something else than find_package() of its namespace may define a target: the configuration of a library
+    that is found, a package that shares the namespace, or what cannot be read."""
+    space, _, target = item.partition("::")
+    build, providers = package.build, view.find_cmake(space)
+    if not providers or build.unresolved or view.is_met(providers, found):
+        return True
+    if view.is_package(space):
+        offer = view.offers.find_package(space)
+        if offer is None:
+            return space not in view.workspace.packages or (target != space and view.is_package(target))
+        return item not in {one.name for one in offer.build.targets}
+    if calls_unmodelled(build):
+        return True
+    letters = strip_to_letters(space)
+    sought = (n for f in build.found if not is_for_tests(f.conditions) for n in (f.name, f.prefix))
+    if any(letters in name or name in letters for name in filter(None, map(strip_to_letters, sought))):
+        return True
+    bringing = view.apt.list_bringing(frozenset(p.package for p in providers if p.package))
+    return any(not bringing.isdisjoint(view.list_debs(name)) for name in found)
 
 
 def _find_include_doubt(view: TargetView, need) -> Doubt | None:
