@@ -66,7 +66,11 @@ class Roles:
         export counts as well as what its CMake does."""
         declared = self._view.collect_declared(package)
         start = [name for name, kinds in declared.items() if kinds & KINDS[role]]
-        return (self._by_promises if promised else self._by_cmake).collect(start)
+        return self._by_promises.collect(start) if promised else self.list_brought(start)
+
+    def list_brought(self, names: Iterable[str]) -> frozenset[str]:
+        """These names, and all that their CMake is known to hand on where CMake finds them."""
+        return self._by_cmake.collect(names)
 
     def list_tools(self, name: str) -> tuple[str, ...]:
         """What the CMake extensions of a package need where it is used: `buildtool_export_depend`."""

@@ -9,7 +9,8 @@ Why it breaks
     CMake stops: "Unknown CMake command".
 
 Severity
-    error; warning where CMake may not reach the call, where a found package has unknown dependencies, and in ROS 1,
+    error; warning where what is found happens to bring a declared package, though its CMake is not known to hand it on,
+    where CMake may not reach the call, where a found package has unknown dependencies, and in ROS 1,
     where catkin_make configures all packages in one CMake run, so that another one may have found the package before;
     warning for configurations, which whoever finds them may have brought the macro.
 
@@ -41,6 +42,11 @@ from .undeclared_test_command import find_test_commands
             "command `{subject}` comes from `{owner}`, which CMakeLists.txt does not find",
             "add find_package({owner} REQUIRED)",
         ),
+        "lucky": Text(
+            "command `{subject}` comes from `{owner}`, which CMakeLists.txt does not find; another package happens to "
+            "bring it",
+            "add find_package({owner} REQUIRED)",
+        ),
         "configuration": Text(
             "the configuration calls {subject}() without including `{owner}`, which defines it",
             "add include({owner})",
@@ -67,7 +73,13 @@ def unfound_command(view: TargetView, package: Package):
         testing = is_for_tests(use.conditions)
         names = frozenset(f.name for f in found if testing or not is_for_tests(f.conditions))
         reached = _list_reached(view, package, names)
-        if not reached.isdisjoint(owners) or not any(view.is_available(owner) for owner in owners):
+        if not any(view.is_available(owner) for owner in owners):
+            continue
+        if not reached.isdisjoint(owners):
+            owner = _find_lucky(view, package, owners, names)
+            if owner and owner not in seen:
+                seen.add(owner)
+                yield Diagnostic(use.at, use.name, package.name, {"owner": owner}, "lucky", (Doubt.LUCKY,))
             continue
         if owners == ["genmsg"] and build.generated:
             continue  # missing-message-generation reports it
@@ -86,6 +98,15 @@ def unfound_command(view: TargetView, package: Package):
 def _list_reached(view: TargetView, package: Package, names: frozenset[str]) -> frozenset[str]:
     """What finding packages may bring."""
     return view.list_widest_dependencies(names) | view.roles.list_found_with(names) | {package.name}
+
+
+def _find_lucky(view: TargetView, package: Package, owners: list[str], names: frozenset[str]) -> str:
+    """What the manifest declares to have a command that none of what is found is known to hand on by its CMake, so that
+    it comes along by chance; empty where there is none."""
+    if package.build.unresolved or not view.roles.list_brought(names).isdisjoint((*owners, package.name)):
+        return ""
+    build = [name for name, kinds in view.collect_declared(package).items() if kinds & {"build", "buildtool"}]
+    return next((n for n in build if n not in names and not view.roles.list_brought([n]).isdisjoint(owners)), "")
 
 
 def _choose_name(view: TargetView, package: Package, owners: list[str]) -> str:
