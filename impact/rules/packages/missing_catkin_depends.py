@@ -2,7 +2,8 @@
 
 What it does
     Reports packages of whose messages those of a catkin package are made and that it does not name in CATKIN_DEPENDS,
-    and catkin packages that name none at all though their exported headers include those of other packages.
+    message_runtime where messages are generated, and catkin packages that name none at all though their exported
+    headers include those of other packages.
 
 Why it breaks
     The package builds, and dependants do not get what its messages and headers include, unless they find it themselves.
@@ -27,6 +28,8 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
 from .unlisted_field_package import find_field_owner
 
 _ONCE = (Together("not exported"),)
+# What the generated headers of a package include.
+_RUNTIME = "message_runtime"
 
 
 @rule(
@@ -36,6 +39,10 @@ _ONCE = (Together("not exported"),)
         "headers": Text(
             "an exported header includes `{header}`, but catkin_package() has no CATKIN_DEPENDS",
             "name the packages that the headers and libraries need",
+        ),
+        "runtime": Text(
+            "messages are generated, but `{subject}` is not in CATKIN_DEPENDS",
+            "add `{subject}` to CATKIN_DEPENDS of catkin_package()",
         ),
         "messages": Text(
             "the messages use those of `{subject}`, but `{subject}` is not in CATKIN_DEPENDS",
@@ -55,6 +62,9 @@ def _list_of_messages(view: TargetView, package: Package):
     if any("$" in name for name in named):
         return
     reach = view.roles.list_found_with(named)
+    made = next((g for g in package.build.generated if g.how == "catkin" and g.offered and g.files), None)
+    if made is not None and _RUNTIME not in reach and view.is_sure(made.conditions):
+        yield Diagnostic(package.build.catkin_package, _RUNTIME, package.name, kind="runtime", together=_ONCE)
     for made in package.build.generated:
         if made.how != "catkin" or not made.offered or not view.is_sure(made.conditions):
             continue
