@@ -2,8 +2,9 @@
 
 What it does
     Reports a folder `include` that is installed into another `include` or below it, headers that are installed under
-    another folder name than code includes them by, nodes outside of `lib/` and the package's name, registered
-    components outside of `lib`, and install folders of a Python version other than the target's.
+    another folder name than code includes them by or one folder too deep, nodes outside of `lib/` and the package's
+    name, launch files outside of the package's folder in share, registered components outside of `lib`, and install
+    folders of a Python version other than the target's.
 
 Why it breaks
     The package itself builds. But dependants do not find its headers, rosrun or ros2 run its programs, Python its
@@ -27,10 +28,12 @@ import re
 from collections.abc import Iterator
 
 from ...model.cmake.build import Install
+from ...model.cmake.installed import list_copied_files
 from ...model.cmake.links import resolve_package
+from ...model.package import find_folder_role
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .dependants import list_compiled_elsewhere
-from .install_rules import is_installed, list_references, read_installs
+from .install_rules import is_installed, list_places, list_references, read_installs
 
 
 @rule(
@@ -38,6 +41,10 @@ from .install_rules import is_installed, list_references, read_installs
     texts={
         "doubled": Text(
             "the folder `include` is installed into `{destination}`, so headers end up in {destination}/include",
+            "write `{instead}` with a slash at its end",
+        ),
+        "nested": Text(
+            "the folder `{name}` is installed into `{destination}`, so headers end up in {destination}/{name}",
             "write `{instead}` with a slash at its end",
         ),
         "renamed": Text(
@@ -52,6 +59,10 @@ from .install_rules import is_installed, list_references, read_installs
             "`{subject}` is installed into `{destination}`, but {command} looks in `lib/{package}`",
             "install(TARGETS {subject} DESTINATION lib/${{PROJECT_NAME}})",
         ),
+        "launch": Text(
+            "`{file}` is installed into `{destination}`, but launch files are looked for in `{place}`",
+            "install it into `{place}`",
+        ),
         "python": Text(
             "`{subject}` belongs to Python {version}, but the target has Python {own}",
             "use ament_python_install_package(), or the folder of the Python that CMake finds",
@@ -60,7 +71,7 @@ from .install_rules import is_installed, list_references, read_installs
 )
 def misplaced_install(view: TargetView, package: Package):
     installs = read_installs(view, package) or ()
-    for find in (_list_headers, _list_components, _list_programs, _list_other_python):
+    for find in (_list_headers, _list_components, _list_programs, _list_launch_files, _list_other_python):
         yield from find(view, package, installs)
 
 
@@ -78,6 +89,17 @@ def _list_headers(view: TargetView, package: Package, installs) -> Iterator[Diag
                     continue
                 instead = f"include{tail.rstrip('/')}/" if package.build_type == "catkin" else "include/"
                 data = {"destination": place, "instead": instead}
+            elif not root and "$" not in item and item.endswith(f"/{include}{tail}") and tail.count("/") == 1:
+                kind, subject, lost = "nested", install.destination, posixpath.dirname(item)
+                exported = _list_exported(view, package)
+                unknown = package.build_type != "catkin" and any("$" in one for one in exported)
+                if unknown or any(one.rstrip("/").endswith(f"{include}{tail}") for one in exported):
+                    continue
+                if _is_copied_too(package, install, item):
+                    continue
+                data = {"destination": subject, "name": tail[1:], "instead": f"{include}{tail}/"}
+                if tail == f"/{package.name}" and package.build_type == "catkin":
+                    subject = "CATKIN_PACKAGE_INCLUDE_DESTINATION"
             elif folder is not None and not root and tail.count("/") == 1 and tail != f"/{folder[1]}":
                 kind, subject, lost = "renamed", install.destination, item.rstrip("/").removesuffix(folder[1])
                 data = {"name": folder[1], "destination": subject, "place": f"include/{folder[1]}"}
@@ -88,6 +110,12 @@ def _list_headers(view: TargetView, package: Package, installs) -> Iterator[Diag
                 continue
             doubts = (_is_lost(view, package, install, lost) or Doubt.DISTURBS,)
             yield Diagnostic(install.at, subject, package.name, data, kind, doubts)
+
+
+def _is_copied_too(package: Package, install: Install, folder: str) -> bool:
+    """Whether another rule takes a header of a folder."""
+    others = [one for one in package.build.installs if one is not install and one.kind in ("directory", "files")]
+    return any(is_installed(others, header) for header in package.linked.headers if header.startswith(f"{folder}/"))
 
 
 _FOLDER = re.compile(r"(?:^|/)include/([\w-]+)/\Z")
@@ -151,6 +179,33 @@ def _list_programs(view: TargetView, package: Package, installs) -> Iterator[Dia
         command = "ros2 run" if view.target.ros == 2 else "rosrun"
         data = {"destination": place.destination, "command": command}
         yield Diagnostic(place.at, target.name, package.name, data, "program", (Doubt.LATE,))
+
+
+_LAUNCH = re.compile(r"\.launch(?:\.(?:py|xml|ya?ml))?\Z|_launch\.py\Z")
+
+
+def _list_launch_files(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
+    """Launch files that no rule installs into the package's own folder in share, but one does elsewhere."""
+    share = f"share/{package.name}/"
+    places = list_places(package, installs)
+    names = {posixpath.basename(place) for place in places or () if place.startswith(share)}
+    for install in installs if places else ():
+        folder = posixpath.normpath(install.destination)
+        first, _, rest = folder.partition("/")
+        if first in _NO_DATA or (first == "share" and rest.partition("/")[0] in view.workspace.packages):
+            continue
+        if install.kind not in ("directory", "files"):
+            continue
+        copied = list_copied_files(install, folder, package.linked.files)
+        lost = next((f for f, place in copied if _LAUNCH.search(place) and posixpath.basename(place) not in names), "")
+        if lost and find_folder_role(package.strip_path(lost)) is None:
+            data = {"file": posixpath.basename(lost), "destination": install.destination, "place": share.rstrip("/")}
+            subject = posixpath.basename(posixpath.dirname(lost)) or data["file"]
+            yield Diagnostic(install.at, subject, package.name, data, "launch", (Doubt.LATE,))
+
+
+# Where files may lie for others than those who start launch files by package and name.
+_NO_DATA = frozenset(("", ".", "..", "bin", "etc", "include", "lib"))
 
 
 def _list_other_python(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
