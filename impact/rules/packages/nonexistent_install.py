@@ -8,7 +8,8 @@ Why it breaks
     `make install` stops: "file INSTALL cannot find".
 
 Severity
-    error; warning for folders of which only matching files are installed, since CMake goes on without them.
+    error; warning for folders of headers, which may be there and empty, and for folders of which only matching files
+    are installed, since CMake goes on without them.
 
 Example
     install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})     # there is no folder `config`
@@ -17,8 +18,8 @@ Use instead
     install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})
 
 Not reported
-    Libraries, what is OPTIONAL, and folders that git cannot keep while they are empty; files that the build makes;
-    rules under a condition that is unknown on the target.
+    Libraries, what is OPTIONAL, and folders `lib` and `bin`, which git cannot keep while they are empty; files that the
+    build makes; rules under a condition that is unknown on the target.
 """
 
 import posixpath
@@ -57,19 +58,23 @@ def nonexistent_install(view: TargetView, package: Package):
                 continue
             if package.path and not path.startswith(package.path + "/"):
                 continue
-            if install.kind == "directory" and _may_be_empty(package, path):
-                continue
+            besides = ()
+            if install.kind == "directory" and (role := _may_be_empty(package, path)):
+                if role != "include" or install.only:
+                    continue
+                besides = (Doubt.LATE,)  # nothing stops where the folder is there, empty
             if install.kind == "files" and "." in path and not path.endswith(_BY_HAND):
                 continue
             if is_absent(view, package, path):
                 subject = package.strip_path(path)
-                yield Diagnostic(install.at, subject, package.name, kind=kind, doubts=doubts)
+                yield Diagnostic(install.at, subject, package.name, kind=kind, doubts=(*doubts, *besides))
 
 
-def _may_be_empty(package: Package, path: str) -> bool:
-    """Whether a folder may be one for headers or built files that git cannot keep while it is empty, and not
-    one of `include` beside others that are there."""
+def _may_be_empty(package: Package, path: str) -> str:
+    """What a folder is for, `include`, `lib` or `bin`, that may be there and that git cannot keep while it is empty:
+    not one of `include` beside others that are there."""
     above = f"{posixpath.dirname(path)}/"
     if "/include/" in f"/{above}" and any(name.startswith(above) for name in package.linked.files):
-        return False
-    return re.search(r"(^|/)(include|lib|bin)(/|$)", path) is not None
+        return ""
+    role = re.search(r"(?:^|/)(include|lib|bin)(?:/|$)", path)
+    return role.group(1) if role else ""
