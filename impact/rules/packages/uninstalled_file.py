@@ -22,6 +22,7 @@ import posixpath
 import re
 from collections.abc import Iterator
 
+from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, rule
 from .data_files import list_copied
 from .install_rules import is_installed, list_places, list_references, read_installs
@@ -53,7 +54,7 @@ _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
     },
 )
 def uninstalled_file(view: TargetView, package: Package):
-    opened = list_references(view, package, "file", "place")
+    opened = list_references(view, package, "file", "place") | _list_exported(package)
     installs = read_installs(view, package)
     if installs is None:
         if copied := list_copied(package):
@@ -62,6 +63,16 @@ def uninstalled_file(view: TargetView, package: Package):
         yield from _list_nothing(package, opened)
     else:
         yield from _list_opened(package, installs, opened)
+
+
+def _list_exported(package: Package) -> set[str]:
+    """The files that the manifest exports to whoever reads it: not those of tests, the settings of documentation, nor
+    descriptions of plugins, which uninstalled-plugin-description looks at."""
+    exports = [export for export in package.manifest.exports if not export.tag.startswith("rosdoc")]
+    values = [value for e in exports for key, value in (("", e.text), *e.attributes.items()) if key != "plugin"]
+    names = (value.removeprefix("${prefix}/") for value in values)
+    inside = (name for name in names if posixpath.join(package.path, name) in package.files)
+    return {name for name in inside if find_folder_role(name) is None}
 
 
 def _list_nothing(package: Package, opened: set[str]) -> Iterator[Diagnostic]:
@@ -138,6 +149,6 @@ def _list_launch_folders(package: Package, installs) -> Iterator[tuple[str, str]
     for use in package.linked.references:
         path, r = use.at.path, use.reference
         own = siblings or ((r.kind, r.package) == ("executable", package.name) and r.name in programs)
-        if use.role == "run" and path in files and (own if catkin else _LAUNCH.search(path)):
+        if use.role == "run" and path in files and (own or (not catkin and _LAUNCH.search(path))):
             yield "launch", package.strip_path(path)
             return
