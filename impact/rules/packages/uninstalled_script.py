@@ -45,8 +45,8 @@ def uninstalled_script(view: TargetView, package: Package):
         return  # uninstalled-file tells of a package that installs nothing at all
     scripts = list_references(view, package, "executable")
     programs = [item for i in installs if i.kind == "programs" for item in i.items]
-    nodes = _list_nodes(package, installs)
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
+    nodes = _list_nodes(package, installs, folders)
     for path in (*package.linked.scripts, *package.linked.shells):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         beside = folder in folders and folder != package.path and "." not in name and find_folder_role(name) is None
@@ -58,10 +58,11 @@ def uninstalled_script(view: TargetView, package: Package):
             yield Diagnostic(At(path, 1), name, package.name, data, kind, together=_ONCE)
 
 
-def _list_nodes(package: Package, installs) -> frozenset[str]:
+def _list_nodes(package: Package, installs, folders: set[str]) -> frozenset[str]:
     """The nodes in Python of a package that installs something: all of ROS 2, and of ROS 1, where a launch file in the
     source space starts them as well, those of a package that makes and installs no program at all.
     install_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.
+    folders: those of installed programs.
     """
     made = any(t.kind == "executable" for t in package.build.targets)
     has_programs = made or any(i.kind == "programs" or i.executable for i in installs)
@@ -69,4 +70,9 @@ def _list_nodes(package: Package, installs) -> frozenset[str]:
         return frozenset()
     nodes = {use.at.path for use in package.linked.imports if use.module.partition(".")[0] in _OF_NODES}
     inside = {path: package.strip_path(path) for path in package.linked.scripts if path in nodes}
-    return frozenset(p for p, i in inside.items() if i.split("/")[0] in _OF_PROGRAMS and find_folder_role(i) is None)
+    return frozenset(
+        path
+        for path, below in inside.items()
+        if (below.split("/")[0] in _OF_PROGRAMS or posixpath.dirname(path) in folders - {package.path})
+        and find_folder_role(below) is None
+    )
