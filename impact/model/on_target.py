@@ -830,11 +830,19 @@ class WorkspaceOnTarget:
         found = list(self.providers.find_module(module))
         if not any(p.name == head for p in found) and self.is_package(head):
             found.insert(0, Provider("ros", head, "", False))
+        if len(found) > 1:
+            found = [p for p in found if not self._has_lost_module(p, head)] or found
         if found:
             # A key of any name that has pip install what is called as the module.
             names = dict.fromkeys((head, head.replace("_", "-")))
             found += [Provider("system", f"python3-{name}-pip", name, False) for name in names]
         return tuple(found)
+
+    def _has_lost_module(self, provider: Provider, module: str) -> bool:
+        """Whether a package of the target had a module in other versions alone, as one does that was divided."""
+        offer = self.offers.find_package(provider.name) if provider.kind == "ros" else None
+        offered = offer.get("python", module) if offer is not None else None
+        return offered is not None and offered.state in ("removed", "moved", "absent")
 
 
 def is_called_after(name: str, folder: str) -> bool:
