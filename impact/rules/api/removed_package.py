@@ -27,7 +27,7 @@ from collections.abc import Iterator
 
 from ...facts.condition import Condition
 from ...model.cmake.build import FoundPackage
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, limit_severity, list_place_doubts, rule
 
 _GONE = "package `{subject}` is not available in {distro}"
 _ENDED = f"{_GONE}; its successor `{{replacement}}` has another API"
@@ -67,7 +67,9 @@ def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterato
     ]
     seen = set()
     for name, how, conditions, at, doubts in uses:
-        if name in seen:
+        # Whoever corrects the manifest alone is stopped by CMake.
+        stops = how == "found" and limit_severity(*doubts) == "error"
+        if name in seen or (name, how) in seen or ((name, "declared") in seen and not stops):
             continue
         rows = {row.state: row for row in reversed(view.find_reviewed("package", name)) if row.form == form}
         later = rows.get("upcoming")
@@ -83,7 +85,7 @@ def list_gone_packages(view: TargetView, package: Package, form: str) -> Iterato
         gone = rows.get("removed")
         if gone is None or view.is_available(name):
             continue
-        seen.add(name)
+        seen.add((name, how))
         data = {"distro": view.target.distro, "replacement": gone.replacement}
         yield Diagnostic(at, name, package.name, data, f"{how}{_find_fate(view, name, gone.replacement)}", doubts)
 

@@ -31,6 +31,7 @@ from ...model.cmake.links import stops_at_names
 from ...model.cmake.names import MODULES
 from ...model.misspelling import SpellingIndex, fold_name, is_slip
 from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, list_place_doubts, rule
+from .unresolved_names import find_intended, list_unknown
 
 _PLAIN = re.compile(r"[A-Za-z_][\w.+-]+")
 # Letters of a library's name: shorter ones are alike by chance.
@@ -41,11 +42,13 @@ _SHORTEST = 6
     texts={
         "run together": Text("`{subject}` is `{first}` and `{second}` run together", "write `{first} {second}`"),
         "near": Text("no package provides `{subject}`; `{replacement}` is declared", "write `{replacement}`"),
+        "declared too": Text("no package provides `{subject}`", "write `{replacement}`, here and in {manifest}"),
         "library": Text("`{target}` links `{subject}`, which is not a CMake target", "write `{replacement}`"),
     },
 )
 def misspelt_cmake_name(view: TargetView, package: Package):
     declared = view.collect_declared(package)
+    unknown = {one.name for one in list_unknown(view, package)}
     found = {f.name for f in package.build.found}
     prefixes = {f.prefix for f in package.build.found if f.prefix}
     near = None
@@ -55,11 +58,19 @@ def misspelt_cmake_name(view: TargetView, package: Package):
         if (
             not view.applies(conditions)
             or view.find_cmake(name)
-            or name in declared
+            or (name in declared and not required)
             or (name in found and not required)
         ):
             continue
         if name in prefixes or f"Find{name}" in MODULES:
+            continue
+        if name in declared:
+            intended = find_intended(view, package, name) if name in unknown else None
+            if intended is not None and intended.kind == "near":
+                doubts = (view.is_sure(conditions) or Doubt.CONDITIONAL,)
+                data = {"replacement": intended.names[0], "manifest": package.linked.manifest_path}
+                fix = (Replace(at.path, at.line, at.column, name, intended.names[0]),)
+                yield Diagnostic(at, name, package.name, data, "declared too", doubts, fix)
             continue
         if near is None:
             near = SpellingIndex(
