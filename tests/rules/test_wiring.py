@@ -604,7 +604,7 @@ ROWS = {
             **FLOE,
         },
         ("sled/CMakeLists.txt", "add_dependencies(${PROJECT_NAME}_run ${PROJECT_NAME}_generate_messages_cpp)\n", ""),
-        ("warning", "${PROJECT_NAME}_generate_messages_cpp"),
+        ("warning", "sled_generate_messages_cpp"),
     ),
 }  # fmt: skip
 

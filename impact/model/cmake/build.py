@@ -251,11 +251,10 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     standard set for everything (CMAKE_CXX_STANDARD, -std= flags, compile features), None when there is none, with its
     place. standards: every one, with its place and conditions. standard_default_only: it is only set where the user or
     a toolchain has not chosen one. standard_by_flag: by -std= flags alone, so that CMake adds what linked targets ask
-    for only where the compiler's default is lower. project_by_variable: its CMakeLists.txt calls targets after
-    ${PROJECT_NAME} rather than by the project's name. macros: what is given to the compiler with -D. message_files:
-    what generators of interfaces are given. unresolved: (place, reason) of what could not be told. files: the CMake
-    files read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores;
-    a folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
+    for only where the compiler's default is lower. macros: what is given to the compiler with -D. message_files: what
+    generators of interfaces are given. unresolved: (place, reason) of what could not be told. files: the CMake files
+    read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores; a
+    folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
     they register). catkin_destinations: catkin_package(), or a macro that calls catkin_destinations() as
     generate_messages() does, sets where targets are built, so that the devel space has them.
@@ -282,7 +281,6 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files: tuple[str, ...] = ()
     standard_by_flag: bool = False
     message_files: tuple[WrittenPath, ...] = ()
-    project_by_variable: bool = False
     standards: tuple[tuple[int, At, tuple[Condition, ...]], ...] = ()
     macros: tuple[DefinedMacro, ...] = ()
     made: tuple[str, ...] = ()

@@ -98,10 +98,6 @@ _GROWN = frozenset(name.partition("(")[0] for name in SINCE if "(" in name)
 # What the setup files of ros_environment set, where it is installed.
 _ROS_ENVIRONMENT = re.compile(r"\bENV\{(ROS_(?:DISTRO|VERSION|PYTHON_VERSION))\}")
 
-# Commands that name targets of the package.
-_ON_TARGETS = frozenset({"add_dependencies", "add_executable", "add_library", "target_link_libraries"})
-
-
 # What is collected under the names that Build has for it.
 _COLLECTED = (
     *("macros", "found", "installs", "exports", "generated", "uses", "include_dirs", "links", "unresolved", "files"),
@@ -270,19 +266,9 @@ class Interpreter:
             targets=self.targets.finish(),
             catkin_package=self.catkin_package,
             ament_package=self.ament_package,
-            project_by_variable=self._uses_project_name(),
             before_catkin_destinations=self.before_catkin_destinations,
             catkin_destinations=self.catkin_destinations,
             **{name: tuple(getattr(self, name)) for name in _COLLECTED},
-        )
-
-    def _uses_project_name(self) -> bool:
-        facts = self.read(posixpath.join(self.package_path, "CMakeLists.txt"))
-        return facts is not None and any(
-            "${PROJECT_NAME}" in argument.text
-            for command in facts.commands
-            if command.name in _ON_TARGETS
-            for argument in command.arguments
         )
 
     def load(self, path: str) -> list[CommandCall | Block] | None:

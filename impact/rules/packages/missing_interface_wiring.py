@@ -71,9 +71,7 @@ def missing_interface_wiring(view: TargetView, package: Package):
         include, target = min(uses, key=lambda u: (u[1].at.path, u[1].at.line, u[0].at.path, u[0].at.line))
         own = head == package.name
         variable = "${" + (f"{package.name}" if own else "catkin") + "_EXPORTED_TARGETS}"
-        # As the file itself spells it; what dynamic_reconfigure makes is named by the variable everywhere.
-        by_variable = own and (package.build.project_by_variable or kind == "gencfg")
-        maker = "${PROJECT_NAME}" if by_variable else head
+        maker = "${PROJECT_NAME}" if kind == "gencfg" else head  # named by the variable everywhere
         names = tuple(sorted({t.name for _, t in uses}))
         data = {"header": include.path, "targets": names, "target": names[0], "variable": variable}
         fix = _add_dependencies(package, [t for _, t in uses], variable) if own or _is_component(package, head) else ()
