@@ -20,8 +20,9 @@ Use instead
     target_link_libraries(loader arm gtest)
 
 Not reported
-    Targets that are given anything of which it cannot be seen what it brings; includes in headers; static libraries,
-    and shared ones that are not installed: the programs of the package bring what they lack.
+    Targets that are given anything of which it cannot be seen what it brings; includes in headers, unless the target is
+    given the library's include folders in place of it; static libraries, and shared ones that are not installed: the
+    programs of the package bring what they lack.
 """
 
 from ...model.cmake.build import BuildTarget
@@ -71,13 +72,16 @@ def unlinked_library(view: TargetView, package: Package):
     for include, word in includes:
         for name in include.targets:
             target = targets.get(name)
-            if target is None or include.at.path not in target.sources or (word, name) in seen:
+            if target is None or (word, name) in seen:
+                continue
+            mistaken = any(_gives_folders(link.item, word) for link in target.links)
+            if include.at.path not in target.sources and not mistaken:
                 continue
             if target.kind != "executable" and (target.kind != "library" or target.static or name not in installed):
                 continue
             if not view.is_sure(target.conditions):
                 continue
-            if _is_brought(view, package, name, include.path, word):
+            if _is_brought(view, package, name, include.path, word, mistaken):
                 continue
             seen.add((word, name))
             subject = include.path.partition("/")[0].removesuffix(".h")
@@ -93,10 +97,19 @@ def _collect_doubts(target: BuildTarget, testing: bool) -> tuple[Doubt, ...]:
     return (Doubt.TEST,) if target.excluded else ()
 
 
-def _is_brought(view: TargetView, package: Package, target: str, header: str, word: str) -> bool:
-    """Whether anything that a target is given links the library of a header, or may."""
+def _gives_folders(item: str, word: str) -> bool:
+    """Whether an item is the variable of a library's include folders, which CMake drops with a warning."""
+    return "_INCLUDE_DIR" in item and word in strip_separators(item)
+
+
+def _is_brought(view: TargetView, package: Package, target: str, header: str, word: str, mistaken: bool) -> bool:
+    """Whether anything that a target is given links the library of a header, or may. mistaken: the target is given the
+    library's folders, so that it needs the library, and what is not known to bring that counts for nothing."""
     items = list_linked(package, target)
-    if items is None or any(word.removesuffix("2") in strip_separators(item) for item in items):
+    if items is None:
+        return True
+    items = {item for item in items if not _gives_folders(item, word)}
+    if any(word.removesuffix("2") in strip_separators(item) for item in items):
         return True
     if word == "gmock" and any("gtest" in strip_separators(item) for item in items):
         return False
@@ -105,7 +118,8 @@ def _is_brought(view: TargetView, package: Package, target: str, header: str, wo
     packages = find_linked_packages(view, package, items)
     if view.target.ros == 2:
         return view.is_met(view.find_header(header), view.list_transitive(packages))
-    return CatkinExports(view).list_bringing(packages, word) != set()
+    bringing = CatkinExports(view).list_bringing(packages, word)
+    return bool(bringing) or (bringing is None and not mistaken)
 
 
 def _may_bring_anything(view: TargetView, package: Package, item: str) -> bool:
