@@ -560,7 +560,10 @@ class PackageJoin:
         unused |= leftover
         if self.build_type == "catkin":  # which starts programs from the source space too
             own = (r for p, r in references if r.package == self.name and self.find_role(p) is None)
-            self.start_scripts(python, {r.name for r in own if r.kind == "executable"})
+            names = {r.name for r in own if r.kind == "executable"}
+            if not self.build.installs:  # there alone
+                names.update(posixpath.basename(p) for p, f in python.items() if f.interpreter and not _is_part(f))
+            self.start_scripts(python, names)
         table = self.watched.in_cpp
         if table.patterns or table.words:
             self.searched = self.look(self.cpp, "searched_cpp", table)

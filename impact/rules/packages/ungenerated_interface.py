@@ -32,7 +32,6 @@ _FOLDERS = frozenset({"msg", "srv", "action"})
 
 @rule(
     severity="warning",
-    preview=True,
     group="missing-message-generation",
     texts={
         "": Text("`{subject}` is not given to the generator of interfaces", "add it to the generator's files"),

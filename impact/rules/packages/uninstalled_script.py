@@ -59,14 +59,14 @@ def uninstalled_script(view: TargetView, package: Package):
 
 
 def _list_nodes(package: Package, installs, folders: set[str]) -> frozenset[str]:
-    """The nodes in Python of a package that installs something: all of ROS 2, and of ROS 1, where a launch file in the
-    source space starts them as well, those of a package that makes and installs no program at all.
+    """The nodes in Python of a package of ROS 2; in ROS 1, where a launch file in the source space starts them as well,
+    of one that installs something, and makes and installs no program at all.
     install_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.
     folders: those of installed programs.
     """
     made = any(t.kind == "executable" for t in package.build.targets)
     has_programs = made or any(i.kind == "programs" or i.executable for i in installs)
-    if not installs or (has_programs and package.build.ament_package is None):
+    if package.build.ament_package is None and (not installs or has_programs):
         return frozenset()
     nodes = {use.at.path for use in package.linked.imports if use.module.partition(".")[0] in _OF_NODES}
     inside = {path: package.strip_path(path) for path in package.linked.scripts if path in nodes}
