@@ -562,7 +562,8 @@ class PackageJoin:
             own = (r for p, r in references if r.package == self.name and self.find_role(p) is None)
             names = {r.name for r in own if r.kind == "executable"}
             if not self.build.installs:  # there alone
-                names.update(posixpath.basename(p) for p, f in python.items() if f.interpreter and not _is_part(f))
+                programs = (p for p, f in python.items() if f.interpreter and not _is_part(f))
+                names.update(posixpath.basename(p) for p in programs if self.find_role(p) is None)
             self.start_scripts(python, names)
         table = self.watched.in_cpp
         if table.patterns or table.words:
