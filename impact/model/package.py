@@ -561,7 +561,7 @@ class PackageJoin:
         if self.build_type == "catkin":  # which starts programs from the source space too
             own = (r for p, r in references if r.package == self.name and self.find_role(p) is None)
             names = {r.name for r in own if r.kind == "executable"}
-            if not self.build.installs:  # there alone
+            if not self.build.installs and not self.manifest.metapackage:  # there alone
                 programs = (p for p, f in python.items() if f.interpreter and not _is_part(f))
                 names.update(posixpath.basename(p) for p in programs if self.find_role(p) is None)
             self.start_scripts(python, names)
