@@ -252,7 +252,7 @@ def group_test_arguments(args: list[Word]) -> dict[str, list[Word]]:
 def add_ament_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that are executables."""
     if args:
-        draft = run.ensure_target(args[0], "test", args[0].at)
+        draft = run.add_target(args[0], "test")
         add_sources(run, draft, group_test_arguments(args[1:])[""])
 
 
@@ -316,7 +316,7 @@ def add_auto_target(run: Interpreter, call: CommandCall, args: list[Word]) -> No
     )
     if "INTERFACE" in given:
         kind = "interface"
-    draft = run.ensure_target(name, kind, name.at)
+    draft = run.add_target(name, kind)
     if "STATIC" in given:
         draft.installed_as = "static"
     draft.archive = "STATIC" in given or (given.keys().isdisjoint(("SHARED", "MODULE")) and makes_archives(run))

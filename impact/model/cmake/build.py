@@ -217,17 +217,20 @@ class DependencyCall(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A name at which CMake stops. kind: `twice` (a target that is added a second time; conditions are those of both
-    times), `mixed` (a target that is linked with keywords and without), `no target` (something is given to a target
+    times), `mixed` (a target that is linked with keywords and without), `no scope` (an argument that stands where
+    a command wants PUBLIC, PRIVATE or INTERFACE), `no target` (something is given to a target
     that is not there yet, or never), `branch` (the same, where it is there under one of `ways` alone, the conditions of
     what makes it), `project` (catkin_package() or ament_package() finds another name in package.xml than that of the
     project), `version` (project() is given a version under the policies of a CMake before 3.0), `no value` (a property
-    of set_target_properties() whose value is a variable that nothing sets)."""
+    of set_target_properties() whose value is a variable that nothing sets), `no sources` (a library or executable of
+    what file(GLOB) finds with `patterns`, which is nothing)."""
 
     kind: str
     name: str
     at: At
     conditions: tuple[Condition, ...] = ()
     ways: tuple[tuple[Condition, ...], ...] = ()
+    patterns: tuple[str, ...] = ()
 
 
 def is_for_tests(conditions: Iterable[Condition]) -> bool:

@@ -174,8 +174,7 @@ _TEST_OPTIONS = make_name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIE
 )
 def add_catkin_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that are executables: add_catkin_gtest(), add_rostest_gtest() and kin."""
-    name = args[0]
-    draft = run.ensure_target(name, "test", name.at)
+    draft = run.add_target(args[0], "test")
     given = group_by_keyword(args[1:], _TEST_OPTIONS)
     sources = given[""]
     if call.name.startswith("add_rostest"):

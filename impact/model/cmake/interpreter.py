@@ -187,6 +187,7 @@ class Interpreter:
         self.files: dict[str, None] = {}
         self.message_files: list[WrittenPath] = []
         self.read_elsewhere: dict[ReadFile, None] = {}
+        self.empty_globs: dict[str, tuple[str, ...]] = {}  # variable -> the patterns of a file(GLOB) that found nothing
 
     def run(self) -> Build:
         """Interprets the package from its CMakeLists.txt on."""
@@ -1219,12 +1220,14 @@ class Interpreter:
         draft.added = name.sure and kind not in ("imported", "alias")
         return draft
 
-    def refuse(self, kind: str, name: Word, conditions: tuple[Condition, ...] = ()) -> None:
+    def refuse(
+        self, kind: str, name: Word, conditions: tuple[Condition, ...] = (), patterns: Sequence[str] = ()
+    ) -> None:
         """Notes a name at which CMake stops. conditions: that it stops under besides those of the place."""
         if name.sure and "$<" not in name and not self.silent:
-            self.refused[
-                RefusedName(kind, str(name), self.locate(name.at), merge(conditions, self.merge_with(name)))
-            ] = None
+            conditions = merge(conditions, self.merge_with(name))
+            made = RefusedName(kind, str(name), self.locate(name.at), conditions, patterns=tuple(patterns))
+            self.refused[made] = None
 
     @property
     def installed_name(self) -> str:

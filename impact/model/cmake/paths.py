@@ -151,6 +151,9 @@ def _run_glob(run: Interpreter, call: CommandCall, recursive: bool, rest: list[W
             full = run.make_absolute(path)
             hits.append(wrap(posixpath.relpath(full, start) if start else full, pattern.at))
     run.set(name, dict.fromkeys(hits))
+    run.empty_globs.pop(str(name), None)
+    if not hits and patterns and all(pattern.sure and "$" not in pattern for pattern in patterns):
+        run.empty_globs[str(name)] = tuple(run.resolve_tree_path(pattern) for pattern in patterns)
 
 
 @handles("aux_source_directory", least=2)

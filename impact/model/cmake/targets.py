@@ -64,6 +64,8 @@ def add_library(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     draft.archive = draft.installed_as == "static" or (kind == "library" and not form and makes_archives(run))
     draft.excluded = "EXCLUDE_FROM_ALL" in rest
     add_sources(run, draft, sources)
+    if kind in ("library", "module") and not sources:
+        note_sourceless(run, call, name)
 
 
 @handles("add_executable", "cuda_add_executable", "rosbuild_add_executable", "qt_add_executable", "qt5_add_executable",
@@ -75,7 +77,18 @@ def add_executable(run: Interpreter, call: CommandCall, args: list[Word]) -> Non
     name, rest = args[0], args[1:]
     draft = run.add_target(name, "imported" if rest[:1] == ["IMPORTED"] else "executable")
     draft.excluded = "EXCLUDE_FROM_ALL" in rest
-    add_sources(run, draft, [item for item in rest if item not in ("WIN32", "MACOSX_BUNDLE", *_LIBRARY_FLAGS)])
+    sources = [item for item in rest if item not in ("WIN32", "MACOSX_BUNDLE", *_LIBRARY_FLAGS)]
+    add_sources(run, draft, sources)
+    if not sources:
+        note_sourceless(run, call, name)
+
+
+def note_sourceless(run: Interpreter, call: CommandCall, name: Word) -> None:
+    """Refuses a target all of whose sources are of a file(GLOB) that finds none."""
+    variables = [template.raw[2:-1] for template in call.templates[1:] if template.raw.startswith("${")]
+    patterns = [pattern for variable in variables for pattern in run.empty_globs.get(variable, ())]
+    if patterns and len(variables) == sum(variable in run.empty_globs for variable in variables):
+        run.refuse("no sources", name, patterns=patterns)
 
 
 def _is_alias(run: Interpreter, args: list[Word]) -> bool:
@@ -110,6 +123,7 @@ _ENDINGS = (".c", ".C", ".c++", ".cc", ".cpp", ".cxx", ".cu", ".h", ".hh", ".hpp
 def add_target_sources(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_target_sources(), FILE_SET forms included."""
     draft = resolve_target(run, args[0])
+    check_scope(run, draft, args)
     kept: list[Word] = []
     section = ""
     for item in args[1:]:
@@ -124,6 +138,22 @@ def add_target_sources(run: Interpreter, call: CommandCall, args: list[Word]) ->
     add_sources(run, draft, kept)
 
 
+@handles("target_precompile_headers", least=2)
+def add_precompiled_headers(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
+    """target_precompile_headers(): the headers of the tree are compiled like sources; `<vector>` is of the compiler."""
+    draft = resolve_target(run, args[0])
+    check_scope(run, draft, args)
+    if args[1] != "REUSE_FROM":
+        add_sources(run, draft, [item for item in args[1:] if item not in _SCOPES and item[:1] not in ("<", '"')])
+
+
+def check_scope(run: Interpreter, draft: TargetDraft, args: list[Word]) -> None:
+    """Refuses a call that gives a target something without PUBLIC, PRIVATE or INTERFACE."""
+    items = [item for item in args[1:4] if item not in _INCLUDE_FLAGS or run.command != "target_include_directories"]
+    if items and items[0] not in (*_SCOPES, "REUSE_FROM") and "$" not in items[0] and draft.kind != "unknown":
+        run.refuse("no scope", items[0])
+
+
 def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
     """The target of this name; one that nothing makes is noted as unknown."""
     draft = run.targets.get(name)
@@ -134,11 +164,19 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
         note_branches(run, draft, name)
         return draft
     typesupport = run.is_typesupport(name)
-    # add_dependencies() is given what catkin makes (`tests`), and CMake lets it wait for what comes later.
-    known = run.command == "add_dependencies" or typesupport or name in run.maybe_set or "::" in name
+    known = typesupport or name in run.maybe_set or "::" in name
+    known = known or (run.command == "add_dependencies" and MADE_ALONG.fullmatch(name) is not None)
     if not known and not _is_asked_for(run, name):
         run.refuse("no target", name)
     return run.ensure_target(name, "generated" if typesupport else "unknown", name.at)
+
+
+# What catkin, rosbuild, genmsg and ament add beside what they are asked for. Sources: catkin's cmake/all.cmake and
+# cmake/test/tests.cmake, rosbuild's public.cmake, genmsg's pkg-genmsg.cmake.em, ament_cmake_python.
+MADE_ALONG = re.compile(
+    r"tests?|_?run_tests(?:_\w+)?|clean_test_results(?:_\w+)?|download_extra_data|doxygen|ros(?:build|pack)_\w+|"
+    r"\w+_generate_messages(?:_\w+)?|_\w+_check_deps_\w+|ament_cmake_python_\w+|uninstall"
+)
 
 
 def note_branches(run: Interpreter, draft: TargetDraft, name: Word) -> None:
@@ -167,6 +205,7 @@ _VISIBILITY = {
 }
 _LINK_FLAGS = frozenset({"debug", "optimized", "general"})
 _INCLUDE_FLAGS = frozenset({"SYSTEM", "BEFORE", "AFTER"})
+_SCOPES = frozenset({"PUBLIC", "PRIVATE", "INTERFACE"})
 
 
 def add_links(run: Interpreter, draft: TargetDraft, items: list[Word], how: str, visibility: str = "") -> None:
@@ -212,6 +251,7 @@ def add_target_includes(run: Interpreter, call: CommandCall, args: list[Word]) -
     """add_target_includes()."""
     items = split_words(item for item in args[1:] if item not in _INCLUDE_FLAGS)
     draft = resolve_target(run, args[0])
+    check_scope(run, draft, args)
     add_links(run, draft, items, "include")
     for found in _INSTALLED.findall(" ".join(items)):
         draft.installed_includes.update(dict.fromkeys(run.clean(folder) for folder in found.split()))
@@ -310,6 +350,7 @@ def add_custom_target(run: Interpreter, call: CommandCall, args: list[Word]) -> 
 def add_target_definitions(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_target_definitions()."""
     draft = resolve_target(run, args[0])
+    check_scope(run, draft, args)
     for item in split_words(args[1:]):
         if item not in _VISIBILITY:
             draft.definitions[item[2:] if item.startswith("-D") else str(item)] = None
@@ -320,6 +361,7 @@ def add_target_definitions(run: Interpreter, call: CommandCall, args: list[Word]
 def add_target_options(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """add_target_options() and target_compile_features(), of which the C++ standard is kept."""
     draft = resolve_target(run, args[0])
+    check_scope(run, draft, args)
     seen = "PUBLIC"
     for item in args[1:]:
         seen = str(item) if item in _VISIBILITY else seen

@@ -2,10 +2,12 @@
 
 What it does
     Reports names that are given include directories, libraries or properties, and that no command adds as a target,
-    that a later command adds, or that only branches for other distros add.
+    that a later command adds, or that only branches for other distros add; and names in add_dependencies() that no
+    command adds, among them the targets of the package's own messages where it generates none.
 
 Why it breaks
-    CMake stops: "Cannot specify link libraries for target which is not built by this project".
+    CMake stops: "Cannot specify link libraries for target which is not built by this project", "The dependency target
+    of target does not exist".
 
 Severity
     error; warning where CMake may not reach the place.
@@ -19,11 +21,16 @@ Use instead
     target_link_libraries(tracker Eigen3::Eigen)
 
 Not reported
-    Names that cannot be resolved, and targets that a command which is not known may add.
+    Names that cannot be resolved, and targets that a command which is not known may add; what a target has to wait for
+    under the policies of a CMake before 3.0, which takes no notice, and where it may be of another package.
 """
 
+import re
+from collections.abc import Iterator
+
+from ...model.cmake.targets import MADE_ALONG
 from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
-from .refused_names import list_refused
+from .refused_names import find_policy_version, list_refused
 
 
 @rule(
@@ -35,6 +42,10 @@ from .refused_names import list_refused
             "`{subject}` is no target on {distro}, since other distros alone add it, so CMake stops",
             "add the target on {distro} too",
         ),
+        "no dependency": Text(
+            "`{by}` is made to wait for `{subject}`, which is not a CMake target, so CMake stops",
+            "name a target that the package adds, or remove it",
+        ),
     },
 )
 def nonexistent_target(view: TargetView, package: Package):
@@ -43,3 +54,30 @@ def nonexistent_target(view: TargetView, package: Package):
         kind = "too early" if refused.kind == "no target" and refused.name in added else refused.kind
         doubts = list_place_doubts(view, "build", refused.conditions)
         yield Diagnostic(refused.at, refused.name, package.name, {"distro": view.target.distro}, kind, doubts)
+    if not package.build.may_add_targets:
+        yield from _list_awaited(view, package)
+
+
+_GENERATED = re.compile(r"(\w+?)_gen(?:erate_messages)?(?:_?(?:cpp|py|lisp|eus|nodejs|cfg))?\Z")
+
+
+def _list_awaited(view: TargetView, package: Package) -> Iterator[Diagnostic]:
+    """What targets have to wait for and no command adds (CMP0046)."""
+    if find_policy_version(package) < (3,):
+        return
+    others = {target.name for other in view.workspace if other is not package for target in other.build.targets}
+    known = others.union(target.name for target in package.build.targets if target.kind != "unknown")
+    seen = set()
+    for target in package.build.targets:
+        for link in target.links if target.kind in ("library", "module", "executable") else ():
+            name, generated = link.item, _GENERATED.match(link.item)
+            if link.how != "order" or name in known or name in seen or not re.fullmatch(r"[\w.+-]+", name):
+                continue
+            owner = generated[1] if generated is not None else ""
+            elsewhere = owner not in (package.name, package.build.project) if owner else (
+                MADE_ALONG.fullmatch(name) or view.is_package(name) or view.find_cmake(name)
+            )
+            if not elsewhere:
+                seen.add(name)
+                doubts = list_place_doubts(view, "build", link.conditions)
+                yield Diagnostic(link.at, name, package.name, {"by": target.name}, "no dependency", doubts)

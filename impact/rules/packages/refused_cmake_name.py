@@ -19,9 +19,9 @@ Not reported
     Programs and libraries under the policies of a CMake before 3.0, which only warns of them.
 """
 
-from ...model.cmake.conditions import make_version_key
 from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
+from .refused_names import find_policy_version
 
 # From here on install_python_package() makes custom targets. Source: commit 42b972e of ament_cmake.
 _MAKES_TARGETS = "1.1.0"
@@ -30,7 +30,7 @@ _MAKES_TARGETS = "1.1.0"
 @rule(texts=Text("target name `{subject}` contains a slash", "remove the slash from the name"))
 def refused_cmake_name(view: TargetView, package: Package):
     build = package.build
-    refused = ("custom", "executable", "library") if _find_policy_version(package) >= (3,) else ("custom",)
+    refused = ("custom", "executable", "library") if find_policy_version(package) >= (3,) else ("custom",)
     slashed = [(target.name, target.at, target.conditions) for target in build.targets if target.kind in refused]
     version = view.target.find_version("ament_cmake_python") or "0"
     if is_at_least(version, _MAKES_TARGETS) and package.build_type != "catkin":
@@ -38,9 +38,3 @@ def refused_cmake_name(view: TargetView, package: Package):
     for name, at, conditions in slashed:
         if "/" in name and "$" not in name:
             yield Diagnostic(at, name, package.name, doubts=list_place_doubts(view, "build", conditions))
-
-
-def _find_policy_version(package: Package) -> tuple[int, ...]:
-    """The version whose policies CMake follows; from 3.0 on it refuses a slash in any name (CMP0037)."""
-    lower, _, upper = (package.build.minimum or ("", None))[0].partition("...")
-    return make_version_key(upper or lower)

@@ -3,10 +3,11 @@
 from collections.abc import Iterator
 
 from ...model.cmake.build import RefusedName
+from ...model.cmake.conditions import make_version_key
 from ..vocabulary import Diagnostic, Package, TargetView, list_place_doubts
 
 # What only code that is not read can mend.
-_HIDDEN = frozenset(("branch", "no target", "no value"))
+_HIDDEN = frozenset(("branch", "no sources", "no target", "no value"))
 
 
 def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[RefusedName]:
@@ -23,6 +24,13 @@ def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[Re
         if refused.name not in seen:
             seen.add(refused.name)
             yield refused
+
+
+def find_policy_version(package: Package) -> tuple[int, ...]:
+    """The version whose policies CMake follows. From 3.0 on it refuses a slash in any name (CMP0037), and what waits
+    for a target that does not exist (CMP0046)."""
+    lower, _, upper = (package.build.minimum or ("", None))[0].partition("...")
+    return make_version_key(upper or lower)
 
 
 def diagnose_refused(view: TargetView, package: Package, kind: str) -> Iterator[Diagnostic]:
