@@ -340,8 +340,6 @@ def build_type_of(manifest: Manifest, ros: int) -> str:
         if not condition or holds(Condition("manifest", condition), here):
             return kind
         fallback = fallback or kind
-    if fallback:
-        return fallback
     tools = {
         d.name
         for d in manifest.dependencies
@@ -350,7 +348,14 @@ def build_type_of(manifest: Manifest, ros: int) -> str:
     for kind in BUILD_TOOLS:
         if kind in tools:
             return kind.removesuffix("_auto")
+    if fallback:
+        return fallback
     return "catkin" if manifest.format < 3 or "catkin" in tools else "cmake"
+
+
+def normalise_stem(path: str) -> str:
+    """The name of a file without its ending, as the class that is called like it would be in lower case."""
+    return posixpath.basename(path).partition(".")[0].replace("_", "").lower()
 
 
 def is_called_example(path: str) -> bool:
