@@ -42,6 +42,13 @@ def find_misspelt(view: TargetView, package: Package, path: str, includer: str =
     return None if known else f"{package.name}/{path.rpartition('/')[2]}"
 
 
+def find_standard_header(view: TargetView, path: str) -> str | None:
+    """The header of the standard libraries that an include of another name means: `cmath` for `math`."""
+    if not path.isidentifier() or view.find_header(path) or path in _list_file_names(view):
+        return None
+    return next((one for one in (f"c{path}", f"{path}.h") if view.is_standard(one)), None)
+
+
 def is_answered(view: TargetView, path: str) -> bool:
     """Whether somebody may have a header; a package of the workspace has no more than is known of it."""
     return any(p.sure or p.name not in view.workspace.packages for p in view.find_header(path))

@@ -307,6 +307,9 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # Includes in compiled files that headers of the package are called like, in folders that no target searches, each
     # with such a header.
     unsearched: tuple[tuple[IncludeUse, str], ...] = ()
+    # Classes of the package's headers that compiled sources use without them, each with its header and with all that
+    # the source includes from elsewhere.
+    unincluded: tuple[tuple[NameUse, str, tuple[str, ...]], ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -316,7 +319,7 @@ _INWARD = {
     if field.name in {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
-        "settings", "testing", "python_offer",
+        "unincluded", "settings", "testing", "python_offer",
     }
 }  # fmt: skip
 
@@ -658,6 +661,7 @@ class PackageJoin:
             distros=tuple(distros),
             requirements=tuple(requirements),
             unsearched=tuple(self.list_unsearched(roles)),
+            unincluded=tuple(self.list_unincluded(roles)),
         )
 
     def find_included_file(self, include: str, includer: str) -> str | None:
@@ -793,6 +797,48 @@ class PackageJoin:
                 around = conditions + self.macros.resolve_conditions(include.conditions, targets)
                 at = At(path, include.line, include.column)
                 yield IncludeUse(include.path, at, role, public, around, targets, angled=include.angled), to
+
+    def list_unincluded(self, roles) -> Iterator[tuple[NameUse, str, tuple[str, ...]]]:
+        """As LinkedPackage.unincluded. A header counts that is called like its class."""
+        headers: dict[str, list[str]] = {}
+        for path in filter(is_header, self.cpp):
+            stem = normalise_stem(path)
+            for word in self.cpp[path].type_names:
+                if len(word) > 5 and stem == word.lower():
+                    headers.setdefault(word, []).append(path)
+        inner = {to for resolved in self.resolved.values() for to, _ in resolved}
+        for path, (role, _, targets, conditions) in roles.items() if headers else ():
+            if not targets or is_header(path) or path in inner:
+                continue
+            for word in sorted(headers.keys() & self.list_words(path)):
+                if headers[word][0] in self.list_reached(path) or not self._lacks_class(path, word):
+                    continue
+                spot = next(self._find_class_uses(path, word), None)
+                if spot is not None:
+                    around = conditions + self.macros.resolve_conditions(spot.conditions or (), targets)
+                    use = NameUse(word, At(path, spot.line, spot.column), role, False, "cpp", around, targets)
+                    yield use, headers[word][0], self.list_outward(path)
+
+    def _lacks_class(self, path: str, word: str) -> bool:
+        """Whether nothing of the workspace that a source includes says what a class is, nor may it be another one."""
+        reached = map(self.load, (*self.list_reached(path), *self.list_offered(path)))
+        if any(file.declares_type(word) or word in (*file.facts.defined, *file.facts.namespaces) for file in reached):
+            return False
+        known = self.load(path)
+        own = {space for at in self.cpp.values() for space in at.namespaces}
+        return word not in known.using and own.union(("std",)).issuperset(
+            space.partition("::")[0] for space in known.facts.opened
+        )
+
+    def _find_class_uses(self, path: str, word: str) -> Iterator[CodeSpot]:
+        """Where a source defines members of a class, or uses its name alone or as a scope."""
+        known = self.load(path)
+        for found in known.declarations.names:
+            if found.at is not None and found.kind == "function" and found.scope.rpartition("::")[2] == word:
+                yield found.at
+        for use in known.list_uses(known.list_mentions((word,))):
+            if use.name.partition("::")[0] == word and use.local is None and use.form in ("bare", "scoped"):
+                yield use.at
 
     def collect_sources(self, roles):
         includes: list[IncludeUse] = []

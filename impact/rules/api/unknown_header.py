@@ -4,8 +4,9 @@ What it does
     Reports `#include` lines that no version of any package provides: spellings of generated headers that belong to the
     other ROS generation, or to C where rclcpp is used, in another case, or without their folder; generated headers
     whose interface no version of the package has, or another package of the workspace has; own headers with a letter,
-    the case or the ending wrong; headers that no file of the workspace is called like, where all that the package
-    declares and finds is known; configuration headers of dynamic_reconfigure below a name that no package has.
+    the case or the ending wrong; `<math>` for `<cmath>`; headers that no file of the workspace is called like, where
+    all that the package declares and finds is known; configuration headers of dynamic_reconfigure below a name that no
+    package has.
 
 Why it breaks
     The compiler stops with "No such file or directory".
@@ -27,7 +28,7 @@ Not reported
     what a later or an earlier version has (removed-header reports it).
 """
 
-from ...model.absent_headers import find_misspelt, is_bridge, is_nowhere
+from ...model.absent_headers import find_misspelt, find_standard_header, is_bridge, is_nowhere
 from ...model.package import IncludeUse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .included_headers import get_included_headers
@@ -41,6 +42,7 @@ from .interface_headers import TEXTS, collect_c_header_doubts, find_interface_fa
         "nowhere": Text(
             "no file of the workspace and no known package has `{subject}`", "include a header that is there, or add it"
         ),
+        "standard": Text("the standard library has no header `{subject}`", "include `<{replacement}>`"),
         "misspelt": Text("no package has `{subject}`, but `{package}` has `{replacement}`", "include `{replacement}`"),
     },
 )
@@ -50,7 +52,9 @@ def unknown_header(view: TargetView, package: Package):
         path, at = include.path, include.at
         own, fault = find_misspelt(view, package, path, at.path), find_interface_fault(view, path)
         if own is None and fault is None:
-            if is_nowhere(view, package, include) and headers.find_loss(package, include) is None:
+            if (meant := find_standard_header(view, path)) is not None:
+                yield Diagnostic(at, path, package.name, {"replacement": meant}, "standard", doubts)
+            elif is_nowhere(view, package, include) and headers.find_loss(package, include) is None:
                 yield Diagnostic(at, path, package.name, {}, "nowhere", doubts)
             continue
         if headers.find_loss(package, include) is not None:
