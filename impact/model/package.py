@@ -831,13 +831,17 @@ class PackageJoin:
         )
 
     def _find_class_uses(self, path: str, word: str) -> Iterator[CodeSpot]:
-        """Where a source defines members of a class, or uses its name alone or as a scope."""
+        """Where a source defines members of a class, has some of its type, makes objects of it, or uses it as a scope;
+        to a macro, a name can be anything."""
         known = self.load(path)
         for found in known.declarations.names:
             if found.at is not None and found.kind == "function" and found.scope.rpartition("::")[2] == word:
                 yield found.at
+        alone = re.compile(rf"(?<![\w:]){word}(?!\w)")
+        members = (one for own in known.declarations.classes for same in own.members.values() for one in same)
+        has_member = any(one.kind == "variable" and alone.search(one.type) for one in members)
         for use in known.list_uses(known.list_mentions((word,))):
-            if use.name.partition("::")[0] == word and use.local is None and use.form in ("bare", "scoped"):
+            if use.form == "bare" and (use.made or not use.last or has_member) and use.local is None:
                 yield use.at
 
     def collect_sources(self, roles):
