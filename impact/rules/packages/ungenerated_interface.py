@@ -8,8 +8,8 @@ Why it breaks
     The interface does not exist: whoever includes its header, imports its type or embeds it in a message stops.
 
 Severity
-    warning where a definition that is generated has a field of the type, or a target compiles its header; note
-    otherwise.
+    warning where a definition that is generated has a field of the type, or a target compiles its header, and where one
+    or two definitions are left out; note for all but one of more, and in packages for tests.
 
 Example
     rosidl_generate_interfaces(${PROJECT_NAME} "msg/Sled.msg")      # and there is msg/Winch.msg
@@ -24,17 +24,22 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
+from ...model.package import find_folder_role
 from ...model.workspace import is_interface_header
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 
 _FOLDERS = frozenset({"msg", "srv", "action"})
+_LEFT_OUT = (Together("left out", few=2),)
 
 
 @rule(
     severity="warning",
     group="missing-message-generation",
     texts={
-        "": Text("`{subject}` is not given to the generator of interfaces", "add it to the generator's files"),
+        "": Text(
+            "`{subject}` is not given to the generator of interfaces, so nobody can use it",
+            "add it to the generator's files, or remove it",
+        ),
         "used": Text(
             "`{subject}` is not given to the generator of interfaces, but `{by}` uses it",
             "add it to the generator's files",
@@ -47,13 +52,14 @@ def ungenerated_interface(view: TargetView, package: Package) -> Iterator[Diagno
     if not made or not given or package.build.unresolved or any("$" in path or "*" in path for path in given):
         return
     names = {posixpath.basename(path).lower() for path in given}
+    unused = Doubt.UNCHECKED if find_folder_role(f"{package.path}/") else Doubt.DISTURBS
     for interface in package.linked.interfaces:
         inside = package.strip_path(interface.path)
         folder, _, name = inside.partition("/")
         if folder in _FOLDERS and "/" not in name and name.endswith(f".{folder}") and name.lower() not in names:
             by = next(_list_users(view, package, interface.name), "")
-            kind, doubts = ("used", ()) if by else ("", (Doubt.UNCHECKED,))
-            yield Diagnostic(made[-1].at, inside, package.name, {"by": by}, kind, doubts)
+            kind, doubts, together = ("used", (), ()) if by else ("", (unused,), _LEFT_OUT)
+            yield Diagnostic(made[-1].at, inside, package.name, {"by": by}, kind, doubts, together=together)
 
 
 def _list_users(view: TargetView, package: Package, name: str) -> Iterator[str]:
