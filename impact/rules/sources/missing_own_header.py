@@ -8,8 +8,7 @@ Why it breaks
     The compiler does not know the class: "has not been declared".
 
 Severity
-    error where all that the source includes from elsewhere is known; warning otherwise, in tests, and under conditions
-    that are not known.
+    error; warning in tests, and under conditions that are not known.
 
 Example
     #include <Eigen/Dense>                      // and no #include "tracker/pose_estimator.hpp"
@@ -20,13 +19,11 @@ Use instead
 
 Not reported
     Classes that a file which the source includes announces; sources that another file includes, that open namespaces
-    of other packages, that a precompiled header may reach, or that include what is not found under its path and is
-    called like a header of the workspace.
+    of other packages, that a precompiled header may reach, or that include something of which nothing is known.
 """
 
-import posixpath
-
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
+from ...model.package import normalise_stem
+from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
 
 
 @rule(
@@ -39,8 +36,16 @@ def missing_own_header(view: TargetView, package: Package):
     if any(use.name == "target_precompile_headers" for use in package.build.uses):
         return
     for use, header, outward in package.linked.unincluded:
-        unknown = {posixpath.basename(p) for p in outward if not (view.is_standard(p) or view.find_header(p))}
-        if view.applies(use.conditions) and unknown.isdisjoint(view.workspace.headers):
-            doubts = (*list_place_doubts(view, use.role, use.conditions), Doubt.INCOMPLETE if unknown else None)
+        stems = map(normalise_stem, outward)  # of a message, or in a folder that the build makes
+        if view.applies(use.conditions) and use.text.lower() not in stems and all(_is_known(view, p) for p in outward):
             data = {"header": package.strip_path(header).removeprefix("include/")}
+            doubts = list_place_doubts(view, use.role, use.conditions)
             yield Diagnostic(use.at, use.text, package.name, data, doubts=doubts)
+
+
+def _is_known(view: TargetView, path: str) -> bool:
+    """Whether an included header is of the compiler, of somebody else, or of an interface of the workspace."""
+    owner, _, rest = path.partition("/")
+    if owner in view.workspace.packages:
+        return path in view.workspace.headers or view.workspace.is_interface_header(owner, rest)
+    return not path.startswith(".") and bool(view.find_header(path))
