@@ -310,6 +310,9 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # Classes of the package's headers that compiled sources use without them, each with its header and with all that
     # the source includes from elsewhere.
     unincluded: tuple[tuple[NameUse, str, tuple[str, ...]], ...] = ()
+    # Members that methods use and no file of the package declares, each with the bases that other packages declare of
+    # the class, and with all that the source includes from elsewhere.
+    undeclared: tuple[tuple[NameUse, tuple[str, ...], tuple[str, ...]], ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -319,7 +322,7 @@ _INWARD = {
     if field.name in {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
-        "unincluded", "settings", "testing", "python_offer",
+        "unincluded", "undeclared", "settings", "testing", "python_offer",
     }
 }  # fmt: skip
 
@@ -662,6 +665,7 @@ class PackageJoin:
             requirements=tuple(requirements),
             unsearched=tuple(self.list_unsearched(roles)),
             unincluded=tuple(self.list_unincluded(roles)),
+            undeclared=tuple(self.list_undeclared(roles)),
         )
 
     def find_included_file(self, include: str, includer: str) -> str | None:
@@ -843,6 +847,51 @@ class PackageJoin:
         for use in known.list_uses(known.list_mentions((word,))):
             if use.form == "bare" and (use.made or not use.last or has_member) and use.local is None:
                 yield use.at
+
+    def list_undeclared(self, roles) -> Iterator[tuple[NameUse, tuple[str, ...], tuple[str, ...]]]:
+        """As LinkedPackage.undeclared: words that end with an underscore, in sources that define no class."""
+        for path, (role, _, targets, conditions) in roles.items():
+            if not targets or is_header(path) or self.cpp[path].type_names:
+                continue
+            others = [self.list_words(at) for at in (*self.list_reached(path)[1:], *self.list_offered(path))]
+            ending = (word for word in self.list_words(path) if word.endswith("_") and len(word) > 4)
+            words = {word for word in ending if others and word[0] != "_" and not any(word in one for one in others)}
+            if not words:
+                continue
+            known, uses = self.load(path), {}
+            for use in known.list_uses(known.list_mentions(sorted(words - known.defines - {*self.cpp[path].defined}))):
+                uses.setdefault(use.word, []).append(use)
+            for word, same in uses.items():
+                first = same[0]
+                if any(one.form != "bare" or one.local or not one.place.owner or not one.last for one in same):
+                    continue
+                bases = self._list_outer_bases(path, first.place.owner)
+                if bases is not None:
+                    around = conditions + self.macros.resolve_conditions(first.at.conditions or (), targets)
+                    at = At(path, first.at.line, first.at.column)
+                    use = NameUse(word, at, role, False, "cpp", around, targets, first.place.owner)
+                    yield use, bases, self.list_outward(path)
+
+    def _list_outer_bases(self, path: str, owner: str) -> tuple[str, ...] | None:
+        """The bases of a class, of their bases too, that no file which a source reaches defines; None where the class
+        is not fully known."""
+        last, outer, seen = owner.rpartition("::")[2], [], {owner.rpartition("::")[2]}
+        waiting = [last]
+        while waiting:
+            word = waiting.pop()
+            found = [one for at in self.list_reached(path) for one in self.load(at).list_classes(word)]
+            if len(found) != 1 or found[0].open or found[0].template:
+                return None
+            for base in found[0].bases:
+                name = base.partition("<")[0].rpartition("::")[2]
+                if "<" in base or "$" in base:
+                    return None
+                if any(name in self.load(at).type_names for at in self.list_reached(path)):
+                    waiting += [name] if name not in seen else []
+                    seen.add(name)
+                else:
+                    outer.append(base)
+        return tuple(outer)
 
     def collect_sources(self, roles):
         includes: list[IncludeUse] = []

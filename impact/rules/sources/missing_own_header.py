@@ -24,6 +24,7 @@ Not reported
 
 from ...model.package import normalise_stem
 from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
+from .known_includes import is_known_include
 
 
 @rule(
@@ -37,15 +38,9 @@ def missing_own_header(view: TargetView, package: Package):
         return
     for use, header, outward in package.linked.unincluded:
         stems = map(normalise_stem, outward)  # of a message, or in a folder that the build makes
-        if view.applies(use.conditions) and use.text.lower() not in stems and all(_is_known(view, p) for p in outward):
+        if not view.applies(use.conditions) or use.text.lower() in stems:
+            continue
+        if all(is_known_include(view, path) for path in outward):
             data = {"header": package.strip_path(header).removeprefix("include/")}
             doubts = list_place_doubts(view, use.role, use.conditions)
             yield Diagnostic(use.at, use.text, package.name, data, doubts=doubts)
-
-
-def _is_known(view: TargetView, path: str) -> bool:
-    """Whether an included header is of the compiler, of somebody else, or of an interface of the workspace."""
-    owner, _, rest = path.partition("/")
-    if owner in view.workspace.packages:
-        return path in view.workspace.headers or view.workspace.is_interface_header(owner, rest)
-    return not path.startswith(".") and bool(view.find_header(path))

@@ -208,6 +208,10 @@ class SurfaceHistory:
         owners = (head.name.rpartition("::operator ")[0] for head in heads if head.kind == "conversion")
         return frozenset(owner.rpartition("::")[2] for owner in owners)
 
+    def ever_declared(self, last: str) -> bool:
+        """Whether any version declares something in C++ whose name has such a last part."""
+        return last in self._by_last
+
     def has_announced(self, name: str, version: str) -> bool:
         """Whether a header of a version announces a type, which another may define."""
         paths = (path for path, _ in self._iterate("header", version))
