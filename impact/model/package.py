@@ -43,6 +43,7 @@ from ..targets.surface.fields import Fields
 from .cmake.build import At, Build
 from .cpp.offered_headers import OfferedHeaders, collect_words
 from .macros import Macros
+from .misspelling import is_slip
 from .python.api import find_top_modules
 from .python.undefined import (
     PythonOffer,
@@ -310,8 +311,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # Classes of the package's headers that compiled sources use without them, each with its header and with all that
     # the source includes from elsewhere.
     unincluded: tuple[tuple[NameUse, str, tuple[str, ...]], ...] = ()
-    # Members that methods use and no file of the package declares, each with the bases that other packages declare of
-    # the class, and with all that the source includes from elsewhere.
+    # Members that methods use and no file of the package declares, each with the bases of the class that are of other
+    # packages, and with all that the source includes from elsewhere; where there are such bases, misspelt ones alone.
     undeclared: tuple[tuple[NameUse, tuple[str, ...], tuple[str, ...]], ...] = ()
 
 
@@ -866,11 +867,19 @@ class PackageJoin:
                 if any(one.form != "bare" or one.local or not one.place.owner or not one.last for one in same):
                     continue
                 bases = self._list_outer_bases(path, first.place.owner)
-                if bases is not None:
+                if bases is not None and (not bases or self._has_alike(path, first.place.owner, word)):
                     around = conditions + self.macros.resolve_conditions(first.at.conditions or (), targets)
                     at = At(path, first.at.line, first.at.column)
                     use = NameUse(word, at, role, False, "cpp", around, targets, first.place.owner)
                     yield use, bases, self.list_outward(path)
+
+    def _has_alike(self, path: str, owner: str, word: str) -> bool:
+        """Whether a class has a member that a word may stand for: one letter off, or shortened."""
+        last = owner.rpartition("::")[2]
+        classes = (one for at in self.list_reached(path) for one in self.load(at).list_classes(last))
+        names = {name for one in classes for name in one.members if name.endswith("_") and len(name) > 4}
+        stem = word.rstrip("_")
+        return any(is_slip(word, name) or stem.startswith(name[:-1]) or name.startswith(stem) for name in names)
 
     def _list_outer_bases(self, path: str, owner: str) -> tuple[str, ...] | None:
         """The bases of a class, of their bases too, that no file which a source reaches defines; None where the class
@@ -883,14 +892,15 @@ class PackageJoin:
             if len(found) != 1 or found[0].open or found[0].template:
                 return None
             for base in found[0].bases:
-                name = base.partition("<")[0].rpartition("::")[2]
+                name = base.rpartition("::")[2]
+                own = [one for at in self.list_reached(path) for one in self.load(at).list_classes(name)]
                 if "<" in base or "$" in base:
                     return None
-                if any(name in self.load(at).type_names for at in self.list_reached(path)):
-                    waiting += [name] if name not in seen else []
-                    seen.add(name)
-                else:
+                if not any(f"::{one.name}".endswith(f"::{base.removeprefix('::')}") for one in own):
                     outer.append(base)
+                elif name not in seen:
+                    seen.add(name)
+                    waiting.append(name)
         return tuple(outer)
 
     def collect_sources(self, roles):

@@ -223,7 +223,8 @@ class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
     what makes it), `project` (catkin_package() or ament_package() finds another name in package.xml than that of the
     project), `version` (project() is given a version under the policies of a CMake before 3.0), `no value` (a property
     of set_target_properties() whose value is a variable that nothing sets), `no sources` (a library or executable of
-    what file(GLOB) finds with `patterns`, which is nothing)."""
+    what file(GLOB) finds with `patterns`, which is nothing), `late` (a macro that has to come before
+    catkin_package())."""
 
     kind: str
     name: str

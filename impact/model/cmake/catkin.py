@@ -35,6 +35,7 @@ def run_catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) ->
     run.refuse_project()
     if not run.silent:
         run.catkin_package = run.locate(call.at)
+        run.catkin_packages.append((_get_project(run), run.conditions))
     set_catkin_destinations(run, call, args)
     for keyword, items in group_by_keyword(_mark_forgotten(args), _PACKAGE).items():
         how = _PROMISES.get(keyword)
@@ -50,6 +51,19 @@ def run_catkin_package(run: Interpreter, call: CommandCall, args: list[Word]) ->
             run.add_export(text, how, item.at, run.merge_with(item))
     package = run.installed_name
     run.set_unknown(f"{package}_EXPORTED_TARGETS", call.at)
+
+
+def _get_project(run: Interpreter) -> str:
+    held = run.get("PROJECT_NAME")
+    return held.text if held is not None else ""
+
+
+def refuse_late(run: Interpreter, call: CommandCall) -> None:
+    """Refuses a macro that stops where catkin_package() was called for the same project."""
+    opposite = {(held.text, not held.negated) for held in run.conditions}
+    for project, conditions in run.catkin_packages:
+        if project == _get_project(run) and not any((held.text, held.negated) in opposite for held in conditions):
+            run.refuse("late", wrap(call.name, call.at, run.conditions), conditions)
 
 
 # parse_cmake_arguments() as a script, which it was before CMake 3.5, forgets what followed a keyword that comes again.
@@ -116,6 +130,7 @@ def generate_messages(run: Interpreter, call: CommandCall, args: list[Word]) -> 
     """generate_messages(): its targets are X_generate_messages, X_generate_messages_cpp, X_gencpp and so on."""
     if run.silent:
         return
+    refuse_late(run, call)
     set_catkin_destinations(run, call, args)
     given = group_by_keyword(args, frozenset({"DEPENDENCIES", "LANGS"}))
     package = run.installed_name
@@ -134,6 +149,7 @@ def generate_dynamic_reconfigure_options(run: Interpreter, call: CommandCall, ar
     """generate_dynamic_reconfigure_options(): its target is X_gencfg."""
     if run.silent:
         return
+    refuse_late(run, call)
     set_catkin_destinations(run, call, args)
     target = f"{run.installed_name}_gencfg"
     files = tuple(run.resolve_tree_path(item) for item in split_words(args))

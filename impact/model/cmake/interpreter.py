@@ -187,6 +187,7 @@ class Interpreter:
         self.files: dict[str, None] = {}
         self.message_files: list[WrittenPath] = []
         self.read_elsewhere: dict[ReadFile, None] = {}
+        self.catkin_packages: list[tuple[str, tuple[Condition, ...]]] = []  # the projects that call catkin_package()
         self.empty_globs: dict[str, tuple[str, ...]] = {}  # variable -> the patterns of a file(GLOB) that found nothing
 
     def run(self) -> Build:

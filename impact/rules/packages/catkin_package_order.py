@@ -1,15 +1,17 @@
-"""catkin-package-order: a target is added before catkin_package() is called.
+"""catkin-package-order: catkin_package() is called after a target is added, or before messages are generated.
 
 What it does
     Reports libraries and programs that CMake adds before it comes to catkin_package(), or to a macro that calls
-    catkin_destinations(), as generate_messages() does.
+    catkin_destinations(), as generate_messages() does. Reports generate_messages() and
+    generate_dynamic_reconfigure_options() that are called after catkin_package().
 
 Why it breaks
     It sets where targets are built and what they export: those that were added before it land in the build folder
-    instead of the devel space, where nothing that depends on the package, and no rosrun, finds them.
+    instead of the devel space, where nothing that depends on the package, and no rosrun, finds them. The macros stop:
+    "generate_messages() must be called before catkin_package()".
 
 Severity
-    warning, since installed packages do without the devel space.
+    error for macros that stop; warning for targets, since installed packages do without the devel space.
 
 Example
     add_library(arm src/arm.cpp)
@@ -24,14 +26,20 @@ Not reported
     missing-package-call reports.
 """
 
-from ..vocabulary import Diagnostic, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from .refused_names import diagnose_refused
 
 
 @rule(
-    severity="warning",
-    texts=Text("catkin_package() is called after {targets}", "call it before add_library() and add_executable()"),
+    texts={
+        "": Text("`{subject}()` is called after catkin_package(), so it stops", "call it before catkin_package()"),
+        "targets": Text(
+            "catkin_package() is called after {targets}", "call it before add_library() and add_executable()"
+        ),
+    },
 )
 def catkin_package_order(view: TargetView, package: Package):
+    yield from diagnose_refused(view, package, "late")
     call = package.build.catkin_package
     if package.build_type != "catkin" or call is None:
         return
@@ -44,4 +52,4 @@ def catkin_package_order(view: TargetView, package: Package):
         and view.is_sure(target.conditions)
     )
     if early:
-        yield Diagnostic(call, "catkin_package", package.name, {"targets": early})
+        yield Diagnostic(call, "catkin_package", package.name, {"targets": early}, "targets", (Doubt.DISTURBS,))

@@ -20,7 +20,8 @@ Use instead
 
 Not reported
     Sources that define classes themselves, or include something of which nothing is known; classes that are templates,
-    or whose bases are, or are of a package of which nothing is known.
+    or whose bases are, or are of a package of which nothing is known; where a base is of another package, names that
+    are like none of the class, since a version of that package which was not read may have them.
 """
 
 from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
@@ -33,7 +34,7 @@ def undeclared_member(view: TargetView, package: Package):
         if not view.applies(use.conditions) or not all(is_known_include(view, path) for path in outward):
             continue
         histories = [view.offers.find_history(name) for name in view.build_environment(package)]
-        known = all(view.offers.find_package(base.partition("::")[0]) is not None for base in bases)
+        known = all(view.offers.find_history(base.partition("::")[0]) is not None for base in bases)
         if known and not any(history.ever_declared(use.text) for history in histories if history is not None):
             doubts = list_place_doubts(view, use.role, use.conditions)
             yield Diagnostic(use.at, use.text, package.name, {"owner": use.shown}, doubts=doubts)
