@@ -856,15 +856,15 @@ class PackageJoin:
                 continue
             others = [self.list_words(at) for at in (*self.list_reached(path)[1:], *self.list_offered(path))]
             ending = (word for word in self.list_words(path) if word.endswith("_") and len(word) > 4)
-            words = {word for word in ending if others and word[0] != "_" and not any(word in one for one in others)}
+            words = {word for word in ending if others and word[0].islower() and not any(word in one for one in others)}
             if not words:
                 continue
             known, uses = self.load(path), {}
             for use in known.list_uses(known.list_mentions(sorted(words - known.defines - {*self.cpp[path].defined}))):
                 uses.setdefault(use.word, []).append(use)
             for word, same in uses.items():
-                first = same[0]
-                if any(one.form != "bare" or one.local or not one.place.owner or not one.last for one in same):
+                first, plain = same[0], all(one.form == "bare" and one.last and one.call is None for one in same)
+                if not plain or any(one.local is not None or not one.place.owner for one in same):
                     continue
                 bases = self._list_outer_bases(path, first.place.owner)
                 if bases is not None and (not bases or self._has_alike(path, first.place.owner, word)):

@@ -9,7 +9,8 @@ Why it breaks
     The compiler stops: "was not declared in this scope".
 
 Severity
-    error; warning in tests, and under conditions that are not known.
+    warning, since a macro may leave out what it is given, as assertions do; note under conditions of the code that are
+    not known.
 
 Example
     class Tracker : public rclcpp::Node { void publish(); Publisher::SharedPtr pub_odom_; };
@@ -28,13 +29,16 @@ from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubt
 from .known_includes import is_known_include
 
 
-@rule(texts=Text("`{subject}` is used, but `{owner}` does not declare it", "declare it, or correct its name"))
+@rule(
+    severity="warning",
+    texts=Text("`{subject}` is used, but `{owner}` does not declare it", "declare it, or correct its name"),
+)
 def undeclared_member(view: TargetView, package: Package):
     for use, bases, outward in package.linked.undeclared:
         if not view.applies(use.conditions) or not all(is_known_include(view, path) for path in outward):
             continue
         histories = [view.offers.find_history(name) for name in view.build_environment(package)]
         known = all(view.offers.find_history(base.partition("::")[0]) is not None for base in bases)
-        if known and not any(history.ever_declared(use.text) for history in histories if history is not None):
+        if known and not any(history.has_declared(use.text) for history in histories if history is not None):
             doubts = list_place_doubts(view, use.role, use.conditions)
             yield Diagnostic(use.at, use.text, package.name, {"owner": use.shown}, doubts=doubts)

@@ -208,7 +208,7 @@ class SurfaceHistory:
         owners = (head.name.rpartition("::operator ")[0] for head in heads if head.kind == "conversion")
         return frozenset(owner.rpartition("::")[2] for owner in owners)
 
-    def ever_declared(self, last: str) -> bool:
+    def has_declared(self, last: str) -> bool:
         """Whether any version declares something in C++ whose name has such a last part."""
         return last in self._by_last
 
