@@ -8,4 +8,6 @@ def is_known_include(view: TargetView, path: str) -> bool:
     owner, _, rest = path.partition("/")
     if owner in view.workspace.packages:
         return path in view.workspace.headers or view.workspace.is_interface_header(owner, rest)
-    return not path.startswith(".") and bool(view.find_header(path))
+    providers = view.find_header(path)
+    made = path.startswith(".") or any(provider.name in view.workspace.packages for provider in providers)
+    return bool(providers) and not made
