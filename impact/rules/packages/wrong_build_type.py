@@ -3,7 +3,8 @@
 What it does
     Reports packages of ROS 2 that export the build type `ament_python` and have no setup.py, those that export one of
     CMake and have no CMakeLists.txt, and those that export none and either call ament_package() or have a setup.py
-    alone. Reports misspelt build types, and packages that are built with catkin in ROS 1 and export one of ament there.
+    alone. Reports misspelt build types, those that are packages of ament_cmake, and packages that are built with catkin
+    in ROS 1 and export one of ament there.
 
 Why it breaks
     colcon asks setup.py or CMakeLists.txt what to build, and leaves out a package whose build type nothing can build;
@@ -30,8 +31,8 @@ from ...model.misspelling import is_slip
 from ...model.package import build_type_of
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 
-# What colcon, catkin_make_isolated and catkin_tools can build between them.
-_BY_CMAKE = ("ament_cmake", "ament_cmake_auto", "ament_cmake_python", "ament_cmake_ros", "cmake")
+# What colcon, its known extensions, catkin_make_isolated and catkin_tools can build between them.
+_BY_CMAKE = ("ament_cmake", "cmake")
 _KNOWN = (*_BY_CMAKE, "ament_python", "ament_cargo", "ament_gradle", "ament_meson", "ament_nodejs", "catkin")
 _HELP = "export `<build_type>{replacement}</build_type>`"
 
@@ -86,5 +87,9 @@ def _find_fault(view: TargetView, package: Package) -> tuple[str, str, str] | No
         return "no cmake", declared, "ament_python" if has_setup else ""
     elif declared == "ament_python" and not has_setup:
         return "no setup", declared, "ament_cmake" if has_cmake else ""
-    meant = next((name for name in _KNOWN if is_slip(declared, name)), "") if declared not in _KNOWN else ""
+    if declared in _KNOWN:
+        return None
+    # `ament_cmake_python` is a package of CMake functions.
+    meant = "ament_cmake" if declared.startswith("ament_cmake_") else ""
+    meant = meant or next((name for name in _KNOWN if is_slip(declared, name)), "")
     return ("misspelt", declared, meant) if meant else None
