@@ -31,7 +31,7 @@ from ..facts.manifest import Manifest
 from ..facts.place import Allow, Reference
 from ..facts.python.reader import Import
 from ..facts.python.source import PythonFile
-from ..facts.python.uses import PythonUse
+from ..facts.python.uses import KINDS, PythonUse
 from ..facts.requirements import RequirementsFile
 from ..facts.searches import SearchedCpp, WordUse
 from ..facts.setup import SetupFile
@@ -47,6 +47,7 @@ from .misspelling import is_slip
 from .python.api import find_top_modules
 from .python.undefined import (
     PythonOffer,
+    list_above,
     list_siblings,
     list_undefined,
     list_undefined_functions,
@@ -107,7 +108,8 @@ class IncludeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class ImportUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A Python import that no module of the package answers. role: run, test, build (setup.py) or aside."""
+    """A Python import that no module of the package answers, of its own interfaces too. role: run, test, build
+    (setup.py) or aside."""
 
     module: str
     names: tuple[str, ...]
@@ -155,6 +157,17 @@ class InterfaceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     name: str
     path: str
     definition: Interface
+
+
+class FieldOfWorkspace(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A use in Python of a member of an interface that belongs to a package of the workspace. type, steps, conditions:
+    as FieldUse has them. role: as in ImportUse."""
+
+    type: str
+    steps: tuple[str, ...]
+    at: At
+    role: str
+    conditions: tuple[Condition, ...] = ()
 
 
 class SyntaxUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -314,6 +327,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # Members that methods use and no file of the package declares, each with the bases of the class that are of other
     # packages, and with all that the source includes from elsewhere; where there are such bases, misspelt ones alone.
     undeclared: tuple[tuple[NameUse, tuple[str, ...], tuple[str, ...]], ...] = ()
+    own_fields: tuple[FieldOfWorkspace, ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -654,6 +668,7 @@ class PackageJoin:
                     *list_undefined(python, made, (*self.files, *extensions)),
                     *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
+                    *list_above(python, self.list_python_roots(setup), set(self.list_programs())),
                     *list_siblings(python, setup),
                     *list_unlisted(python, [(p, f) for p, f in setup if p in run_setup]),
                 )
@@ -667,6 +682,14 @@ class PackageJoin:
             unsearched=tuple(self.list_unsearched(roles)),
             unincluded=tuple(self.list_unincluded(roles)),
             undeclared=tuple(self.list_undeclared(roles)),
+            own_fields=tuple(
+                FieldOfWorkspace(
+                    use.type, use.steps, At(path, use.line, use.column), self.find_python_role(path), use.conditions
+                )
+                for path, facts in python.items()
+                for use in facts.fields
+                if use.type.partition(".")[0] in self.home
+            ),
         )
 
     def find_included_file(self, include: str, includer: str) -> str | None:
@@ -1348,8 +1371,10 @@ class PackageJoin:
             role = self.find_python_role(path)
             others = [item for item in facts.imports if not item.level]
             for item in others:
-                head = item.module.split(".")[0]
-                if head and head != self.name and head not in modules:
+                head, _, rest = item.module.partition(".")
+                # Its interfaces are no modules of the package.
+                own_interface = head == self.name and rest in KINDS and rest not in modules
+                if own_interface or (head and head != self.name and head not in modules):
                     imports.append(self.make_import_use(path, item))
             mentioned = [(attribute.text, attribute) for attribute in facts.attributes]
             mentioned += [(text, i) for i in others for text in (i.module, *(f"{i.module}.{n}" for n in i.names))]
@@ -1403,6 +1428,12 @@ class PackageJoin:
                 tops = (name.partition(".")[0] for name in file.packages if name.isidentifier())
                 roots.update(file.list_module_paths(self.path, top)[0].removesuffix(".py") for top in tops)
         return roots
+
+    def list_programs(self) -> Iterator[str]:
+        """The files that CMake installs to be started."""
+        for rule in self.build.installs:
+            if rule.kind == "programs" and "python" not in rule.destination.lower():
+                yield from map(posixpath.normpath, rule.items)
 
     @cache_method
     def find_python_role(self, path: str) -> str:

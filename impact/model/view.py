@@ -184,9 +184,9 @@ class TargetView(WorkspaceOnTarget):
             yield Need("include", include.path, providers, include.at, include.role, self.is_sure(include.conditions),
                        True, include.public, include.targets)  # fmt: skip
         for item in linked.imports:
-            if not self.applies(item.conditions):
-                continue
             head, _, rest = item.module.partition(".")
+            if head == package.name or not self.applies(item.conditions):
+                continue
             providers = self.find_module(item.module) or (
                 self._guess_by_form(head) if rest.partition(".")[0] in ("msg", "srv", "action") else ()
             )

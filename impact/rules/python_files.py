@@ -4,9 +4,21 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 from ..facts.condition import Condition
-from ..model.package import ImportUse, SyntaxUse
+from ..model.package import ImportUse, SyntaxUse, find_folder_role
 from ..targets.distro.distro import DistroTarget
 from .vocabulary import Diagnostic, Doubt, Package, TargetView, Upcoming, list_place_doubts, rate_upcoming
+
+
+def list_python_doubts(view: TargetView, package: Package, role: str, path: str) -> tuple[Doubt, ...]:
+    """What speaks against an error at a place in a Python file of a package. A script of ROS 1 that nothing installs or
+    starts is no example yet: it is run where it lies."""
+    script = role == "aside" and package.build_type == "catkin" and path in package.linked.scripts
+    return (Doubt.LATE,) if script and is_no_example(package, path) else list_place_doubts(view, role)
+
+
+def is_no_example(package: Package, path: str) -> bool:
+    """Whether neither a folder nor the name of a file says that it is an example, or part of a test."""
+    return find_folder_role(package.strip_path(path)) is None
 
 
 class RejectedUse(NamedTuple):

@@ -445,7 +445,8 @@ def _convert_row(kind: str, row: ChangeRow, in_force: str, target: DistroTarget)
     return Availability(Symbol(kind, name), state, row.package, find_row_version(row, target), since, other,
                         library=row.library, evidence=make_evidence(row, in_force),
                         replacement_since=row.new_since if earlier else "",
-                        form="meaning" if row.kind == "api-changed" else form, earlier=earlier)  # fmt: skip
+                        form="meaning" if row.kind == "api-changed" else form, earlier=earlier,
+                        detail=row.pattern.clause if row.pattern is not None else "")  # fmt: skip
 
 
 _SEVERAL = 3

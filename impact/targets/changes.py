@@ -63,7 +63,8 @@ class _Shared(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=T
 
 
 class _Use(Pattern, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """How a use looks in code, and what to write where it is not taken, or in all versions. clause: what it does now.
+    """How a use looks in code, and what to write where it is not taken, or in all versions. clause: what it does now,
+    where it compiles.
     imports: modules of which a Python file imports one."""
 
     help: str = ""

@@ -275,16 +275,21 @@ EXAMPLES = {
         "a = rclcpp::create_timer(node, clock, 500ms, f);",
     ),
     "goal_response_callback(std::shared_future)": (
-        "void goal_response_callback(std::shared_future<GoalHandleMove::SharedPtr> future)",
-        "void goal_response_callback(const GoalHandleMove::SharedPtr & handle)",
+        "void goal_response_callback(std::shared_future<GoalHandleMove::SharedPtr> future); void send() {"
+        " options.goal_response_callback = std::bind(&Client::goal_response_callback, this, _1); }",
+        # which nothing hands over
+        "void goal_response_callback(std::shared_future<GoalHandleMove::SharedPtr> future); void send() {"
+        " // options.goal_response_callback = std::bind(&Client::goal_response_callback, this, _1); }",
     ),
     "goal_response_callback = [](std::shared_future)": (
         "options.goal_response_callback = [this](std::shared_future<GoalHandleMove::SharedPtr> future) {};",
         "options.goal_response_callback = [this](const GoalHandleMove::SharedPtr & handle) {};",
     ),
     "goal_response_callback(GoalHandle::SharedPtr)": (
-        "void goal_response_callback(const GoalHandleMove::SharedPtr & handle) {}",
-        "void goal_response_callback(std::shared_future<GoalHandleMove::SharedPtr> future) {}",
+        "void goal_response_callback(const GoalHandleMove::SharedPtr & handle) {} void send() {"
+        " options.goal_response_callback = std::bind(&Client::goal_response_callback, this, _1); }",
+        "void goal_response_callback(std::shared_future<GoalHandleMove::SharedPtr> future) {} void send() {"
+        " options.goal_response_callback = std::bind(&Client::goal_response_callback, this, _1); }",
     ),
     "tf2_ros::Buffer without a clock": (
         "int main() { tf2_ros::Buffer buffer; }",

@@ -3,6 +3,8 @@
 import ast
 import re
 import sys
+from collections import Counter
+from collections.abc import Iterator
 
 import msgspec
 
@@ -85,6 +87,8 @@ _NEEDED = {
 # What can be subscripted since Python 3.9, and joined to other types by `|` since 3.10 (PEP 585, PEP 604).
 _GENERIC = frozenset(("dict", "frozenset", "list", "set", "tuple", "type"))
 _TYPES = _GENERIC | {"bool", "bytes", "complex", "float", "int", "object", "str"}
+# By which members may be set that no assignment shows.
+_SETS_MEMBERS = re.compile(r"__getattr|setattr\(|__dict__|\bvars\(")
 _QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
 _TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
 
@@ -123,11 +127,19 @@ class PythonReader(ObjectUses, SourceText):
         self.asked: set[str] = set()
         # Members of what names hold of which nothing shows the type.
         self.untyped: list[tuple[PythonScope, str, ast.Attribute]] = []
+        # Names that the module imports as modules, where they are called or subscripted, and private members of `self`
+        # that are read.
+        self.modules: frozenset[str] = frozenset()
+        self.values: list[tuple[PythonScope, AttributeUse]] = []
+        self.private: list[AttributeUse] = []
 
     def read(self, tree: ast.Module) -> None:
         future = (node for node in tree.body if isinstance(node, ast.ImportFrom) and node.module == "__future__")
         self.postponed = any(alias.name == "annotations" for node in future for alias in node.names)
         self.module_names = list_bound_names(tree.body)
+        imports = (node for node in tree.body if node.__class__ is ast.Import)
+        aliases = (alias for node in imports for alias in node.names if "." not in alias.name)  # type: ignore[attr-defined]
+        self.modules = frozenset(alias.asname or alias.name for alias in aliases)
         self.walk_all(tree.body)
         self.add_lookup_calls()
 
@@ -202,6 +214,8 @@ class PythonReader(ObjectUses, SourceText):
         head = value.id  # type: ignore[attr-defined]
         parts = [step.attr for step in steps]
         own = head == self.me and self.inside_class is not None
+        if own and parts[0][:2] == "__" and parts[0][-2:] != "__" and steps[0].ctx.__class__ is ast.Load:
+            self.private.append(self.make_use(parts[0], steps[0]))
         if type_ := f"{OWN}{id(self.inside_class)}" if own else self.find_object_type(head):
             self.use_member(type_, steps, call)
         elif self.has_interfaces:
@@ -215,6 +229,20 @@ class PythonReader(ObjectUses, SourceText):
         if node.ctx.__class__ is ast.Store:
             self.assigned.add((self.scope, f"{head}.{'.'.join(parts)}"))
         self.note_use(f"{head}.{'.'.join(parts)}", value.lineno, value.col_offset)
+
+    def make_use(self, text: str, node: ast.expr) -> AttributeUse:
+        column = self.find_column(node.lineno, node.col_offset)
+        return AttributeUse(text, node.lineno, column, self.use_conditions, self.may_not_run)
+
+    def visit_value(self, node: ast.expr) -> None:
+        """What is called or subscripted."""
+        if node.__class__ is ast.Name and node.id in self.modules and not self.annotating:  # type: ignore[attr-defined]
+            self.values.append((self.scope, self.make_use(node.id, node)))  # type: ignore[attr-defined]
+        self.visit(node)
+
+    def visit_Subscript(self, node: ast.Subscript) -> None:
+        self.visit_value(node.value)
+        self.visit(node.slice)
 
     def list_attributes(self) -> tuple[AttributeUse, ...]:
         """Names of other modules that the file uses. What it assigns itself (`sys.maxint = sys.maxsize`) is there."""
@@ -250,9 +278,25 @@ class PythonReader(ObjectUses, SourceText):
                 self.note_unknown(member)
         return bound if certain and not self.starred else None
 
+    def list_misused(self) -> Iterator[AttributeUse]:
+        """Modules that are called or subscripted, with `()` behind the name, and private members of `self` that nothing
+        in the file sets, with `self.` before it. What is called so elsewhere in the text may be set there."""
+        rebound = {name for _, name in self.declared_global}
+        for scope, use in self.values if not self.starred else ():
+            holder = next((one for one in scope.chain if use.text in one.imports or use.text in one.bound), None)
+            if holder is not None and use.text not in holder.bound and use.text not in rebound:
+                known = holder.imports[use.text]
+                if len(known) == 1 and not known[0][1] and "." not in known[0][0]:
+                    yield msgspec.structs.replace(use, text=f"{use.text}()")
+        counts = Counter(use.text for use in self.private)
+        text = "\n".join(self.lines) if counts else ""
+        for use in self.private if _SETS_MEMBERS.search(text) is None else ():
+            if len(re.findall(rf"{use.text}\b", text)) == counts[use.text]:
+                yield msgspec.structs.replace(use, text=f"self.{use.text}")
+
     def list_unbound_names(self, bound: set[str] | None) -> tuple[AttributeUse, ...]:
-        """The first use of each name that nothing binds, a sure one where there is any; and calls of methods that only
-        Python 2 has and the file does not define, each with its dot."""
+        """The first use of each name that nothing binds, a sure one where there is any; calls of methods that only
+        Python 2 has and the file does not define, each with its dot; and what is misused."""
         found: dict[str, AttributeUse] = {}
         is_program = bool(self.lines) and self.lines[0].startswith("#!")
         unstarted = range(0) if is_program else self.main_lines
@@ -271,6 +315,9 @@ class PythonReader(ObjectUses, SourceText):
             use = AttributeUse(name, line, self.find_column(line, offset), conditions, lazy)
             known = found.get(name, use)
             found[name] = min(known, use, key=lambda one: (bool(one.conditions), one.lazy, one.line, one.column))
+        for use in self.list_misused():
+            known = found.get(use.text, use)
+            found[use.text] = min(known, use, key=lambda one: (bool(one.conditions), one.lazy, one.line, one.column))
         return tuple(sorted(found.values(), key=lambda one: (one.line, one.column)))
 
     def bind_imported(self, node: ast.Import | ast.ImportFrom) -> None:
@@ -800,7 +847,7 @@ class PythonReader(ObjectUses, SourceText):
         if node.func.__class__ is ast.Attribute:
             self.visit_Attribute(node.func, node)  # type: ignore[arg-type]
         else:
-            self.visit(node.func)
+            self.visit_value(node.func)
         if function == "IncludeLaunchDescription" and node.args:
             self.included = self.list_given_arguments(keywords.get("launch_arguments"))
             self.visit(node.args[0])

@@ -23,10 +23,12 @@ def list_undefined(
     files: Mapping[str, PythonFile], others: Collection[str], paths: Iterable[str]
 ) -> Iterator[tuple[str, Import]]:
     """Such names, each as its import with the path it stands in; the module is empty for names that the file uses
-    itself, and for modules, whose names have a dot. With them star imports of a package from itself. files: the Python
-    files of a package by their paths. others: what modules and libraries of the package, and what its build
-    makes in ways that are not known, are called. paths: all its files, of which modules may be built."""
+    itself, marked as PythonFile has them, and for modules, whose names have a dot. With them star imports of a package
+    from itself. files: the Python files of a package by their paths. others: what modules and libraries of the package,
+    and what its build makes in ways that are not known, are called. paths: all its files, of which modules may be
+    built."""
     modules = PackageModules(files, others, paths)
+    beside = modules.list_loaded_beside("sys.path")
     for path, facts in files.items():
         if posixpath.basename(path).startswith("."):
             continue  # settings of tools, which define names for them
@@ -38,7 +40,8 @@ def list_undefined(
                 continue  # a launch file is no module, so that the folder above its own is not searched
             meant = modules.make_absolute(path, item) if item.level else item.module
             program = path if facts.interpreter else ""
-            if modules.lacks(meant, program) or (not item.level and modules.is_meant_by(item)):
+            other = not item.level and (modules.is_meant_by(item) or (path not in beside and modules.leads_to(meant)))
+            if modules.lacks(meant, program) or other:
                 yield path, msgspec.structs.replace(item, module="", names=(meant,))
                 continue
             module = modules.find(path, item) if item.names else None
@@ -50,6 +53,28 @@ def list_undefined(
             for name in item.names if bound and module != path else ():
                 if f" {name} " not in bound and name not in others and not modules.may_be_built(name):
                     yield path, msgspec.structs.replace(item, module="." * item.level + item.module, names=(name,))
+
+
+ABOVE = "..."
+"""The name that list_above() gives to imports out of a Python package."""
+ALONE = "...."
+"""The name that list_above() gives to imports of programs."""
+
+
+def list_above(
+    files: Mapping[str, PythonFile], roots: Collection[str], programs: Collection[str]
+) -> Iterator[tuple[str, Import]]:
+    """Relative imports that lead out of the outermost Python package, and those of programs, which are in none. roots:
+    the folders of Python packages that are installed. programs: what is installed to be started. The name of each is
+    ABOVE or ALONE, its module is as written."""
+    for path, facts in files.items():
+        relative = [item for item in facts.imports if item.level]
+        root = next((one for one in roots if path.startswith(f"{one}/")), None) if relative else None
+        depth = path[len(root) :].count("/") if root is not None and f"{root}/__init__.py" in files else 0
+        for item in relative:
+            name = ALONE if path in programs and facts.interpreter else ABOVE if 0 < depth < item.level else ""
+            if name and " __package__ " not in facts.bound:
+                yield path, msgspec.structs.replace(item, module="." * item.level + item.module, names=(name,))
 
 
 BESIDE = "."
@@ -64,8 +89,6 @@ def list_siblings(
     """Imports, in modules of a Python package, of another module of its folder as if it were at the top, which Python 3
     finds only where the importing file itself is started. files, setup: as above. Only of modules that are imported by
     their package, lazy but for those that starting a program imports. The name of each is BESIDE."""
-    if any(use.text.startswith("sys.path") for facts in files.values() for use in facts.attributes):
-        return  # more folders may be looked into
     modules = PackageModules(files, (), ())
     imported = {
         place
@@ -74,7 +97,7 @@ def list_siblings(
         for place in modules.list_named_files(path, item)
     }
     started = modules.list_started(setup)
-    for path in sorted(started | imported):
+    for path in sorted((started | imported) - modules.list_loaded_beside("sys.path")):
         for item in files[path].imports:
             if not item.level and modules.is_beside(path, item.module.partition(".")[0]):
                 yield path, msgspec.structs.replace(item, names=(BESIDE,), lazy=item.lazy or path not in started)
@@ -240,6 +263,12 @@ class PackageModules:
     def _find_file(self, stem: str) -> PythonFile | None:
         return self._files.get(f"{stem}.py") or self._files.get(f"{stem}/__init__.py")
 
+    def leads_to(self, module: str) -> bool:
+        """Whether a module is called by the path of one of the package's files from a folder above the package on,
+        where no program of the package looks."""
+        inside = "package.xml" in self._paths or module.partition(".")[0] in self._roots
+        return not inside and "." in module and module.replace(".", "/") in self._stems
+
     def lacks(self, module: str, program: str = "") -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none. program: the file
         that imports it where that is started, which finds the folders beside it."""
@@ -292,6 +321,25 @@ class PackageModules:
         reached = set(walk((*found, *scripts), self._list_imported))
         # A script counts as a module where something imports it.
         return frozenset(found.union(*map(self._list_imported, reached)))
+
+    def list_loaded_beside(self, name: str) -> frozenset[str]:
+        """The files that a program may load which loads one that uses this name of another module: where one changes
+        sys.path, more folders are looked into."""
+        using = [path for path, facts in self._files.items() if any(u.text.startswith(name) for u in facts.attributes)]
+        if not using:
+            return frozenset()
+        loads = {path: self._list_loaded(path) for path in self._files}
+        loaded_by = group_pairs((to, path) for path, several in loads.items() for to in several)
+        return frozenset(walk(walk(using, lambda path: loaded_by.get(path, ())), loads.__getitem__))
+
+    def _list_loaded(self, path: str) -> list[str]:
+        """The modules of the package that a file may import, of the folders that it lies in also those beside it."""
+        found = []
+        for item in self._files[path].imports:
+            found += self.list_named_files(path, item)
+            beside = posixpath.join(posixpath.dirname(path), item.module.partition(".")[0])
+            found += [self._stems[beside]] if not item.level and beside in self._stems else ()
+        return found
 
     @cache_method
     def _list_imported(self, path: str) -> set[str]:

@@ -18,7 +18,8 @@ Severity
     error for code that is built or run, tests of ROS 2 included; warning in tests of ROS 1 and in Python's, under CMake
     conditions that are not known, and for the first call of a library, in tests too, that only the newest distro
     refuses, where that is at most two long-term distros ahead; note in examples, under an `#if` that is not known, and
-    for the rest. A method that no longer overrides, and does not say `override`, compiles: warning.
+    for the rest. A method that no longer overrides, and does not say `override`, compiles: warning; so does what fails
+    when the program comes by.
 
 Example
     auto timeout = rclcpp::Duration(0.5);       // Humble's Duration takes no floating point number
@@ -73,6 +74,7 @@ _REVIEWED = f"{UPSTREAM}[[ in {{standard}}]][[ ({{horizon}})]]"
         **{form: Text(text, _HELP) for form, text in _LOST.items()},
         **{f"{form} early": Text(text, _HELP) for form, text in _EARLY.items()},
         "reviewed": Text(f"`{{subject}}` is no longer accepted by {_REVIEWED}", "{advice}"),
+        "compiles": Text(f"`{{subject}}` compiles with {_REVIEWED}, but {{clause}}", "{advice}"),
         "reviewed early": Text(f"`{{subject}}` is not available in {_REVIEWED}[[ (added in {{since}})]]", "{advice}"),
     },
 )
@@ -132,9 +134,10 @@ def _list_reviewed(view: TargetView, package: Package) -> Iterator[Diagnostic | 
         doubts = doubts if use.language == "cpp" else (*doubts, Doubt.LATE)
         doubts = (*doubts, Doubt.AMBIGUOUS) if shows_no_type(use.text) else doubts
         doubts = (*doubts, Doubt.GUARDED) if view.is_included_under_conditions(package, found.package) else doubts
-        data = {**build_data(found), "standard": standard, "advice": found.replacement}
+        doubts = (*doubts, Doubt.LATE) if found.detail else doubts
+        data = {**build_data(found), "standard": standard, "advice": found.replacement, "clause": found.detail}
         if standard:
             data["since"] = ""  # the version is bound to the standard
             found = found._replace(evidence=None)
-        kind = "reviewed" if found.earlier else "reviewed early"
+        kind = "compiles" if found.detail else "reviewed" if found.earlier else "reviewed early"
         yield diagnose(found, use.at, shown, package.name, doubts, kind=kind, data=data)

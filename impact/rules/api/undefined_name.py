@@ -4,7 +4,9 @@ What it does
     Reports names that a Python file uses but neither defines nor imports, such as a class whose import was forgotten;
     imports from a module of the package, or of another one of the workspace, that does not exist or does not define the
     name, or from a package of an unknown name in place of its own; imports of modules that setup() does not install;
-    modules of a package that import another one of its folder by its bare name; functions of entry points that their
+    modules of a package that import another one of its folder by its bare name, or lead out of the package by a
+    relative import; relative imports of programs; modules that are called or subscripted; private members of `self`
+    that nothing sets; functions of entry points that their
     module does not define; star imports of a package from itself, which Python 2 took from a module in it; and builtins
     (`raw_input`, `unicode`) and dictionary methods (`iteritems`) that only Python 2 has, where the target has Python 3.
 
@@ -13,7 +15,8 @@ Why it breaks
 
 Severity
     error for code that always runs when a program, launch file or module of the package is started or imported; warning
-    inside functions, which may not be called, for methods, and in tests; note in examples. What only the newest distro
+    inside functions, which may not be called, for methods, in tests, and in files that are not installed; note in
+    examples, and inside functions of files that are not installed. What only the newest distro
     does not accept is a warning at the first place of a package, and a note at the others.
 
 Example
@@ -32,10 +35,10 @@ from collections.abc import Iterator
 
 from ...facts.python.bound import PYTHON2_BUILTINS
 from ...model.package import ImportUse
-from ...model.python.undefined import BESIDE, UNLISTED
+from ...model.python.undefined import ABOVE, ALONE, BESIDE, UNLISTED
 from ...targets.distro.distro import DistroTarget
-from ..python_files import RejectedUse, report_refused
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, list_place_doubts, rule
+from ..python_files import RejectedUse, is_no_example, list_python_doubts, report_refused
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 
 
 @rule(
@@ -55,6 +58,13 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
             "`{subject}` is a module of the same package, where Python 3[[ ({horizon})]] does not look for it",
             "write `.{subject}`",
         ),
+        "above": Text("`{subject}` leads out of the package, which Python refuses", "write `{replacement}`"),
+        "alone": Text(
+            "`{subject}` is imported by a program, which is in no package that it could be relative to",
+            "import it by the name of its package",
+        ),
+        "module used": Text("`{subject}` is a module, which cannot be called or subscripted", "import a name of it"),
+        "private": Text("nothing in the file sets `{subject}`", "correct the name"),
         "unlisted": Text(
             "`{subject}` is imported, but setup() does not install this Python package",
             "add `{subject}` to `packages`, or use find_packages()",
@@ -73,15 +83,22 @@ def undefined_name(view: TargetView):
                     same = (Together(use.module),)
                     yield Diagnostic(use.at, use.module, package.name, {}, "unlisted", doubts, together=same)
                 continue
-            kind = "imported" if use.module else "module" if "." in name.lstrip(".") else "undefined"
-            if kind != "undefined" and _may_be_of_another(view, package, use.module or name):
+            if name in (ABOVE, ALONE):
+                kind = "above" if name == ABOVE else "alone"
+                inside, doubts = use.module.lstrip("."), _collect_import_doubts(view, package, use)
+                data = {"replacement": inside if inside.startswith(f"{package.name}.") else f".{inside}"}
+                yield Diagnostic(use.at, use.module, package.name, data, kind, doubts, together=(Together(name),))
+                continue
+            kind = _find_kind(use, name)
+            if kind in ("imported", "module") and _may_be_of_another(view, package, use.module or name):
                 continue
             # A module that is not there has, by its first name, to be one of the package.
             own = kind != "module" or name.partition(".")[0] in package.linked.modules
-            doubts = (*_collect_import_doubts(view, use), own or Doubt.AMBIGUOUS)
+            doubts = (*_collect_import_doubts(view, package, use), own or Doubt.AMBIGUOUS)
             # Whoever looks at the first in a file sees the others; wrong imports are mended one by one.
             together = (Together(use.at.path if kind == "undefined" else f"{use.at.path} {name}"),)
-            yield Diagnostic(use.at, name, package.name, {"module": use.module}, kind, doubts, together=together)
+            subject = name.removesuffix("()").removeprefix("self.") if kind in ("module used", "private") else name
+            yield Diagnostic(use.at, subject, package.name, {"module": use.module}, kind, doubts, together=together)
         yield from _find_lacking_elsewhere(view, package)
 
     def find(package: Package, target: DistroTarget) -> Iterator[RejectedUse]:
@@ -90,6 +107,16 @@ def undefined_name(view: TargetView):
                 yield from _find_refused(view, package, use, name)
 
     yield from report_refused(view, find)
+
+
+def _find_kind(use: ImportUse, name: str) -> str:
+    if use.module:
+        return "imported"
+    if name.startswith("self."):
+        return "private"
+    if name.endswith("()"):
+        return "module used"
+    return "module" if "." in name.lstrip(".") else "undefined"
 
 
 def _list_uses(view: TargetView, package: Package) -> Iterator[tuple[ImportUse, str]]:
@@ -134,11 +161,14 @@ def _find_lacking_elsewhere(view: TargetView, package: Package) -> Iterator[Diag
         for name in owner.linked.python_offer.list_lacking(use.module, use.names):
             kind = "module of another" if name == use.module else "imported"
             data = {"module": use.module, "owner": owner.name}
-            yield Diagnostic(use.at, name, package.name, data, kind, _collect_import_doubts(view, use))
+            yield Diagnostic(use.at, name, package.name, data, kind, _collect_import_doubts(view, package, use))
 
 
-def _collect_import_doubts(view: TargetView, use: ImportUse) -> tuple[Doubt | bool, ...]:
-    return (*list_place_doubts(view, use.role), *_collect_doubts(use), use.role != "test" or Doubt.TEST)
+def _collect_import_doubts(view: TargetView, package: Package, use: ImportUse) -> tuple[Doubt | bool, ...]:
+    place = list_python_doubts(view, package, use.role, use.at.path)
+    if use.role == "aside" and not (use.module or use.lazy) and is_no_example(package, use.at.path):
+        place = (Doubt.LATE,)  # whoever starts or imports the file comes by
+    return (*place, *_collect_doubts(use), use.role != "test" or Doubt.TEST)
 
 
 def _is_of_python2(use: ImportUse, name: str) -> bool:

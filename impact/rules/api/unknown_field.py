@@ -4,7 +4,8 @@ What it does
     Reports fields and constants of messages, services and actions of other packages that the target's release of the
     package has no longer, or not yet; the same for interfaces that Python imports, also from packages of the workspace.
     Whose field it is, is told by the declared type of the variable, followed through nested messages. Says as well what
-    goes when a dated target's distro is updated.
+    goes when a dated target's distro is updated. Of interfaces that the workspace defines, reports fields that its
+    Python files use and they lack; and imports of interfaces from packages of the workspace that have none.
 
 Why it breaks
     The compiler stops with "has no member named"; Python raises an AttributeError when the line is reached, on the
@@ -23,15 +24,18 @@ Use instead
 
 Not reported
     Code that a version test excludes on the target, or that stands under a test which cannot be told; variables whose
-    type does not show, unless only one interface of those that the file uses has such a name; fields of interfaces that
-    the workspace itself brings.
+    type does not show, unless only one interface of those that the file uses has such a name; in C++, fields of
+    interfaces that the workspace itself brings.
 """
 
 import posixpath
 from collections.abc import Iterator
 
 from ...model.package import MemberUse
+from ...model.python.own_interfaces import OwnInterfaces
+from ...targets.surface.fields import load_fields
 from ...targets.symbol import Symbol
+from ..python_files import list_python_doubts
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
 from .diagnosis import UPSTREAM, build_availability_texts, build_data, diagnose, find_missing
 
@@ -46,6 +50,8 @@ _HELP = "[[use `{replacement}`]][[perhaps `{alike}` replaces it]]"
         **build_availability_texts(),
         "root": Text("`{interface}` does not have `{subject}`: it is in `{module}`", "import it from `{module}`"),
         "none": Text("`{interface}` has no interface `{module}`", "correct the name, or add the interface"),
+        "no interfaces": Text("`{interface}` has no interfaces", "import them from the package that has them"),
+        "own": Text("`{interface}` has no field `{subject}`", "use a field that it has"),
         "field removed": Text(f"{_MISSING}[[ (removed in {{since}})]]", _HELP),
         "field not yet": Text(f"{_MISSING}[[ (added in {{since}})]]", _HELP),
         "field upcoming": Text(
@@ -61,7 +67,13 @@ def unknown_field(view: TargetView):
         for section in interface.definition.sections
         for member in (*section.fields, *section.constants)
     }
+    of_workspace = OwnInterfaces(view.workspace)
     for package in view:
+        for use in package.linked.own_fields:
+            if view.is_sure(use.conditions) and (type_ := of_workspace.find_lacking(use)):
+                data = {"interface": type_.replace(".", "/")}
+                doubts = list_python_doubts(view, package, use.role, use.at.path)
+                yield Diagnostic(use.at, use.steps[-1], package.name, data, "own", doubts)
         yield from rate_upcoming(_list_members(view, package, own))
         yield from rate_upcoming(_list_imports(view, package))
         yield from _list_of_workspace(view, package)
@@ -111,10 +123,15 @@ def _list_of_workspace(view: TargetView, package: Package) -> Iterator[Diagnosti
     for imported in package.linked.imports:
         name, _, kind = imported.module.partition(".")
         owner = view.workspace.packages.get(name)
-        if owner is None or not owner.is_interface_package or not view.is_sure(imported.conditions):
+        if owner is None or not view.is_sure(imported.conditions):
+            continue
+        doubts = (*list_python_doubts(view, package, imported.role, imported.at.path), not imported.lazy or Doubt.LATE)
+        if not owner.is_interface_package:
+            if kind in ("msg", "srv", "action") and not _may_generate(view, owner, kind):
+                data = {"interface": name}
+                yield Diagnostic(imported.at, imported.module, package.name, data, "no interfaces", doubts)
             continue
         interfaces = {i.name: posixpath.splitext(i.path)[1].lstrip(".") for i in owner.linked.interfaces}
-        doubts = (*list_place_doubts(view, imported.role), not imported.lazy or Doubt.LATE)
         for one in imported.names:
             if not kind and one in interfaces and one not in owner.linked.modules:
                 data = {"interface": name, "module": f"{name}.{interfaces[one]}"}
@@ -122,6 +139,14 @@ def _list_of_workspace(view: TargetView, package: Package) -> Iterator[Diagnosti
             elif kind in ("msg", "srv", "action") and not _may_have(owner, one, interfaces):
                 full = f"{imported.module}.{one}"
                 yield Diagnostic(imported.at, full, package.name, {"interface": name, "module": one}, "none", doubts)
+
+
+def _may_generate(view: TargetView, owner: Package, kind: str) -> bool:
+    """Whether a package without interfaces, as far as was read, may have some, or a module that is called so."""
+    if owner.build.unresolved or owner.build.generated or kind in owner.linked.modules:
+        return True
+    # A release of it that has some may be installed beside.
+    return load_fields().find_history(owner.name, view.target.ros) is not None
 
 
 def _may_have(owner: Package, name: str, interfaces: dict[str, str]) -> bool:
