@@ -74,7 +74,9 @@ TESTS = frozenset({"test", "tests", "gtest", "testing", "unittest", "integration
 
 # `<urdf::...>` in the label of a use stands for the template arguments that are written.
 _OPEN_TYPES = re.compile(r"<[^<>]*\.\.\.>")
-_PLAIN_PYTHON = re.compile(r"#!\s*/\S*\bpython\b(?![\d.])|#!\s*/usr/bin/env\s+python(?!\S)")
+_PLAIN_PYTHON = re.compile(r"#!\s*(?:/usr(?:/local)?)?/bin/(?:env\s+)?python(?!\S)")
+# Where users put a Python of their own.
+_PYTHON_AT_HOME = re.compile(r"#!\s*((?:/home/|/root/|/Users/)\S*python\S*)")
 
 
 def _is_part(facts: PythonFile) -> bool:
@@ -250,7 +252,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     and of this one. setup: each setup.py, setup.cfg and pyproject.toml with its path, also those in folders below.
     scripts: Python files whose first line names an interpreter, and that import
     nothing relative to their package, which a program cannot. plain_scripts: those
-    whose first line names `python`, of no version. shells: shell scripts without an ending. interpreted: names of
+    whose first line names `python`, of no version. at_home: Python files whose first line names a Python in the home
+    folder of a user, and that. shells: shell scripts without an ending. interpreted: names of
     Python files that CMake code gives to an interpreter.
     """
 
@@ -285,6 +288,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files: tuple[str, ...] = ()
     scripts: tuple[str, ...] = ()
     plain_scripts: tuple[str, ...] = ()
+    at_home: tuple[tuple[str, str], ...] = ()
     shells: tuple[str, ...] = ()
     interpreted: tuple[str, ...] = ()
     source_targets: tuple[tuple[str, tuple[str, ...]], ...] = ()
@@ -651,6 +655,7 @@ class PackageJoin:
             files=self.files,
             scripts=tuple(p for p, f in python.items() if f.interpreter and not _is_part(f)),
             plain_scripts=tuple(p for p, f in python.items() if _PLAIN_PYTHON.match(f.interpreter) and not _is_part(f)),
+            at_home=tuple((p, found[1]) for p, f in python.items() if (found := _PYTHON_AT_HOME.match(f.interpreter))),
             shells=tuple(shells),
             interpreted=tuple(sorted(interpreted)),
             named=self.find_named(data_words),

@@ -14,6 +14,7 @@ from ...edges.memory import cache_method
 from ..conditions.cmake import list_tested_packages
 from ..facts.condition import Condition
 from ..targets.changes import DISTROS
+from ..targets.symbol import Symbol
 from ..targets.target import Provider
 from .cmake.build import At, FoundPackage, Stop, is_for_tests
 from .on_target import INTERFACES, PACKAGE, UnresolvedUse, WorkspaceOnTarget
@@ -290,6 +291,8 @@ class TargetView(WorkspaceOnTarget):
         """Components of a system library that have a CMake configuration of their own (`boost_filesystem`,
         `Qt5Widgets`), and so maybe a package."""
         for component, at in found.components if found.required else ():
+            if self.find_availability(Symbol("component", component, (found.name,))).is_missing:
+                continue  # no package has it, which library-component says
             for name in (f"{found.name.lower()}_{component}", f"{found.name}{component}"):
                 installed = self.providers.find_installed_cmake(name)
                 # The component's own package is what to declare, not one that has all of them.

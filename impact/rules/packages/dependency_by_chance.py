@@ -27,22 +27,35 @@ from ..vocabulary import Diagnostic, Package, TargetView, Together, make_sort_ke
 from .clean_machine import collect_chance_doubts, is_chance
 from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, list_sources, make_texts
 
+_ELSEWHERE = ", elsewhere"
+
 
 @rule(
     group="undeclared-package",
-    texts=make_texts("`{subject}` is not declared and comes only through {sources}"),
+    texts={
+        **make_texts("`{subject}` is not declared and comes only through {sources}"),
+        **make_texts(
+            "`{subject}` is not declared and comes only through {sources}, which {distro} does not have",
+            kind=_ELSEWHERE,
+        ),
+    },
 )
 def dependency_by_chance(view: TargetView, package: Package):
     for name, needs in find_undeclared(view, package).borrowed.items():
         strong = (need for need in needs if need.certain and (need.required or need.how == "program"))
         first = next((need for need in sorted(strong, key=make_sort_key) if is_chance(view, package, need, name)), None)
         if first is not None:
+            sources = list_sources(view, package, first)
+            of_ros = first.providers[0].kind == "ros"
+            elsewhere = of_ros and not view.is_met(first.providers, view.build_known_environment(package))
+            if elsewhere:
+                sources = tuple(source for source in sources if not view.is_available(source)) or sources
             yield Diagnostic(
                 first.at,
                 name,
                 package.name,
-                {**describe_need(package, first), "sources": list_sources(view, package, first)},
-                find_kind(first),
+                {**describe_need(package, first), "sources": sources, "distro": view.target.distro},
+                find_kind(first, _ELSEWHERE if elsewhere else ""),
                 doubts=collect_chance_doubts(view, package, first),
                 fix=declare_need(view, package, first, name),
                 together=(Together("by chance"),),

@@ -58,6 +58,10 @@ _CORRECT = "correct or remove the path"
             "move it into this package, or into a dependency that installs it",
         ),
         "machine": Text("`{subject}` is a path of one machine", "use find_package() or find_path() instead"),
+        "library": Text(
+            "`{subject}` is linked by a path that exists only where something outside of this build put it there",
+            "use find_package() or find_library() instead",
+        ),
     },
 )
 def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]:
@@ -68,12 +72,12 @@ def nonexistent_path(view: TargetView, package: Package) -> Iterator[Diagnostic]
         if not kind or not view.applies(use.conditions):
             continue
         certain = view.is_sure(use.conditions)
-        if kind in ("outside", "machine", "read") and (subject in seen or not certain):
+        if kind in ("outside", "machine", "library", "read") and (subject in seen or not certain):
             continue  # it may be asked for first
         seen.add(subject)
         tests = kind == "test" or is_for_tests(use.conditions)
         doubts = (
-            Doubt.DISTURBS if kind in ("above", "outside", "machine") else None,
+            Doubt.DISTURBS if kind in ("above", "outside", "machine", "library") else None,
             certain or Doubt.CONDITIONAL,
             kind != "outside" or view.target.was_ever_released(package.name) or Doubt.DISPENSABLE,
             not tests or (view.is_built("test") and view.roles.farm_makes_tests) or Doubt.TEST,
@@ -90,8 +94,10 @@ _HOME = re.compile(r"(?:/home|/Users)/[\w.-]+/|/root/|[A-Za-z]:[/\\]")
 def _find_fault(view: TargetView, package: Package, use: WrittenPath) -> tuple[str, str]:
     """What is wrong with a path, as the kind of a text and the subject, both empty where nothing is."""
     path = posixpath.normpath(use.path)
-    if _HOME.match(path) or (use.how == "link" and _LIBRARY.match(path)):
+    if _HOME.match(path):
         return "machine", path
+    if use.how == "link" and _LIBRARY.match(path):
+        return "library", path
     if re.search(r"[$*?<>\[\]]", path) or path.startswith("/"):
         return "", ""
     above = _find_above(package, path)

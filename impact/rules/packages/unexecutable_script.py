@@ -2,8 +2,8 @@
 
 What it does
     Reports scripts that install(FILES) or install(DIRECTORY) copies without execute permission, and programs whose
-    first line names `python` where the target has `python3` alone (Ubuntu focal, Debian bullseye and later): installed
-    ones, and in ROS 1 those that a launch file starts where they lie.
+    first line names `python` where the target has `python3` alone (Ubuntu focal, Debian bullseye and later), or a
+    Python in somebody's home folder: installed ones, and in ROS 1 those that a launch file starts where they lie.
 
 Why it breaks
     The package itself builds. But rosrun, ros2 run or a launch file cannot start the script.
@@ -52,6 +52,10 @@ _WITHOUT_PLAIN = 8
             "add USE_SOURCE_PERMISSIONS, or use install(PROGRAMS ...)",
         ),
         "interpreter": Text(_OTHER_INTERPRETER, "start it with `#!/usr/bin/env python3`"),
+        "home": Text(
+            "`{subject}` is to be run by `{interpreter}`, which other machines do not have, and is {installed}",
+            "start it with `#!/usr/bin/env python{major}`",
+        ),
         "interpreter, catkin": Text(_OTHER_INTERPRETER, "install it with catkin_install_python()"),
     },
 )
@@ -96,12 +100,11 @@ def _list_not_executable(view: TargetView, package: Package, installs) -> Iterat
 
 
 def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
-    """Programs that ask for `python`, where there is none and nothing writes another interpreter into their copies, or
-    into those that a launch file starts where they lie, as of ROS 1."""
-    target, catkin = view.target, package.build_type == "catkin"
-    if target.python_major < 3 or target.python < _WITHOUT_PLAIN:
-        return
-    plain = [p for p in package.linked.plain_scripts if posixpath.basename(p) not in package.linked.interpreted]
+    """Programs that ask for `python`, where there is none, or for a Python in a home folder, and nothing writes another
+    interpreter into their copies, or into those that a launch file starts where they lie, as of ROS 1."""
+    target, catkin, at_home = view.target, package.build_type == "catkin", dict(package.linked.at_home)
+    absent = () if target.python_major < 3 or target.python < _WITHOUT_PLAIN else package.linked.plain_scripts
+    plain = [p for p in (*absent, *at_home) if posixpath.basename(p) not in package.linked.interpreted]
     found = {}
     for install in installs:
         programs = install.kind == "programs" or (install.kind == "directory" and install.executable)
@@ -113,7 +116,8 @@ def _list_plain(view: TargetView, package: Package, installs) -> Iterator[Diagno
         if posixpath.basename(path) in started and not is_installed(installs, path):
             found[path] = At(path, 1), "not installed", (), _BY_OTHER_MEANS
     for path, (at, how, conditions, together) in found.items():
-        data = {"platform": target.platform, "installed": how}
+        data = {"platform": target.platform, "installed": how, "major": str(target.python_major)}
+        data["interpreter"] = at_home.get(path, "")
         doubts = (Doubt.LATE, view.is_sure(conditions) or Doubt.CONDITIONAL)
-        kind = "interpreter, catkin" if catkin else "interpreter"
+        kind = "home" if path in at_home else "interpreter, catkin" if catkin else "interpreter"
         yield Diagnostic(at, posixpath.basename(path), package.name, data, kind, doubts, together=together)

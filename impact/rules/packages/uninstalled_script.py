@@ -14,11 +14,14 @@ Use instead
     install(PROGRAMS scripts/drive scripts/steer DESTINATION lib/${PROJECT_NAME})
 
 Not reported
-    Modules that other scripts import, and tools of packages that install no program.
+    Modules that other scripts import, and tools of packages that install no program; programs that import rospy in ROS
+    2, which nobody has ported.
 """
 
 import posixpath
+from collections.abc import Collection, Mapping
 
+from ....edges.groups import group_pairs
 from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, rule
 from .install_rules import is_installed, list_references, read_installs
@@ -27,7 +30,9 @@ _ONCE = (Together("not installed"),)
 _OF_CATKIN = "catkin_install_python(PROGRAMS ...)"
 # Folders where programs of packages lie, and modules that programs import to be nodes.
 _OF_PROGRAMS = frozenset(("bin", "nodes", "scripts"))
-_OF_NODES = frozenset(("rclpy", "rospy", "rqt_gui"))
+_OF_NODES = {1: frozenset(("rospy", "rqt_gui")), 2: frozenset(("rclpy", "rqt_gui"))}
+# What a program imports that a generation of ROS does not have, as before it was ported.
+_OF_OTHERS = {1: "rclpy", 2: "rospy"}
 
 
 @rule(
@@ -45,12 +50,15 @@ def uninstalled_script(view: TargetView, package: Package):
         return  # uninstalled-file tells of a package that installs nothing at all
     scripts = list_references(view, package, "executable")
     programs = [item for i in installs if i.kind == "programs" for item in i.items]
+    imported = group_pairs((use.at.path, use.module.partition(".")[0]) for use in package.linked.imports)
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
-    nodes = _list_nodes(package, installs, folders)
+    nodes = _list_nodes(package, installs, view.target.ros, imported, folders)
     for path in (*package.linked.scripts, *package.linked.shells):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         beside = folder in folders and folder != package.path and "." not in name and find_folder_role(name) is None
         node = path in nodes
+        if _OF_OTHERS[view.target.ros] in imported.get(path, ()):
+            continue
         if (name in scripts or beside or node) and name not in others and not is_installed(installs, path):
             kind = "script" if name in scripts else "beside" if beside else "node"
             of_catkin = package.build_type == "catkin" and path not in package.linked.shells
@@ -58,7 +66,9 @@ def uninstalled_script(view: TargetView, package: Package):
             yield Diagnostic(At(path, 1), name, package.name, data, kind, together=_ONCE)
 
 
-def _list_nodes(package: Package, installs, folders: set[str]) -> frozenset[str]:
+def _list_nodes(
+    package: Package, installs, ros: int, imported: Mapping[str, Collection[str]], folders: set[str]
+) -> frozenset[str]:
     """The nodes in Python of a package of ROS 2; in ROS 1, where a launch file in the source space starts them as well,
     of one that installs something, and makes and installs no program at all.
     install_python_setup() puts what setup.py calls scripts into the folder of all programs, where rosrun does not look.
@@ -68,8 +78,8 @@ def _list_nodes(package: Package, installs, folders: set[str]) -> frozenset[str]
     has_programs = made or any(i.kind == "programs" or i.executable for i in installs)
     if package.build.ament_package is None and (not installs or has_programs):
         return frozenset()
-    nodes = {use.at.path for use in package.linked.imports if use.module.partition(".")[0] in _OF_NODES}
-    inside = {path: package.strip_path(path) for path in package.linked.scripts if path in nodes}
+    nodes = (path for path in package.linked.scripts if not _OF_NODES[ros].isdisjoint(imported.get(path, ())))
+    inside = {path: package.strip_path(path) for path in nodes}
     return frozenset(
         path
         for path, below in inside.items()
