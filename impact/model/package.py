@@ -174,7 +174,7 @@ class FieldOfWorkspace(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class SyntaxUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Python syntax that some version refuses. needs: 2 for Python 2 only, else the minor version of Python 3,
-    or NO_PYTHON. plain: the first line of the file says that `python` runs it, which Python 2 may be."""
+    NO_PYTHON or NEVER_PYTHON. plain: the first line of the file says that `python` runs it, which Python 2 may be."""
 
     needs: int
     what: str

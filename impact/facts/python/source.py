@@ -20,6 +20,8 @@ from .uses import FieldUse, PythonUse, TypedName
 
 NO_PYTHON = 1000
 """The minor version of Python 3 that syntax needs which this interpreter refuses and nothing explains."""
+NEVER_PYTHON = 2000
+"""The same of syntax on a line that has nothing which a newer Python may read otherwise."""
 
 
 class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -28,12 +30,12 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     python2_only: (line, what) of syntax that Python 3 refuses (print statement, except X, e, backticks ...), found when
     the file does not parse, and `print >>f`, which parses and then fails. needs: the highest minor version of Python 3
     its syntax asks for, with line and reason (match: 10, except*: 11, type parameters: 12, ...; 0 for what any Python 3
-    has and Python 2 has not; NO_PYTHON), or None. interpreter: the first line when it is a `#!` that names python.
-    uses: what calls and objects tell besides the attributes. fields: of
-    interfaces. words: see list_words(). unbound: names that nothing in the file binds, and methods, with a dot before,
-    that nothing in it defines and only Python 2 has; and what PythonReader.list_misused() lists. bound: names, between
-    spaces, that others can import from it; empty where that cannot be told, and two spaces where there are none. typed:
-    what of these shows its type. unknown: members of objects whose types do not show, with the number of places.
+    has and Python 2 has not; NO_PYTHON; NEVER_PYTHON), or None. interpreter: the first line when it is a `#!` that
+    names python. uses: what calls and objects tell besides the attributes. fields: of interfaces. words: see
+    list_words(). unbound: names that nothing in the file binds, and methods, with a dot before, that nothing in it
+    defines and only Python 2 has; and what PythonReader.list_misused() lists. bound: names, between spaces, that others
+    can import from it; empty where that cannot be told, and two spaces where there are none. typed: what of these shows
+    its type. unknown: members of objects whose types do not show, with the number of places.
     """
 
     imports: tuple[Import, ...]
@@ -69,6 +71,13 @@ class PythonSource(NamedTuple):
 _COOKIE = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 # What is no Python and not meant to be: places that a generator fills in, commands of a notebook.
 _TEMPLATE = re.compile(r"@\w+@|@[({\[]|\$|\{%|<%|\{\{\s*[\w.]+\s*\}\}|^\s*[%!]\s*\w", re.MULTILINE)
+# What Python 3.10 and later read, or may come to read, otherwise than those before: words that begin a statement, and
+# strings that hold expressions, of which those of several lines are told at any of these.
+_MAY_BE_NEWER = re.compile(
+    r"\s*(?:async|case|class|def|except|finally|from\s+__future__|lazy|match|type|with)\b"
+    r"|[\w)\]]\s*\[\s*\*|[\[({]\s*\*|(?:\b|\d)[rR]?[fFtT][rR]?[\"']"
+)
+_LONG_STRING = re.compile(r"\b[rR]?[fFtT][rR]?(?:\"{3}|'{3})")
 _SHEBANG = re.compile(r"#!.*python")
 _IMPORT_LINE = re.compile(
     r"^(?P<indent>[ \t]*)(?:import[ \t]+(?P<modules>[\w., \t]+)"
@@ -191,11 +200,17 @@ def extract(data: bytes) -> PythonFile:
         attributes=(),
         references=(),
         python2_only=old,
-        needs=(NO_PYTHON, refused, "SyntaxError") if refused else None,
+        needs=(_find_needed(text, refused), refused, "SyntaxError") if refused else None,
         interpreter=interpreter,
         problems=problems,
         words=list_words(data),
     )
+
+
+def _find_needed(text: str, line: int) -> int:
+    """The version that a text needs which this interpreter refuses from a line on."""
+    newer = _MAY_BE_NEWER.search(text.split("\n")[line - 1]) or _LONG_STRING.search(text)
+    return NO_PYTHON if newer else NEVER_PYTHON
 
 
 def _find_imports_by_line(text: str) -> tuple[Import, ...]:

@@ -25,7 +25,7 @@ Use instead
 import sys
 from collections.abc import Iterator
 
-from ...facts.python.source import NO_PYTHON
+from ...facts.python.source import NEVER_PYTHON, NO_PYTHON
 from ...targets.distro.distro import DistroTarget
 from ..python_files import RejectedUse, report_refused
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
@@ -59,9 +59,10 @@ def python_version(view: TargetView):
             if use.needs == 2 and use.at.path not in reported:
                 reported.add(use.at.path)
                 yield RejectedUse(use, use.what, "python 2")
-            elif use.needs == NO_PYTHON:
+            elif use.needs in (NO_PYTHON, NEVER_PYTHON):
                 # What a newer Python than this one may read is not known.
-                if view.target.python_major >= 3 and target.python <= sys.version_info.minor:
+                known = use.needs == NEVER_PYTHON or target.python <= sys.version_info.minor
+                if view.target.python_major >= 3 and known:
                     yield RejectedUse(use, use.what, "none")
             elif use.needs > max(2, target.python) and view.target.python_major >= 3:
                 yield RejectedUse(use, use.what, "newer", use.needs)
@@ -71,7 +72,7 @@ def python_version(view: TargetView):
         others = set(package.linked.scripts) - set(package.linked.plain_scripts)  # which may be for Python 3
         for use in package.linked.syntax:
             doubts = list_place_doubts(view, use.role)
-            if use.needs not in (2, NO_PYTHON) and use.plain:
+            if use.needs not in (2, NO_PYTHON, NEVER_PYTHON) and use.plain:
                 yield Diagnostic(use.at, use.what, package.name, kind="python 3", doubts=doubts)
             elif use.needs == 0 and use.what.startswith("`print`") and not others:
                 yield Diagnostic(use.at, use.what, package.name, kind="print", doubts=(*doubts, Doubt.LATE))

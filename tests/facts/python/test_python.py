@@ -6,7 +6,7 @@ import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from rosimpact.impact.facts.python.source import NO_PYTHON, PythonFile, extract
+from rosimpact.impact.facts.python.source import NEVER_PYTHON, NO_PYTHON, PythonFile, extract
 
 
 def conditions_of(item):
@@ -300,6 +300,18 @@ def test_needs_of_newer_syntax(text, minor):
     else:
         assert facts.needs == (NO_PYTHON, 1, "SyntaxError")
         assert len(facts.problems) == 1 and facts.python2_only == ()
+
+
+@pytest.mark.parametrize("text", ["bfrom setuptools import setup", "a = (1, 2", "x = 3 3", "if a\n    b"])
+def test_what_no_python_reads(text):
+    facts = extract(f"import a\n{text}\n".encode())
+    assert facts.needs and facts.needs[:2] == (NEVER_PYTHON, 2)
+
+
+@pytest.mark.parametrize("text", ["type A = int )", "x = f'{a['b')'", "with a as b c:", "x = [*a for a in b c]"])
+def test_what_a_newer_python_may_read(text):
+    facts = extract(f"import a\n{text}\n".encode())
+    assert facts.needs and facts.needs[:2] == (NO_PYTHON, 2)
 
 
 @pytest.mark.skipif(sys.version_info >= (3, 14), reason="this interpreter may read it")
