@@ -86,6 +86,9 @@ def test_the_public_header_brings_its_names():
         ("string.h", "memcpy", 13, 2017, True),
         ("string.h", "std::memcpy", 13, 2017, False),
         ("cmath", "M_PI", 15, 2017, True),
+        # declared in the same file as std::reverse
+        ("algorithm", "std::reverse_copy", 15, 2017, True),
+        ("vector", "std::reverse_copy", 15, 2017, False),
     ],
 )
 def test_names_that_a_header_brings_alone(header, name, gcc, year, there):

@@ -19,6 +19,7 @@ from ..snapshot import DATA, read_table
 class _Headers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What data/std_headers.json holds. since: standard headers by the C++ standard that they are of. defined: names of
     `std` with the headers that define them, the public one first; a `bits/` one is libstdc++'s own that does.
+    beside: a name of `std` that the compilers were asked about, with others that libstdc++ declares in the same file.
     brought_by_c: what headers of C and POSIX define: of a header above (`bits/` for glibc's own, which has the types
     only, with or without a sign), those that bring it."""
 
@@ -32,6 +33,7 @@ class _Headers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     since: dict[int, str]
     brought_by_c_source: str
     brought_by_c: dict[str, str]
+    beside: dict[str, str]
     defined: list[Defined]
 
 
@@ -56,6 +58,8 @@ DEFINED_IN: dict[str, tuple[str, ...]] = {
     },
 }
 """Every name to the headers that define it, likewise."""
+
+_BESIDE = {f"std::{name}": f"std::{asked}" for asked, names in _KNOWN.beside.items() for name in names.split()}
 
 HEADER_SINCE = {header: standard for standard, headers in _KNOWN.since.items() for header in headers.split()}
 """Standard headers to the C++ standard that they are of: libstdc++'s stop the compiler below C++11, and are empty below
@@ -132,7 +136,8 @@ def index_headers() -> dict[str, tuple[str, ...]]:
         name: (header, f"{header[1:]}.h") if header in _C and not name.startswith("std::") else (header,)
         for name, header in load_names().names.items()
     }
-    return {**DEFINED_IN, **reported}
+    beside = {name: reported[asked] for name, asked in _BESIDE.items()}
+    return {**DEFINED_IN, **reported, **beside}
 
 
 @cache
@@ -156,8 +161,8 @@ def _index_bits() -> dict[str, int]:
 
 
 def get_bit(name: str) -> int:
-    """The bit that stands for a name in find_named(); 0 for one that is not known."""
-    return _index_bits().get(name, 0)
+    """The bit that stands for a name in find_named(), and for others beside it; 0 for one that is not known."""
+    return _index_bits().get(_BESIDE.get(name, name), 0)
 
 
 def find_named(header: str, gcc: int, standard: int) -> int | None:
