@@ -40,7 +40,7 @@ def list_undefined(
                 continue  # a launch file is no module, so that the folder above its own is not searched
             meant = modules.make_absolute(path, item) if item.level else item.module
             program = path if facts.interpreter else ""
-            other = not item.level and (modules.is_meant_by(item) or (path not in beside and modules.leads_to(meant)))
+            other = not item.level and (modules.is_meant_by(item) or (path not in beside and modules.names_file(meant)))
             if modules.lacks(meant, program) or other:
                 yield path, msgspec.structs.replace(item, module="", names=(meant,))
                 continue
@@ -263,7 +263,7 @@ class PackageModules:
     def _find_file(self, stem: str) -> PythonFile | None:
         return self._files.get(f"{stem}.py") or self._files.get(f"{stem}/__init__.py")
 
-    def leads_to(self, module: str) -> bool:
+    def names_file(self, module: str) -> bool:
         """Whether a module is called by the path of one of the package's files from a folder above the package on,
         where no program of the package looks."""
         inside = "package.xml" in self._paths or module.partition(".")[0] in self._roots
