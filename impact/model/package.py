@@ -48,6 +48,7 @@ from .python.api import find_top_modules
 from .python.undefined import (
     PythonOffer,
     list_above,
+    list_called_by_path,
     list_siblings,
     list_undefined,
     list_undefined_functions,
@@ -615,6 +616,7 @@ class PackageJoin:
         for path, facts in run_setup.items():
             syntax.extend(_list_syntax(path, "build", facts))
 
+        roots, programs = self.list_python_roots(setup), set(self.list_programs())
         uses = [*self.list_uses(roles), *self.list_python_uses(python), *self.list_parameter_uses(parameters)]
         return LinkedPackage(
             self.name,
@@ -673,12 +675,13 @@ class PackageJoin:
                     *list_undefined(python, made, (*self.files, *extensions)),
                     *list_undefined(run_setup, (), ()),
                     *list_undefined_functions(python, setup),
-                    *list_above(python, self.list_python_roots(setup), set(self.list_programs())),
+                    *list_above(python, roots, programs),
+                    *list_called_by_path(python, self.path, roots, programs | self.started),
                     *list_siblings(python, setup),
                     *list_unlisted(python, [(p, f) for p, f in setup if p in run_setup]),
                 )
             ),
-            python_offer=offer_python(python, made, self.files, self.list_python_roots(setup)),
+            python_offer=offer_python(python, made, self.files, roots),
             own_calls=tuple(self.list_own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.list_settings(parameters, launches)),

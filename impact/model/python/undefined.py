@@ -28,7 +28,6 @@ def list_undefined(
     and what its build makes in ways that are not known, are called. paths: all its files, of which modules may be
     built."""
     modules = PackageModules(files, others, paths)
-    beside = modules.list_loaded_beside("sys.path")
     for path, facts in files.items():
         if posixpath.basename(path).startswith("."):
             continue  # settings of tools, which define names for them
@@ -40,8 +39,7 @@ def list_undefined(
                 continue  # a launch file is no module, so that the folder above its own is not searched
             meant = modules.make_absolute(path, item) if item.level else item.module
             program = path if facts.interpreter else ""
-            other = not item.level and (modules.is_meant_by(item) or (path not in beside and modules.names_file(meant)))
-            if modules.lacks(meant, program) or other:
+            if modules.lacks(meant, program) or (not item.level and modules.is_meant_by(item)):
                 yield path, msgspec.structs.replace(item, module="", names=(meant,))
                 continue
             module = modules.find(path, item) if item.names else None
@@ -75,6 +73,25 @@ def list_above(
             name = ALONE if path in programs and facts.interpreter else ABOVE if 0 < depth < item.level else ""
             if name and " __package__ " not in facts.bound:
                 yield path, msgspec.structs.replace(item, module="." * item.level + item.module, names=(name,))
+
+
+def list_called_by_path(
+    files: Mapping[str, PythonFile], folder: str, roots: Collection[str], programs: Collection[str]
+) -> Iterator[tuple[str, Import]]:
+    """Imports, in programs and installed modules, of a file of the package by its path from a folder above the package
+    on, where they do not look; as list_undefined() has modules. folder: of the package. roots: as above. programs: what
+    is started."""
+    own, head = {posixpath.basename(root) for root in roots}, folder.partition("/")[0]
+    stems = {_strip_ending(path) for path in files} if head and head not in own else ()
+    found = [
+        (path, msgspec.structs.replace(item, module="", names=(item.module,)))
+        for path, facts in (files.items() if stems else ())
+        if path in programs or any(path.startswith(f"{root}/") for root in roots)
+        for item in facts.imports
+        if not item.level and item.module.startswith(f"{head}.") and item.module.replace(".", "/") in stems
+    ]
+    beside = PackageModules(files, (), ()).list_loaded_beside("sys.path") if found else ()
+    yield from (one for one in found if one[0] not in beside)
 
 
 BESIDE = "."
@@ -262,12 +279,6 @@ class PackageModules:
 
     def _find_file(self, stem: str) -> PythonFile | None:
         return self._files.get(f"{stem}.py") or self._files.get(f"{stem}/__init__.py")
-
-    def names_file(self, module: str) -> bool:
-        """Whether a module is called by the path of one of the package's files from a folder above the package on,
-        where no program of the package looks."""
-        inside = "package.xml" in self._paths or module.partition(".")[0] in self._roots
-        return not inside and "." in module and module.replace(".", "/") in self._stems
 
     def lacks(self, module: str, program: str = "") -> bool:
         """Whether a module surely is to be one of the package, by its first name, and there is none. program: the file
