@@ -23,6 +23,7 @@ Not reported
     before the build; targets of ament that are given something that cannot be seen.
 """
 
+import posixpath
 import re
 from collections.abc import Iterable, Iterator
 from functools import cache
@@ -31,6 +32,7 @@ from ....edges.reach import walk
 from ...model.cmake.catkin_links import find_linked_packages
 from ...model.cmake.links import is_opaque, resolve_package
 from ...model.view import find_included_interface
+from ...model.workspace import is_interface_header
 from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, list_place_doubts, rule
 
 _OF_ROSIDL = re.compile(r"rosidl|typesupport|BINARY_DIR")
@@ -57,7 +59,9 @@ def missing_interface_wiring(view: TargetView, package: Package):
 
 def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Targets that include what rosidl generates in the package, and are given nothing of it."""
-    generated = {one.target for one in package.build.generated if one.how == "rosidl" and view.is_sure(one.conditions)}
+    made = [one for one in package.build.generated if one.how == "rosidl" and view.is_sure(one.conditions)]
+    generated = {one.target for one in made}
+    names = [posixpath.splitext(posixpath.basename(path))[0] for one in made for path in one.files]
     if not generated or any(_OF_ROSIDL.search(item) for item, _ in package.build.include_dirs):
         return
     targets = {t.name: t for t in package.build.targets}
@@ -66,7 +70,7 @@ def _list_unlinked(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         head, _, rest = include.path.partition("/")
         if head != package.name or "/" not in rest or not view.is_sure(include.conditions):
             continue
-        if not view.workspace.is_interface_header(head, rest) or _lies_in_tree(package, include.path):
+        if not is_interface_header(rest, names) or _lies_in_tree(package, include.path):
             continue
         for name in set(include.targets).intersection(targets).difference(wanted):
             given = package.build.list_linked_items(name, None)
