@@ -1,6 +1,7 @@
 """What is installed."""
 
 import re
+from itertools import pairwise
 
 from ....edges.groups import group_pairs
 from ...facts.condition import Condition
@@ -151,8 +152,9 @@ def _install_files(run: Interpreter, call: CommandCall, kind: str, args: list[Wo
 
 
 def _resolve_destination(run: Interpreter, call: CommandCall, args: list[Word]) -> str:
-    """Where files go: empty where the call surely does not say so, at which CMake stops."""
-    destination = run.clean(find_next(args, "DESTINATION") or "") or _TYPES.get(find_next(args, "TYPE") or "", "")
+    """Where files go, the last of several: empty where the call surely does not say so, at which CMake stops."""
+    given = [folder for keyword, folder in pairwise(args) if keyword == "DESTINATION"]
+    destination = run.clean(given[-1] if given else "") or _TYPES.get(find_next(args, "TYPE") or "", "")
     return destination or ("${DESTINATION}" if any("$" in argument.text for argument in call.arguments) else "")
 
 
