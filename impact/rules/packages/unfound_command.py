@@ -70,6 +70,8 @@ def unfound_command(view: TargetView, package: Package):
     seen = set()
     for use in calls:
         owners = commands[use.name].split()
+        if owners == ["genmsg"] and build.generated:
+            continue  # missing-message-generation reports it
         testing = is_for_tests(use.conditions)
         names = frozenset(f.name for f in found if testing or not is_for_tests(f.conditions))
         reached = _list_reached(view, package, names)
@@ -81,8 +83,6 @@ def unfound_command(view: TargetView, package: Package):
                 seen.add(owner)
                 yield Diagnostic(use.at, use.name, package.name, {"owner": owner}, "lucky", (Doubt.LUCKY,))
             continue
-        if owners == ["genmsg"] and build.generated:
-            continue  # missing-message-generation reports it
         if use.name in find_test_commands(view) and view.build_environment(package).isdisjoint(owners):
             continue
         owner = _choose_name(view, package, owners)
