@@ -103,7 +103,7 @@ class _Raw(NamedTuple):
 # A type is a dotted name; of the file's own classes and functions the name after this mark. Empty: not known. Behind a
 # dot stands what is a member of such an object; whether that is a field shows at the end.
 OWN = ":"
-# A parameter of a function that may be a callback: `@name:how many:which`.
+# A parameter of a function that may be a callback: `@class/name:how many:which`.
 _PARAMETER = "@"
 KINDS = frozenset(("msg", "srv", "action"))
 SECTIONS = frozenset(("Request", "Response", "Goal", "Result", "Feedback"))
@@ -149,7 +149,7 @@ class ObjectUses(PythonValues):
         self.has_interfaces = _MENTIONS_INTERFACES.search(text) is not None
         # Type and member to the place.
         self.raw_fields: dict[tuple[str, str, tuple[Condition, ...]], tuple[int, int]] = {}
-        # Of functions that are handed over as callbacks, by name: the types of their parameters.
+        # Of functions that are handed over as callbacks, by class and name: the types of their parameters.
         self.called_back: dict[str, set[tuple[str, ...]]] = {}
         # What names hold at the end of the branches of the statement that is read.
         self.ways: list[dict[str, str]] = []
@@ -257,11 +257,13 @@ class ObjectUses(PythonValues):
         defaults = zip(reversed(positional), reversed(function.args.defaults), strict=False)
         given = {argument.arg for argument, default in defaults if getattr(default, "value", 0) is None}
         self.scope.objects.update(dict.fromkeys(self.scope.bound - given, ""))
+        owner = ""
         if self.inside_class is not None and positional[:1] and positional[0].arg == "self":
+            owner = str(id(self.inside_class))
             del positional[0]
         if self.has_interfaces and 0 < len(positional) < 3 and not any(one.annotation for one in positional):
             for place, one in enumerate(positional):
-                self.scope.objects[one.arg] = f"{_PARAMETER}{function.name}:{len(positional)}:{place}"
+                self.scope.objects[one.arg] = f"{_PARAMETER}{owner}/{function.name}:{len(positional)}:{place}"
 
     def note_callback(self, call: ast.Call, function: str) -> None:
         """A call that asks for messages or requests of one interface, and names who gets them."""
@@ -274,7 +276,8 @@ class ObjectUses(PythonValues):
             own = isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name) and one.value.id == "self"
             name = one.attr if own else getattr(one, "id", "")  # type: ignore[attr-defined]
             if name:
-                self.called_back.setdefault(name, set()).add(given)
+                owner = str(id(self.inside_class)) if own and self.inside_class is not None else ""
+                self.called_back.setdefault(f"{owner}/{name}", set()).add(given)
 
     def merge(self, first: int, *others: dict[str, str]) -> None:
         """Names hold behind a statement what they hold at the end of those of its branches that bind them: of those
