@@ -87,7 +87,8 @@ _NEEDED = {
 # What can be subscripted since Python 3.9, and joined to other types by `|` since 3.10 (PEP 585, PEP 604).
 _GENERIC = frozenset(("dict", "frozenset", "list", "set", "tuple", "type"))
 _TYPES = _GENERIC | {"bool", "bytes", "complex", "float", "int", "object", "str"}
-# By which members may be set that no assignment shows.
+# Private members, and by what members may be set that no assignment shows.
+_PRIVATE = re.compile(r"__\w+")
 _SETS_MEMBERS = re.compile(r"__getattr|setattr\(|__dict__|\bvars\(")
 _QUOTE = re.compile(r"[A-Za-z]*(\"\"\"|'''|\"|')")
 _TARGETS_OF_WITH = re.compile(r"with\s*\(\s*\Z")
@@ -288,10 +289,12 @@ class PythonReader(ObjectUses, SourceText):
                 known = holder.imports[use.text]
                 if len(known) == 1 and not known[0][1] and "." not in known[0][0]:
                     yield msgspec.structs.replace(use, text=f"{use.text}()")
-        counts = Counter(use.text for use in self.private)
-        text = "\n".join(self.lines) if counts else ""
-        for use in self.private if _SETS_MEMBERS.search(text) is None else ():
-            if len(re.findall(rf"{use.text}\b", text)) == counts[use.text]:
+        text = "\n".join(self.lines) if self.private else ""
+        if not self.private or _SETS_MEMBERS.search(text):
+            return
+        read, written = Counter(use.text for use in self.private), Counter(_PRIVATE.findall(text))
+        for use in self.private:
+            if written[use.text] == read[use.text]:
                 yield msgspec.structs.replace(use, text=f"self.{use.text}")
 
     def list_unbound_names(self, bound: set[str] | None) -> tuple[AttributeUse, ...]:

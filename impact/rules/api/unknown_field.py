@@ -36,7 +36,18 @@ from ...model.python.own_interfaces import OwnInterfaces
 from ...targets.surface.fields import load_fields
 from ...targets.symbol import Symbol
 from ..python_files import list_python_doubts
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
+from ..vocabulary import (
+    Diagnostic,
+    Doubt,
+    Package,
+    TargetView,
+    Text,
+    Together,
+    Upcoming,
+    list_place_doubts,
+    rate_upcoming,
+    rule,
+)
 from .diagnosis import UPSTREAM, build_availability_texts, build_data, diagnose, find_missing
 
 _MISSING = f"`{{interface}}` has no field `{{subject}}` in {UPSTREAM}"
@@ -73,7 +84,8 @@ def unknown_field(view: TargetView):
             if view.is_sure(use.conditions) and (type_ := of_workspace.find_lacking(use)):
                 data = {"interface": type_.replace(".", "/")}
                 doubts = list_python_doubts(view, package, use.role, use.at.path)
-                yield Diagnostic(use.at, use.steps[-1], package.name, data, "own", doubts)
+                same = (Together(type_),)
+                yield Diagnostic(use.at, use.steps[-1], package.name, data, "own", doubts, together=same)
         yield from rate_upcoming(_list_members(view, package, own))
         yield from rate_upcoming(_list_imports(view, package))
         yield from _list_of_workspace(view, package)
