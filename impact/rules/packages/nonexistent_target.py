@@ -22,13 +22,15 @@ Use instead
 
 Not reported
     Names that cannot be resolved, and targets that a command which is not known may add; what a target has to wait for
-    under the policies of a CMake before 3.0, which takes no notice, and where it may be of another package.
+    under the policies of a CMake before 3.0, which takes no notice, and where it is not called after the package or
+    nearly like one of its targets, since it may be of another one.
 """
 
 import re
 from collections.abc import Iterator
 
 from ...model.cmake.targets import MADE_ALONG
+from ...model.misspelling import is_slip
 from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
 from .refused_names import find_policy_version, list_refused
 
@@ -66,18 +68,21 @@ def _list_awaited(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     if find_policy_version(package) < (3,):
         return
     others = {target.name for other in view.workspace if other is not package for target in other.build.targets}
-    known = others.union(target.name for target in package.build.targets if target.kind != "unknown")
-    seen = set()
+    added = {target.name for target in package.build.targets if target.kind != "unknown"}
+    known = others | added
+    own, seen = {package.name, package.build.project} - {""}, set()
+    prefixes = tuple(f"{one}_" for one in own)
     for target in package.build.targets:
         for link in target.links if target.kind in ("library", "module", "executable") else ():
             name, generated = link.item, _GENERATED.match(link.item)
             if link.how != "order" or name in known or name in seen or not re.fullmatch(r"[\w.+-]+", name):
                 continue
-            owner = generated[1] if generated is not None else ""
-            elsewhere = owner not in (package.name, package.build.project) if owner else (
-                MADE_ALONG.fullmatch(name) or view.is_package(name) or view.find_cmake(name)
-            )
-            if not elsewhere:
+            if generated is not None:
+                meant = generated[1] in own
+            else:  # what is found may have targets of any other name
+                alike = name.startswith(prefixes) or any(is_slip(name, one) for one in added)
+                meant = alike and not MADE_ALONG.fullmatch(name)
+            if meant:
                 seen.add(name)
                 doubts = list_place_doubts(view, "build", link.conditions)
                 yield Diagnostic(link.at, name, package.name, {"by": target.name}, "no dependency", doubts)
