@@ -67,22 +67,21 @@ def _list_awaited(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """What targets have to wait for and no command adds (CMP0046)."""
     if find_policy_version(package) < (3,):
         return
-    others = {target.name for other in view.workspace if other is not package for target in other.build.targets}
     added = {target.name for target in package.build.targets if target.kind != "unknown"}
-    known = others | added
     own, seen = {package.name, package.build.project} - {""}, set()
     prefixes = tuple(f"{one}_" for one in own)
     for target in package.build.targets:
         for link in target.links if target.kind in ("library", "module", "executable") else ():
             name, generated = link.item, _GENERATED.match(link.item)
-            if link.how != "order" or name in known or name in seen or not re.fullmatch(r"[\w.+-]+", name):
+            if link.how != "order" or name in added or name in seen or not re.fullmatch(r"[\w.+-]+", name):
                 continue
             if generated is not None:
                 meant = generated[1] in own
             else:  # what is found may have targets of any other name
                 alike = name.startswith(prefixes) or any(is_slip(name, one) for one in added)
                 meant = alike and not MADE_ALONG.fullmatch(name)
-            if meant:
-                seen.add(name)
+            seen.add(name)
+            others = (target for one in view.workspace for target in one.build.targets if one.name != package.name)
+            if meant and all(target.name != name for target in others):
                 doubts = list_place_doubts(view, "build", link.conditions)
                 yield Diagnostic(link.at, name, package.name, {"by": target.name}, "no dependency", doubts)
