@@ -1337,7 +1337,7 @@ def is_modelled(command: str, conditions: Iterable[Condition]) -> bool:
     return command in HANDLERS or command in WRAPPERS or is_for_tests(conditions)
 
 
-def calls_unmodelled(build: Build) -> bool:
+def calls_unmodelled(build: Build | Interpreter) -> bool:
     """Whether a package calls what may make anything, such as headers: a function of another package of which it is not
     known what it does."""
     return any(use.kind == "command" and not is_modelled(use.name, use.conditions) for use in build.uses)

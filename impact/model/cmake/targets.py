@@ -8,7 +8,7 @@ from .blocks import CommandCall
 from .build import GeneratedInterfaces, Link, RefusedName
 from .drafts import TargetDraft
 from .genex import reduce_expression, rejoin
-from .interpreter import BINARY, Interpreter, handles
+from .interpreter import BINARY, Interpreter, calls_unmodelled, handles
 from .macros import note_flag, note_macro
 from .names import make_name_set
 from .standard import note_options, parse_feature_standard, parse_flag_standard
@@ -165,7 +165,7 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
         return draft
     typesupport = run.is_typesupport(name)
     known = typesupport or name in run.maybe_set or "::" in name
-    known = known or (run.command == "add_dependencies" and MADE_ALONG.fullmatch(name) is not None)
+    known = known or (run.command == "add_dependencies" and _may_be_made_along(run, name))
     if not known and not _is_asked_for(run, name):
         run.refuse("no target", name)
     return run.ensure_target(name, "generated" if typesupport else "unknown", name.at)
@@ -177,6 +177,12 @@ MADE_ALONG = re.compile(
     r"tests?|_?run_tests(?:_\w+)?|clean_test_results(?:_\w+)?|download_extra_data|doxygen|ros(?:build|pack)_\w+|"
     r"\w+_generate_messages(?:_\w+)?|_\w+_check_deps_\w+|ament_cmake_python_\w+|uninstall"
 )
+
+
+def _may_be_made_along(run: Interpreter, name: Word) -> bool:
+    """Whether a command that is given no such name may add a target: one of these, or, where what a command does is not
+    known, one that is called after the project."""
+    return MADE_ALONG.fullmatch(name) is not None or (run.installed_name in name and calls_unmodelled(run))
 
 
 def note_branches(run: Interpreter, draft: TargetDraft, name: Word) -> None:
