@@ -844,7 +844,7 @@ class PackageJoin:
                     headers.setdefault(word, []).append(path)
         inner = {to for resolved in self.resolved.values() for to, _ in resolved}
         for path, (role, _, targets, conditions) in roles.items() if headers else ():
-            if not targets or is_header(path) or path in inner:
+            if not targets or is_header(path) or path in inner or self._includes_template(path):
                 continue
             for word in sorted(headers.keys() & self.list_words(path)):
                 if headers[word][0] in self.list_reached(path) or not self._lacks_class(path, word):
@@ -854,6 +854,10 @@ class PackageJoin:
                     around = conditions + self.macros.resolve_conditions(spot.conditions or (), targets)
                     use = NameUse(word, At(path, spot.line, spot.column), role, False, "cpp", around, targets)
                     yield use, headers[word][0], self.list_outward(path)
+
+    def _includes_template(self, path: str) -> bool:
+        """Whether a source includes a header that CMake makes of a template, which may declare anything."""
+        return any(at.endswith(".in") for at in self.list_reached(path))
 
     def _lacks_class(self, path: str, word: str) -> bool:
         """Whether nothing of the workspace that a source includes says what a class is, nor may it be another one."""
@@ -883,7 +887,7 @@ class PackageJoin:
     def list_undeclared(self, roles) -> Iterator[tuple[NameUse, tuple[str, ...], tuple[str, ...]]]:
         """As LinkedPackage.undeclared: words that end with an underscore, in sources that define no class."""
         for path, (role, _, targets, conditions) in roles.items():
-            if not targets or is_header(path) or self.cpp[path].type_names:
+            if not targets or is_header(path) or self.cpp[path].type_names or self._includes_template(path):
                 continue
             others = [self.list_words(at) for at in (*self.list_reached(path)[1:], *self.list_offered(path))]
             ending = (word for word in self.list_words(path) if word.endswith("_") and len(word) > 4)
