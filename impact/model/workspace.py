@@ -13,6 +13,7 @@ import itertools
 import posixpath
 import re
 from bisect import bisect_left
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib import import_module
@@ -131,12 +132,15 @@ class Package:
 
 class FilesOutside:
     """What files say that belong to no package. lists_repositories: as Discovered has it. unread_submodules: the
-    folders of submodules that were not read, in order."""
+    folders of submodules that were not read, in order. twice: names that several packages have, of which one is read.
+    """
 
     def __init__(self, discovered: Discovered, extraction: ExtractedFacts):
         self._extraction = extraction
         self.lists_repositories = discovered.lists_repositories
         self.unread_submodules = sorted(problem.path for problem in extraction.problems if problem.is_submodule)
+        counts = Counter(place.name for place in discovered.packages)
+        self.twice = sorted(name for name, count in counts.items() if count > 1)
         scripts = extraction.list_paths("shell", "script")
         self._scripts = [path for path in scripts if discovered.find_owner(path) is None]
         self._requirements = [p for p in extraction.list_paths("requirements") if discovered.find_owner(p) is None]
@@ -147,7 +151,8 @@ class FilesOutside:
         """Differs whenever one of them does."""
         paths = (*self._scripts, *self._requirements, *self._containers)
         ids = [(path, self._extraction.ids[path]) for path in paths]
-        return repr((ids, self.lists_repositories, self.unread_submodules)).encode("utf-8", "backslashreplace")
+        said = (ids, self.lists_repositories, self.unread_submodules, self.twice)
+        return repr(said).encode("utf-8", "backslashreplace")
 
     @cached_property
     def distro_scripts(self) -> dict[str, DistroFile]:

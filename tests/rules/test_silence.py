@@ -1112,6 +1112,33 @@ SILENT = {
         ament("find_package(our_fingers REQUIRED)"),
         ("CMakeLists.txt", "our_fingers", "our_fingers_msgs"),
     ),
+    "a module by its path, where the program adds a folder to the path": Silent(
+        "undefined-name",
+        ("noetic",),
+        {
+            "packages/sled/package.xml": manifest("exec_depend:rospy", tool="catkin", version=2),
+            "packages/sled/CMakeLists.txt": f"{HEAD}find_package(catkin REQUIRED)\ncatkin_package()\n"
+            "catkin_install_python(PROGRAMS scripts/lift.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n",
+            "packages/sled/scripts/lift.py": 'import sys\n\nsys.path.append("/opt/sled")\n'
+            "from packages.sled.scripts.parts.hook import WIDTH\n\nprint(WIDTH)\n",
+            "packages/sled/scripts/parts/hook.py": "WIDTH = 3\n",
+        },
+        ("packages/sled/scripts/lift.py", 'sys.path.append("/opt/sled")', "print(sys.path)"),
+    ),
+    "a module by its path, in a tool that is started at the top of the repository": Silent(
+        "undefined-name",
+        ("noetic",),
+        {
+            "packages/sled/package.xml": manifest("exec_depend:rospy", tool="catkin", version=2),
+            "packages/sled/CMakeLists.txt": f"{HEAD}find_package(catkin REQUIRED)\ncatkin_package()\n"
+            "catkin_install_python(PROGRAMS scripts/lift.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n"
+            "install(DIRECTORY scripts/parts DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n",
+            "packages/sled/scripts/lift.py": "import rospy\nfrom parts.hook import WIDTH\n\nprint(WIDTH)\n",
+            "packages/sled/scripts/parts/hook.py": "WIDTH = 3\n",
+            "packages/sled/tools/draw.py": "from packages.sled.scripts.parts.hook import WIDTH\n\nprint(WIDTH)\n",
+        },
+        ("packages/sled/scripts/lift.py", "parts.hook", "packages.sled.scripts.parts.hook"),
+    ),
 }
 
 

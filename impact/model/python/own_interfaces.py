@@ -22,7 +22,7 @@ class OwnInterfaces:
     """The interfaces that packages of a workspace define, as far as they were read in full."""
 
     def __init__(self, workspace: Workspace):
-        twice = {place.name for place in workspace.hidden}
+        twice = workspace.outside.twice
         # As Python calls their types: `pkg.msg.Name`, `pkg.srv.Name.Request`.
         self._sections: dict[str, Section] = {}
         for package in workspace:
