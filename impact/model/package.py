@@ -605,8 +605,8 @@ class PackageJoin:
         includes, names, needed = self.collect_sources(roles)
         imports, python_names, syntax, modules = self.collect_python(python)
         by_commands = (path for use in self.build.uses for path in use.makes)
-        # A library to be loaded, called like the folder of modules that it lies in, is one of them.
-        extensions = [f"{t.output_name or t.name}.so" for t in self.build.targets if t.kind == "module"]
+        # A library called like the folder of modules that it lies in may be one of them.
+        extensions = [f"{t.output_name or t.name}.so" for t in self.build.targets if t.kind in ("library", "module")]
         made = modules.union(part for path in by_commands for part in path.split("/"))
         run_setup = {
             path: file.python

@@ -62,7 +62,7 @@ ALONE = "...."
 def list_above(
     files: Mapping[str, PythonFile], roots: Collection[str], programs: Collection[str]
 ) -> Iterator[tuple[str, Import]]:
-    """Relative imports that lead out of the outermost Python package, and those of programs, which are in none. roots:
+    """Relative imports that lead out of the outermost Python package, and those of programs that lie in none. roots:
     the folders of Python packages that are installed. programs: what is installed to be started. The name of each is
     ABOVE or ALONE, its module is as written."""
     for path, facts in files.items():
@@ -70,7 +70,8 @@ def list_above(
         root = next((one for one in roots if path.startswith(f"{one}/")), None) if relative else None
         depth = path[len(root) :].count("/") if root is not None and f"{root}/__init__.py" in files else 0
         for item in relative:
-            name = ALONE if path in programs and facts.interpreter else ABOVE if 0 < depth < item.level else ""
+            alone = root is None and path in programs and facts.interpreter
+            name = ALONE if alone else ABOVE if 0 < depth < item.level else ""
             if name and " __package__ " not in facts.bound:
                 yield path, msgspec.structs.replace(item, module="." * item.level + item.module, names=(name,))
 
