@@ -320,6 +320,9 @@ def _compile(expression: str) -> re.Pattern[str]:
     return re.compile(expression)
 
 
+_LONGEST_HEAD = 400
+
+
 def _fits(pattern: Pattern, text: str, end: int, ahead: str) -> str | None:
     """The template arguments of a use (empty: none), None where the text does not look like the pattern. end: of the
     word. ahead: what stands before it, which fits."""
@@ -342,6 +345,8 @@ def _fits(pattern: Pattern, text: str, end: int, ahead: str) -> str | None:
         at = variable.end() if variable else _SPACE.match(text, at).end()  # type: ignore[union-attr]
         if text[at : at + 1] not in ("(", "{") or (text[at] == "{" and not pattern.names):
             return None
+        if text[at] == "{" and _OPENING_CLASS.search(text, max(0, end - _LONGEST_HEAD), end):
+            return None  # the body of a class that derives from it
         if not pattern.names and declares_next(ahead):
             return None
         found = split_arguments(text, at)

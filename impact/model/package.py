@@ -608,6 +608,7 @@ class PackageJoin:
         # A library called like the folder of modules that it lies in may be one of them.
         extensions = [f"{t.output_name or t.name}.so" for t in self.build.targets if t.kind in ("library", "module")]
         made = modules.union(part for path in by_commands for part in path.split("/"))
+        made.update(posixpath.basename(path)[:-3] for path in self.build.made if path.endswith(".py"))
         run_setup = {
             path: file.python
             for path, file in (setup if self.build_type in ("ament_python", "catkin") else ())

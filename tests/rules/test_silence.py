@@ -1112,6 +1112,76 @@ SILENT = {
         ament("find_package(our_fingers REQUIRED)"),
         ("CMakeLists.txt", "our_fingers", "our_fingers_msgs"),
     ),
+    "files that only the other generation gives to its generator": Silent(
+        "unlisted-field-package",
+        ("jazzy",),
+        {
+            "package.xml": manifest("std_msgs", "geometry_msgs", "buildtool_depend:rosidl_default_generators"),
+            "CMakeLists.txt": HEAD + 'if("$ENV{ROS_VERSION}" STREQUAL "2")\n  set(DETECTED_ROS2 TRUE)\nelse()\n'
+            "  set(DETECTED_ROS1 TRUE)\nendif()\nif(DETECTED_ROS1)\n"
+            "  find_package(catkin REQUIRED COMPONENTS message_generation std_msgs)\n"
+            "  add_message_files(DIRECTORY msg-ros1 FILES Load.msg)\n  generate_messages(DEPENDENCIES std_msgs)\n"
+            "  catkin_package()\nendif()\nif(DETECTED_ROS2)\n  find_package(ament_cmake REQUIRED)\n"
+            "  find_package(std_msgs REQUIRED)\n  find_package(rosidl_default_generators REQUIRED)\n"
+            '  rosidl_generate_interfaces(sled "msg-ros2/Load.msg" DEPENDENCIES std_msgs)\n  ament_package()\nendif()\n',
+            "msg-ros1/Load.msg": "Header header\nfloat64 mass\n",
+            "msg-ros2/Load.msg": "std_msgs/Header header\nfloat64 mass\n",
+        },
+        ("msg-ros2/Load.msg", "std_msgs/Header header", "geometry_msgs/Pose pose"),
+    ),
+    "a folder without CMakeLists.txt, which old policies ignore": Silent(
+        "nonexistent-path",
+        ("kinetic",),
+        {
+            "package.xml": manifest(tool="catkin", version=2),
+            "CMakeLists.txt": "cmake_minimum_required(VERSION 2.4)\nproject(sled)\nfind_package(catkin REQUIRED)\n"
+            "catkin_package()\nadd_subdirectory(test)\n",
+            "test/drive.txt": "\n",
+        },
+        ("CMakeLists.txt", "VERSION 2.4", "VERSION 2.8.3"),
+    ),
+    "a library that a command makes in the devel space": Silent(
+        "nonexistent-export",
+        ("melodic",),
+        {
+            "package.xml": manifest(tool="catkin", version=2),
+            "CMakeLists.txt": f"{HEAD}find_package(catkin REQUIRED)\n"
+            "add_custom_command(OUTPUT ${CATKIN_DEVEL_PREFIX}/lib/librunner.so COMMAND make -f Makefile.runner)\n"
+            "add_custom_target(make_runner ALL DEPENDS ${CATKIN_DEVEL_PREFIX}/lib/librunner.so)\n"
+            "catkin_package(LIBRARIES runner)\n",
+        },
+        ("CMakeLists.txt", "lib/librunner.so", "lib/librail.so"),
+    ),
+    "the body of a class that derives from one whose constructor changed": Silent(
+        "changed-signature",
+        ("melodic",),
+        catkin(
+            "",
+            "find_package(OpenCV REQUIRED)\ncatkin_package()\nadd_executable(look look.cpp)\n"
+            "target_link_libraries(look ${OpenCV_LIBS})",
+            "libopencv-dev",
+            look_cpp="#include <opencv2/features2d.hpp>\nclass Blobs : public cv::SimpleBlobDetector\n{\npublic:\n"
+            "  Blobs(const cv::SimpleBlobDetector::Params & given);\n};\nint main()\n{\n"
+            "  cv::SimpleBlobDetector::Params given;\n  return 0;\n}\n",
+        ),
+        ("look.cpp", "  return 0;", "  cv::SimpleBlobDetector blobs(given);\n  return 0;"),
+    ),
+    "a module that a command for a shell writes into the package": Silent(
+        "undefined-name",
+        ("jazzy",),
+        {
+            **ament(
+                'add_custom_target(make_schemas ALL COMMAND eval "python3 make.py '
+                '--output ${CMAKE_CURRENT_LIST_DIR}/sled/schemas.py")\n'
+                "find_package(ament_cmake_python REQUIRED)\nament_python_install_package(${PROJECT_NAME})\n"
+                "install(PROGRAMS scripts/tell.py DESTINATION lib/sled)",
+                "buildtool_depend:ament_cmake_python",
+            ),
+            "sled/__init__.py": "",
+            "scripts/tell.py": "from sled import schemas\n\nprint(schemas)\n",
+        },
+        ("CMakeLists.txt", "sled/schemas.py", "sled/models.py"),
+    ),
     "a module by its path, where the program adds a folder to the path": Silent(
         "undefined-name",
         ("noetic",),
@@ -1123,7 +1193,7 @@ SILENT = {
             "from packages.sled.scripts.parts.hook import WIDTH\n\nprint(WIDTH)\n",
             "packages/sled/scripts/parts/hook.py": "WIDTH = 3\n",
         },
-        ("packages/sled/scripts/lift.py", 'sys.path.append("/opt/sled")', "print(sys.path)"),
+        ("packages/sled/scripts/lift.py", 'sys.path.append("/opt/sled")', "print(sys.argv)"),
     ),
     "a module by its path, in a tool that is started at the top of the repository": Silent(
         "undefined-name",

@@ -296,18 +296,26 @@ def add_dependencies(run: Interpreter, call: CommandCall, args: list[Word]) -> N
     add_links(run, resolve_target(run, args[0]), split_words(args[1:]), "order")
 
 
+_DEVEL = "${CATKIN_DEVEL_PREFIX}"
+
+
 def note_made(run: Interpreter, path: str, *, folder: bool = False) -> None:
-    """Remembers a file, or a folder, that configuring or building writes into the tree or the build folder."""
+    """Remembers a file, or a folder, that configuring or building writes into the tree or the build folder, in which
+    catkin's devel space lies."""
+    if path.startswith(_DEVEL):
+        path = f"{BINARY}/devel{path[len(_DEVEL):]}"
     place = run.make_relative(path) or (run.clean(path) if path.startswith(BINARY) else "")
     if place:
         run.made[f"{place}/" if folder else place] = None
 
 
 def note_written(run: Interpreter, item: Word) -> None:
-    """Remembers an argument of a program that names a path of the tree which does not exist: the program makes it."""
-    path = run.make_relative(item) if item.startswith("/") else None
-    if path and not run.has_path(item):
-        run.made[path] = run.made[f"{path}/"] = None
+    """Remembers an argument of a program, or a word of one for a shell, that names a path of the tree which does not
+    exist: the program makes it."""
+    for word in [item, *(wrap(each, item.at) for each in item.split())] if " " in item else [item]:
+        path = run.make_relative(word) if word.startswith("/") else None
+        if path and not run.has_path(word):
+            run.made[path] = run.made[f"{path}/"] = None
 
 
 @handles("add_custom_command")

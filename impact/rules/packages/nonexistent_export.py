@@ -81,7 +81,8 @@ def nonexistent_export(view: TargetView, package: Package):
 def _list_of_catkin(view: TargetView, package: Package):
     targets = {name: t for t in package.build.targets for name in (t.output_name, t.name)}
     found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
-    installed = {posixpath.basename(item) for install in package.build.installs for item in install.items}
+    installs = (item for install in package.build.installs for item in install.items)
+    installed = {posixpath.basename(item) for item in (*installs, *package.build.made)}
     for export in package.build.exports:
         if "$" in export.item:
             continue

@@ -37,6 +37,7 @@ from ...model.cmake.build import WrittenPath, is_for_tests
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .absent_paths import is_absent
 from .install_rules import list_places
+from .refused_names import find_policy_version
 
 _CORRECT = "correct or remove the path"
 
@@ -114,6 +115,8 @@ def _find_fault(view: TargetView, package: Package, use: WrittenPath) -> tuple[s
     file = posixpath.join(path, "CMakeLists.txt") if use.by in ("add_subdirectory", "subdirs") else path
     if use.how == "install" or (use.how == "read" and not file.endswith(_READ)):
         return "", ""
+    if file != path and path in package.folders and find_policy_version(package) < (2, 8):
+        return "", ""  # a folder without CMakeLists.txt, which was ignored (CMP0014)
     folder = posixpath.dirname(path)
     if use.how == "source" and folder != package.path and folder not in package.folders:
         return "", ""  # generators make folders of their own

@@ -46,7 +46,8 @@ _ROS1_PRIMITIVE = PRIMITIVES | _FROM_ROS1 | {"float", "double"}
     },
 )
 def unlisted_field_package(view: TargetView, package: Package):
-    generated = [g for g in package.build.generated if g.how in ("rosidl", "catkin")]
+    # Of a package for both generations the files of the other one are not generated.
+    generated = [g for g in package.build.generated if g.how == ("rosidl" if view.target.ros == 2 else "catkin")]
     if not generated:
         return
     listed = {file for g in generated for file in g.files}
