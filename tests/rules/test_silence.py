@@ -1123,7 +1123,8 @@ SILENT = {
             "  add_message_files(DIRECTORY msg-ros1 FILES Load.msg)\n  generate_messages(DEPENDENCIES std_msgs)\n"
             "  catkin_package()\nendif()\nif(DETECTED_ROS2)\n  find_package(ament_cmake REQUIRED)\n"
             "  find_package(std_msgs REQUIRED)\n  find_package(rosidl_default_generators REQUIRED)\n"
-            '  rosidl_generate_interfaces(sled "msg-ros2/Load.msg" DEPENDENCIES std_msgs)\n  ament_package()\nendif()\n',
+            '  rosidl_generate_interfaces(sled "msg-ros2/Load.msg" DEPENDENCIES std_msgs)\n  ament_package()\n'
+            "endif()\n",
             "msg-ros1/Load.msg": "Header header\nfloat64 mass\n",
             "msg-ros2/Load.msg": "std_msgs/Header header\nfloat64 mass\n",
         },
