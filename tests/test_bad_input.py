@@ -541,6 +541,9 @@ ASKED = {
     "baseline of bytes": known(b"\xff\xfe\0"),
     "baseline nested deeply": known("[" * 100_000),
     "pruning without a baseline": Asked(("--prune-baseline",), {}, ("--baseline",)),
+    "pruning of what some rules find": Asked(
+        ("--baseline", "WS/known.json", "--prune-baseline", "--select", "removed-header"), {}, ("--select",)
+    ),
     "new baseline below a file": Asked(("--write-baseline", "WS/a/b"), {"a": ""}, ("a/b", "give another file")),
     "configuration that is not there": Asked(("--config", "WS/gone.toml"), {}, ("gone.toml", "--config")),
     "configuration cut off": setting('[targets.robot]\ndistro = "hum', "cannot be read"),

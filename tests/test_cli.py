@@ -397,6 +397,11 @@ def test_explain_knows_groups(say):
     assert said.startswith("changed-constant: ") and "\nThe name also stands for\n    removed-constant: " in said
 
 
+def test_why_of_no_name(say):
+    said = say("why", "", ROOT / "examples/ros2_ws")
+    assert said.status == 2 and "no name was given" in said.err
+
+
 def test_why(say):
     example = ROOT / "examples/ros2_ws"
     said = say("why", "cv_bridge", example, "--target", "jazzy")

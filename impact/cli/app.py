@@ -144,7 +144,9 @@ def check(
     baseline: Path | None = _make_option("Leave out findings that this file contains."),
     write_baseline: Path | None = _make_option("Write all current findings to this file, and exit with 0."),
     prune_baseline: bool = _make_option(
-        "Remove fixed findings from the file given with --baseline.", "--prune-baseline", default=False
+        "Remove fixed findings from the file given with --baseline; ask for the targets that it was written with.",
+        "--prune-baseline",
+        default=False,
     ),
     fix: bool = _make_option(
         "Apply fixes that are correct on all targets, and report what remains.", "--fix", default=False

@@ -49,6 +49,8 @@ def check(
         validate_choice("--fail-on", fail_on or FAIL_ON[0], FAIL_ON)
         if prune_baseline and baseline is None:
             raise UserError("--prune-baseline: no baseline was given; name it with --baseline")
+        if prune_baseline and (select or ignore):
+            raise UserError("--prune-baseline: what other rules find would be removed; leave out --select and --ignore")
         known = _read_baseline_text(baseline)
         for file in (output, write_baseline, baseline if prune_baseline else None):
             check_output(file, path)

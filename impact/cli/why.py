@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ...edges.console import format_json
+from ...edges.console import UserError, format_json
 from .output import make_command
 
 
@@ -12,6 +12,8 @@ def why(name: str, path: Path | None, target: tuple[str, ...], format: str, foll
     current folder when no path is given, if it is one. The status is 1 when nobody provides it on some target."""
     from ..analysis import why as analysis
 
+    if not name.strip():
+        raise UserError("why: no name was given; name a package, header, module, executable or symbol")
     here = path or Path()
     looked = path is not None or analysis.is_workspace(here)
     found = analysis.find_answers(name, here if looked else None, target, follow_links=follow_links)

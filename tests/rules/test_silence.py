@@ -1112,6 +1112,20 @@ SILENT = {
         ament("find_package(our_fingers REQUIRED)"),
         ("CMakeLists.txt", "our_fingers", "our_fingers_msgs"),
     ),
+    "a package that nobody knows, of whose interfaces the sources include": Silent(
+        "misspelt-cmake-name",
+        ("humble",),
+        {
+            "sledge_msgs/package.xml": manifest(name="sledge_msgs"),
+            "sledge_msgs/CMakeLists.txt": HEAD.replace("sled", "sledge_msgs")
+            + "find_package(ament_cmake REQUIRED)\nament_package()\n",
+            "sled/package.xml": manifest("sledge_msgs"),
+            "sled/CMakeLists.txt": f"{HEAD}find_package(ament_cmake REQUIRED)\nfind_package(sledg_msgs REQUIRED)\n"
+            "add_executable(run run.cpp)\nament_target_dependencies(run sledg_msgs)\nament_package()\n",
+            "sled/run.cpp": "#include <sledg_msgs/msg/load.hpp>\nint main() { return 0; }\n",
+        },
+        ("sled/run.cpp", "sledg_msgs", "sledge_msgs"),
+    ),
     "files that only the other generation gives to its generator": Silent(
         "unlisted-field-package",
         ("jazzy",),

@@ -31,7 +31,7 @@ from ...model.cmake.links import stops_at_names
 from ...model.cmake.names import MODULES
 from ...model.misspelling import SpellingIndex, fold_name, is_slip
 from ..vocabulary import Diagnostic, Doubt, Package, Replace, TargetView, Text, list_place_doubts, rule
-from .unresolved_names import find_intended, list_unknown
+from .unresolved_names import find_intended, is_used_too, list_unknown
 
 _PLAIN = re.compile(r"[A-Za-z_][\w.+-]+")
 # Letters of a library's name: shorter ones are alike by chance.
@@ -84,7 +84,7 @@ def misspelt_cmake_name(view: TargetView, package: Package):
             yield Diagnostic(at, name, package.name, data, "run together", (sure or Doubt.OPTIONAL,), fix=fix)
             continue
         meant = near.find_nearest(name)
-        if meant is not None and _may_install_any(view, meant, name):
+        if meant is not None and (_may_install_any(view, meant, name) or is_used_too(view, package, name)):
             continue
         if meant is not None and meant != name and view.target.was_ever_released(name) is False:
             doubts = (required or Doubt.OPTIONAL, view.is_sure(conditions) or Doubt.CONDITIONAL)

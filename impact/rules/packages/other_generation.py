@@ -43,6 +43,8 @@ def _is_other_generation(view: TargetView, package: Package) -> bool:
     """True for packages that say they build with the other generation's tools; plain CMake and Python build in both."""
     tool = "catkin" if view.target.ros == 2 else "ament"
     build_type = build_type_of(package.manifest, view.target.ros)
+    if build_type == "ament_cmake" and view.target.ros == 1:
+        return True  # which nobody writes but for it
     return build_type.startswith(tool) and any(
         d.name.startswith(tool) and view.is_declaration_active(d.condition)
         for d in package.manifest.dependencies

@@ -109,11 +109,17 @@ def declare_need(view: TargetView, package: Package, need: Need, name: str) -> t
     return (Declare(package.linked.manifest_path, name, _tag(need)),)
 
 
+# How packages of CMake functions are called, with which packages are built (REP 149, buildtool_depend).
+_BUILD_TOOLS = ("ament_cmake", "rosidl_default_generators")
+
+
 def _tag(need: Need) -> str:
     if need.role == "test":
         return "test_depend"
     if need.how == "environment":
         return "build_depend"
+    if need.how == "find_package" and need.subject.startswith(_BUILD_TOOLS):
+        return "buildtool_depend"
     if need.how in ("import", "launch", "plugin", "shell"):
         return "exec_depend"
     return "depend"

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
+from ...facts.python.uses import KINDS
 from ...targets.providers.stdlib import was_ever_in_stdlib
 from ...targets.target import Resolution
 from ..vocabulary import At, Package, Remove, Replace, TargetView
@@ -66,12 +67,24 @@ def find_intended(view: TargetView, package: Package, name: str) -> IntendedName
         return IntendedName("installing", (installing,))
     if any(made.name == name and made.kind in _MADE for made in package.build.targets):
         return IntendedName("target", (name,))
-    if (near := view.known_names.find_nearest(name)) and view.is_available(near):
+    near = view.known_names.find_nearest(name)
+    if near and view.is_available(near) and not is_used_too(view, package, name):
         return IntendedName("near", (near,))
     if longer := _find_parts(view, name):
         return IntendedName("repository", tuple(longer))
     related = _find_namesake(view, package, name) or _find_reworded(view, name)
     return IntendedName("related", (related,)) if related else None
+
+
+def is_used_too(view: TargetView, package: Package, name: str) -> bool:
+    """Whether the sources of a package use interfaces of a name, or launch files of the workspace its programs: such a
+    package is somewhere, and its name not misspelt."""
+    folders = tuple(f"{name}/{kind}/" for kind in sorted(KINDS))
+    if any(use.path.startswith(folders) for use in package.linked.includes):
+        return True
+    if any(use.module.partition(".")[0] == name for use in package.linked.imports):
+        return True
+    return any(use.reference.package == name for one in view.workspace for use in one.linked.references)
 
 
 def find_installing(view: TargetView, package: Package, name: str) -> str:
