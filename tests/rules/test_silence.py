@@ -1112,6 +1112,20 @@ SILENT = {
         ament("find_package(our_fingers REQUIRED)"),
         ("CMakeLists.txt", "our_fingers", "our_fingers_msgs"),
     ),
+    "a target that catkin makes for a test, called after its file": Silent(
+        "nonexistent-target",
+        ("noetic",),
+        catkin(
+            "",
+            "catkin_package()\nadd_library(sled look.cpp)\n"
+            "if(CATKIN_ENABLE_TESTING)\n  find_package(rostest REQUIRED)\n  add_rostest(test/play.xml)\n"
+            "  add_dependencies(run_tests_sled_rostest_test_play.xml sled)\nendif()",
+            "test_depend:rostest",
+            look_cpp="int look() { return 0; }\n",
+            test__play_xml="<launch/>\n",
+        ),
+        ("CMakeLists.txt", "run_tests_sled_rostest_test_play.xml", "tests_of_sled"),
+    ),
     "a package that nobody knows, of whose interfaces the sources include": Silent(
         "misspelt-cmake-name",
         ("humble",),

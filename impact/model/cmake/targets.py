@@ -174,7 +174,7 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
 # What catkin, rosbuild, genmsg and ament add beside what they are asked for. Sources: catkin's cmake/all.cmake and
 # cmake/test/tests.cmake, rosbuild's public.cmake, genmsg's pkg-genmsg.cmake.em, ament_cmake_python.
 MADE_ALONG = re.compile(
-    r"tests?|_?run_tests(?:_\w+)?|clean_test_results(?:_\w+)?|download_extra_data|doxygen|ros(?:build|pack)_\w+|"
+    r"tests?|_?run_tests(?:_[\w.+-]+)?|clean_test_results(?:_[\w.+-]+)?|download_extra_data|doxygen|ros(?:build|pack)_\w+|"
     r"\w+_generate_messages(?:_\w+)?|_\w+_check_deps_\w+|ament_cmake_python_\w+|uninstall"
 )
 
