@@ -64,6 +64,19 @@ def named(sources: dict[str, str]) -> Files:
     return {name.replace("__", "/").replace("_", "."): text for name, text in sources.items()}
 
 
+def add_programs(lift: str, draw: str = "") -> Files:
+    """A package below packages/ with an installed program, a folder of modules beside it, and a tool."""
+    install = "DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n"
+    return {
+        "packages/sled/package.xml": manifest("exec_depend:rospy", tool="catkin", version=2),
+        "packages/sled/CMakeLists.txt": f"{HEAD}find_package(catkin REQUIRED)\ncatkin_package()\n"
+        f"catkin_install_python(PROGRAMS scripts/lift.py {install}install(DIRECTORY scripts/parts {install}",
+        "packages/sled/scripts/lift.py": lift,
+        "packages/sled/scripts/parts/hook.py": "WIDTH = 3\n",
+        "packages/sled/tools/draw.py": draw,
+    }
+
+
 NODE = "find_package(rclcpp REQUIRED)\nadd_executable(run run.cpp)\ntarget_link_libraries(run rclcpp::rclcpp {})\n"
 INSTALLED = "install(TARGETS run DESTINATION lib/${PROJECT_NAME})"
 TF2 = NODE.format("tf2_geometry_msgs::tf2_geometry_msgs") + "find_package(tf2_geometry_msgs REQUIRED)\n" + INSTALLED
@@ -1214,28 +1227,19 @@ SILENT = {
     "a module by its path, where the program adds a folder to the path": Silent(
         "undefined-name",
         ("noetic",),
-        {
-            "packages/sled/package.xml": manifest("exec_depend:rospy", tool="catkin", version=2),
-            "packages/sled/CMakeLists.txt": f"{HEAD}find_package(catkin REQUIRED)\ncatkin_package()\n"
-            "catkin_install_python(PROGRAMS scripts/lift.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n",
-            "packages/sled/scripts/lift.py": 'import sys\n\nsys.path.append("/opt/sled")\n'
+        add_programs(
+            lift='import sys\n\nsys.path.append("/opt/sled")\n'
             "from packages.sled.scripts.parts.hook import WIDTH\n\nprint(WIDTH)\n",
-            "packages/sled/scripts/parts/hook.py": "WIDTH = 3\n",
-        },
+        ),
         ("packages/sled/scripts/lift.py", 'sys.path.append("/opt/sled")', "print(sys.argv)"),
     ),
     "a module by its path, in a tool that is started at the top of the repository": Silent(
         "undefined-name",
         ("noetic",),
-        {
-            "packages/sled/package.xml": manifest("exec_depend:rospy", tool="catkin", version=2),
-            "packages/sled/CMakeLists.txt": f"{HEAD}find_package(catkin REQUIRED)\ncatkin_package()\n"
-            "catkin_install_python(PROGRAMS scripts/lift.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n"
-            "install(DIRECTORY scripts/parts DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n",
-            "packages/sled/scripts/lift.py": "import rospy\nfrom parts.hook import WIDTH\n\nprint(WIDTH)\n",
-            "packages/sled/scripts/parts/hook.py": "WIDTH = 3\n",
-            "packages/sled/tools/draw.py": "from packages.sled.scripts.parts.hook import WIDTH\n\nprint(WIDTH)\n",
-        },
+        add_programs(
+            lift="import rospy\nfrom parts.hook import WIDTH\n\nprint(WIDTH)\n",
+            draw="from packages.sled.scripts.parts.hook import WIDTH\n\nprint(WIDTH)\n",
+        ),
         ("packages/sled/scripts/lift.py", "parts.hook", "packages.sled.scripts.parts.hook"),
     ),
 }

@@ -301,6 +301,11 @@ class PythonReader(ObjectUses, SourceText):
         """The first use of each name that nothing binds, a sure one where there is any; calls of methods that only
         Python 2 has and the file does not define, each with its dot; and what is misused."""
         found: dict[str, AttributeUse] = {}
+
+        def keep(use: AttributeUse) -> None:
+            known = found.get(use.text, use)
+            found[use.text] = min(known, use, key=lambda one: (bool(one.conditions), one.lazy, one.line, one.column))
+
         is_program = bool(self.lines) and self.lines[0].startswith("#!")
         unstarted = range(0) if is_program else self.main_lines
         for (scope, text, conditions), (line, offset, lazy) in self.uses.items():
@@ -315,12 +320,9 @@ class PythonReader(ObjectUses, SourceText):
             name = head or text
             if not head and any(f"def {text[1:]}" in one for one in self.lines):
                 continue
-            use = AttributeUse(name, line, self.find_column(line, offset), conditions, lazy)
-            known = found.get(name, use)
-            found[name] = min(known, use, key=lambda one: (bool(one.conditions), one.lazy, one.line, one.column))
+            keep(AttributeUse(name, line, self.find_column(line, offset), conditions, lazy))
         for use in self.list_misused():
-            known = found.get(use.text, use)
-            found[use.text] = min(known, use, key=lambda one: (bool(one.conditions), one.lazy, one.line, one.column))
+            keep(use)
         return tuple(sorted(found.values(), key=lambda one: (one.line, one.column)))
 
     def bind_imported(self, node: ast.Import | ast.ImportFrom) -> None:

@@ -72,7 +72,7 @@ _COOKIE = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 # What is no Python and not meant to be: places that a generator fills in, commands of a notebook.
 _TEMPLATE = re.compile(r"@\w+@|@[({\[]|\$|\{%|<%|\{\{\s*[\w.]+\s*\}\}|^\s*[%!]\s*\w", re.MULTILINE)
 # What Python 3.10 and later read, or may come to read, otherwise than those before: words that begin a statement, and
-# strings that hold expressions, of which those of several lines are told at any of these.
+# strings that hold expressions. Of a string of several lines the error may be reported at any of them.
 _MAY_BE_NEWER = re.compile(
     r"\s*(?:async|case|class|def|except|finally|from\s+__future__|lazy|match|type|with)\b"
     r"|[\w)\]]\s*\[\s*\*|[\[({]\s*\*|(?:\b|\d)[rR]?[fFtT][rR]?[\"']"

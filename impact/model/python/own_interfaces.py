@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ....edges.memory import cache_in_derived
 from ...facts.interface import Section, make_full_name
 from ...facts.python.uses import ELEMENT, SECTIONS
 
@@ -16,6 +17,11 @@ _OF_ALL = SECTIONS | {
     "Event", "Impl", "SLOT_TYPES", "deserialize", "deserialize_numpy", "get_fields_and_field_types", "serialize",
     "serialize_numpy",
 }  # fmt: skip
+
+
+@cache_in_derived
+def get_own_interfaces(workspace: Workspace) -> OwnInterfaces:
+    return OwnInterfaces(workspace)
 
 
 class OwnInterfaces:

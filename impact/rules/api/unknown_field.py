@@ -32,7 +32,7 @@ import posixpath
 from collections.abc import Iterator
 
 from ...model.package import MemberUse
-from ...model.python.own_interfaces import OwnInterfaces
+from ...model.python.own_interfaces import get_own_interfaces
 from ...targets.surface.fields import load_fields
 from ...targets.symbol import Symbol
 from ..python_files import list_python_doubts
@@ -78,10 +78,9 @@ def unknown_field(view: TargetView):
         for section in interface.definition.sections
         for member in (*section.fields, *section.constants)
     }
-    of_workspace = OwnInterfaces(view.workspace)
     for package in view:
         for use in package.linked.own_fields:
-            if view.is_sure(use.conditions) and (type_ := of_workspace.find_lacking(use)):
+            if view.is_sure(use.conditions) and (type_ := get_own_interfaces(view.workspace).find_lacking(use)):
                 data = {"interface": type_.replace(".", "/")}
                 doubts = list_python_doubts(view, package, use.role, use.at.path)
                 same = (Together(type_),)

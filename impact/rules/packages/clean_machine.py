@@ -76,9 +76,14 @@ def is_chance(view: TargetView, package: Package, need: Need, name: str) -> bool
     # Modules and nodes are not handed on: whoever has them can use them.
     if need.how not in ASKED and need.how != "include":
         return False
-    if need.providers[0].kind == "ros" and not view.is_met(need.providers, view.build_known_environment(package)):
-        return True  # as far as is known, only what the target does not have brings it
+    if comes_from_elsewhere(view, package, need):
+        return True
     return not view.is_met(need.providers, view.roles.list_handed_on(package, need.role, need.how != "include"))
+
+
+def comes_from_elsewhere(view: TargetView, package: Package, need: Need) -> bool:
+    """True where, as far as is known, only what the target does not have brings a package of ROS."""
+    return need.providers[0].kind == "ros" and not view.is_met(need.providers, view.build_known_environment(package))
 
 
 def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, name: str) -> tuple[Doubt, ...]:

@@ -24,7 +24,7 @@ Not reported
 """
 
 from ..vocabulary import Diagnostic, Package, TargetView, Together, make_sort_key, rule
-from .clean_machine import collect_chance_doubts, is_chance
+from .clean_machine import collect_chance_doubts, comes_from_elsewhere, is_chance
 from .undeclared_needs import declare_need, describe_need, find_kind, find_undeclared, list_sources, make_texts
 
 _ELSEWHERE = ", elsewhere"
@@ -46,8 +46,7 @@ def dependency_by_chance(view: TargetView, package: Package):
         first = next((need for need in sorted(strong, key=make_sort_key) if is_chance(view, package, need, name)), None)
         if first is not None:
             sources = list_sources(view, package, first)
-            of_ros = first.providers[0].kind == "ros"
-            elsewhere = of_ros and not view.is_met(first.providers, view.build_known_environment(package))
+            elsewhere = comes_from_elsewhere(view, package, first)
             if elsewhere:
                 sources = tuple(source for source in sources if not view.is_available(source)) or sources
             yield Diagnostic(

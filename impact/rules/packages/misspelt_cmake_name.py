@@ -48,7 +48,6 @@ _SHORTEST = 6
 )
 def misspelt_cmake_name(view: TargetView, package: Package):
     declared = view.collect_declared(package)
-    unknown = {one.name for one in list_unknown(view, package)}
     found = {f.name for f in package.build.found}
     prefixes = {f.prefix for f in package.build.found if f.prefix}
     near = None
@@ -65,7 +64,8 @@ def misspelt_cmake_name(view: TargetView, package: Package):
         if name in prefixes or f"Find{name}" in MODULES:
             continue
         if name in declared:
-            intended = find_intended(view, package, name) if name in unknown else None
+            unknown = any(one.name == name for one in list_unknown(view, package))
+            intended = find_intended(view, package, name) if unknown else None
             if intended is not None and intended.kind == "near":
                 doubts = (view.is_sure(conditions) or Doubt.CONDITIONAL,)
                 data = {"replacement": intended.names[0], "manifest": package.linked.manifest_path}

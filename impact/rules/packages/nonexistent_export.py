@@ -82,7 +82,7 @@ def _list_of_catkin(view: TargetView, package: Package):
     targets = {name: t for t in package.build.targets for name in (t.output_name, t.name)}
     found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
     installs = (item for install in package.build.installs for item in install.items)
-    installed = {posixpath.basename(item) for item in (*installs, *package.build.made)}
+    made = {posixpath.basename(item) for item in (*installs, *package.build.made)}
     for export in package.build.exports:
         if "$" in export.item:
             continue
@@ -94,7 +94,7 @@ def _list_of_catkin(view: TargetView, package: Package):
             if (
                 re.search(r"/|^-|\.(?:so|a)\Z", export.item)
                 or (view.find_cmake(export.item) and export.item != package.name)
-                or not installed.isdisjoint((f"lib{export.item}.so", f"lib{export.item}.a"))  # built elsewhere
+                or not made.isdisjoint((f"lib{export.item}.so", f"lib{export.item}.a"))  # by no target
             ):
                 continue
             # Some export their own name by habit, and nobody asks for it.

@@ -76,7 +76,7 @@ def _list_awaited(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             if link.how != "order" or name in added or name in seen or not re.fullmatch(r"[\w.+-]+", name):
                 continue
             if not view.is_sure((*target.conditions, *link.conditions)):
-                continue  # a branch of the other generation, whose generators this one has not got
+                continue  # a branch of the other generation, whose generators are not there
             if generated is not None:
                 meant = generated[1] in own
             else:  # what is found may have targets of any other name

@@ -27,8 +27,8 @@ def list_refused(view: TargetView, package: Package, *kinds: str) -> Iterator[Re
 
 
 def find_policy_version(package: Package) -> tuple[int, ...]:
-    """The version whose policies CMake follows. From 3.0 on it refuses a slash in any name (CMP0037), and what waits
-    for a target that does not exist (CMP0046)."""
+    """The version whose policies CMake follows. From 2.8 on it refuses a folder without CMakeLists.txt (CMP0014), from
+    3.0 on a slash in any name (CMP0037), and what waits for a target that does not exist (CMP0046)."""
     lower, _, upper = (package.build.minimum or ("", None))[0].partition("...")
     return make_version_key(upper or lower)
 
