@@ -17,6 +17,9 @@ _OF_ALL = SECTIONS | {
     "Event", "Impl", "SLOT_TYPES", "deserialize", "deserialize_numpy", "get_fields_and_field_types", "serialize",
     "serialize_numpy",
 }  # fmt: skip
+# What rclpy hands to callbacks of actions wraps these parts; code annotates such an object as the part itself.
+# Source: rosidl_parser's definition of an action (SendGoal, GetResult, FeedbackMessage).
+_WRAPPERS = {"Goal": ("goal_id", "goal"), "Result": ("status", "result"), "Feedback": ("goal_id", "feedback")}
 
 
 @cache_in_derived
@@ -54,5 +57,7 @@ class OwnInterfaces:
             section = self._sections.get(type_)
         last = use.steps[-1]
         if section is None or several or last == ELEMENT or last.startswith("_") or last in _OF_ALL:
+            return ""
+        if type_.count(".") > 2 and last in _WRAPPERS.get(type_.rpartition(".")[2], ()):
             return ""
         return "" if any(one.name == last for one in (*section.fields, *section.constants)) else type_
