@@ -419,7 +419,8 @@ def _choose_targets(
     day = (data or snapshots.load_snapshot()).date
     revision = getattr(tree, "revision", "")
     # What is checked out says nothing of another revision; the name of that one does, if it is a branch or a tag.
-    branches = [("", revision)] if revision and not revision.startswith(("HEAD", "@")) else _list_branches(tree)
+    current = not revision or revision.startswith(("HEAD", "@")) or getattr(tree, "is_checked_out", False)
+    branches = _list_branches(tree) if current else [("", revision)]
     texts, installing = _iterate_texts(tree, _CI_FILE, _REPOSITORY_FILE), _iterate_texts(tree, _INSTALLING)
     distros, reason = choose_default_distros(ros, texts, branches, known, today=day, installing=installing)
     return tuple(Chosen(DistroTarget(distro, data=data), reason) for distro in distros)

@@ -80,6 +80,12 @@ class GitTree(Walked):
         place = self._repo.path if self._repo.is_bare else self._repo.workdir or self._repo.path
         return {"": place.rstrip("/")}
 
+    @property
+    def is_checked_out(self) -> bool:
+        """Whether it is the commit that HEAD means, asked for by its id."""
+        by_id = self.commit.startswith(self.revision) and not self._repo.head_is_unborn
+        return by_id and str(self._repo.head.target) == self.commit
+
     def open_revision(self, revision: str) -> GitTree:
         """Another revision of the same repository and folder; folders they share are read once."""
         other = object.__new__(GitTree)

@@ -2,6 +2,7 @@
 
 import os
 import re
+import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -20,6 +21,7 @@ from rosimpact.impact.targets.resolve import (
     parse_target,
     read_branch,
 )
+from rosimpact.impact.tree.git import GitTree
 
 DISTROS = list_known_distros()
 NAMES = [known.name for known in DISTROS]
@@ -335,6 +337,22 @@ def test_a_revision_that_is_asked_for_names_a_distro(revision, distro, monkeypat
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     tree = OneFile("README.md", "")
     tree.revision = revision
+    assert [item.target.distro for item in choose_targets((), Config(), 2, tree)] == [distro]
+
+
+@pytest.mark.parametrize(("revision", "distro"), [("{id}", "humble"), ("jazzy", "jazzy"), ("HEAD~1", "humble")])
+def test_a_commit_that_head_means_is_of_its_branch(revision, distro, tmp_path, monkeypatch):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+
+    def git(*arguments):
+        given = ["git", "-C", tmp_path, "-c", "user.name=a", "-c", "user.email=a@example.org", *arguments]
+        return subprocess.run(given, check=True, capture_output=True, text=True).stdout.strip()
+
+    git("init", "-q", "-b", "humble")
+    git("commit", "-q", "--allow-empty", "-m", "one")
+    git("commit", "-q", "--allow-empty", "-m", "two")
+    git("branch", "jazzy")
+    tree = GitTree(tmp_path, revision.format(id=git("rev-parse", "HEAD")))
     assert [item.target.distro for item in choose_targets((), Config(), 2, tree)] == [distro]
 
 
