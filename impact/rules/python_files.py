@@ -46,8 +46,8 @@ def report_refused(
             return
         target = ahead.target
     for package in view if target.python else ():
-        if any(use.kind == "command" and "virtualenv" in use.name for use in package.build.uses):
-            continue  # a build that makes a virtual environment chooses its Python itself
+        if package.build.makes_environment:
+            continue
         found: list[Diagnostic | Upcoming] = []
         for refused in find(package, target):
             use = refused.use

@@ -235,6 +235,19 @@ SILENT = {
         ),
         ("rosimpact.toml", '"common_interfaces", ', ""),
     ),
+    "modules that the package's own virtual environment may hold": Silent(
+        "undeclared-package",
+        ("noetic",),
+        catkin(
+            "catkin_virtualenv rospy",
+            "catkin_generate_virtualenv(PYTHON_INTERPRETER python3)\n"
+            "catkin_package()\ncatkin_install_python(PROGRAMS weigh.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})",
+            "build_depend:catkin_virtualenv",
+            "rospy",
+            weigh_py="#!/usr/bin/env python3\nimport requests\nimport rospy\n",
+        ),
+        ("CMakeLists.txt", "catkin_generate_virtualenv(PYTHON_INTERPRETER python3)\n", ""),
+    ),
     "boost that every machine has by the configuration": Silent(
         "undeclared-package",
         ("humble",),

@@ -318,6 +318,11 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return any(target.kind in ("external", "fetched") for target in self.targets)
 
     @property
+    def makes_environment(self) -> bool:
+        """Whether it makes a virtual environment, for a Python and with modules that it chooses itself."""
+        return any(use.kind == "command" and "virtualenv" in use.name for use in self.uses)
+
+    @property
     def may_add_targets(self) -> bool:
         """Whether what is not read may add targets and set variables."""
         return bool(self.unresolved) or self.builds_others or any(target.name.endswith("()") for target in self.targets)

@@ -51,6 +51,7 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     """The needs of a package that no dependency of its manifest answers."""
     closure, declared = view.build_environment(package), view.collect_declared(package)
     found = Undeclared({}, {})
+    environment = package.build.makes_environment
     elsewhere = {d.name for d in package.manifest.dependencies if not view.is_available(d.name)}  # for other distros
     for need in view.list_needs(package):
         if view.is_met(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
@@ -58,7 +59,10 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
         name = _choose_name(view, need)
         if name is None or name == package.name or name in elsewhere:
             continue
-        carried = need.providers[0].kind == "system" and need.how != "import"
+        system = need.providers[0].kind == "system"
+        if system and environment and need.how == "import":
+            continue
+        carried = system and need.how != "import"
         if not (carried and view.unknown_contents.is_likely(package, need.subject)):
             kind = found.borrowed if view.is_met(need.providers, closure) else found.missing
             kind.setdefault(name, []).append(need)
