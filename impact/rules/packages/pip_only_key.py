@@ -7,7 +7,8 @@ Why it breaks
     bloom refuses to release the package, since a Debian package can depend on packages of the platform alone.
 
 Severity
-    warning, since building from source works.
+    warning, since building from source works; of several such keys of a package the first, and the rest are notes, as
+    one is enough to keep it from being released.
 
 Example
     <exec_depend>python3-quaternion-pip</exec_depend>
@@ -19,8 +20,10 @@ Not reported
     Packages that were never released.
 """
 
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .unresolved_names import list_unresolved
+
+_ONCE = (Together("pip"),)
 
 
 @rule(
@@ -35,4 +38,4 @@ def pip_only_key(view: TargetView, package: Package):
     if view.target.was_ever_released(package.name):
         for name, at, resolution in list_unresolved(view, package):
             if resolution is not None and resolution.manager == "pip":
-                yield Diagnostic(at, name, package.name)
+                yield Diagnostic(at, name, package.name, together=_ONCE)
