@@ -9,7 +9,8 @@ Why it breaks
 
 Severity
     error when a component that is surely required is gone on the target; warning under a condition that is not known,
-    when only the newest distro lacks it, and for what dependants look for.
+    when only the newest distro lacks it (the first place in the workspace; notes for the rest), and for what dependants
+    look for.
 
 Example
     find_package(Boost REQUIRED COMPONENTS signals)
@@ -18,9 +19,11 @@ Use instead
     find_package(Boost REQUIRED)                # and boost/signals2, which is header-only
 """
 
+from collections.abc import Iterator
+
 from ...model.cmake.build import FoundPackage
 from ...targets.symbol import Symbol
-from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, rate_upcoming, rule
 
 
 @rule(
@@ -30,14 +33,14 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
     },
 )
 def library_component(view: TargetView, package: Package):
-    for found in package.build.found:
-        if found.how == "find_package":
-            yield from _list_gone(view, package, found)
-    for found in package.build.handed_on:
-        yield from _list_gone(view, package, found, (Doubt.DISTURBS,))
+    asked = [(found, ()) for found in package.build.found if found.how == "find_package"]
+    asked += [(found, (Doubt.DISTURBS,)) for found in package.build.handed_on]
+    yield from rate_upcoming(one for found, doubts in asked for one in _list_gone(view, package, found, doubts))
 
 
-def _list_gone(view: TargetView, package: Package, found: FoundPackage, besides: tuple[Doubt, ...] = ()):
+def _list_gone(
+    view: TargetView, package: Package, found: FoundPackage, besides: tuple[Doubt, ...]
+) -> Iterator[Diagnostic | Upcoming]:
     """Components that the target's version of the library, or that of the newest distro, does not have."""
     certain = view.is_sure(found.conditions)
     for name, at in found.components:
@@ -45,8 +48,9 @@ def _list_gone(view: TargetView, package: Package, found: FoundPackage, besides:
         data = {"library": found.name, "version": known.version, "advice": known.detail}
         if known.state == "upcoming" and known.horizon is not None:
             data["horizon"] = known.horizon.name
-            doubt = Doubt.UPCOMING if found.required and name != "system" and certain else Doubt.FAR
-            yield Diagnostic(at, name, package.name, data, "upcoming", (doubt, *besides))
+            doubts = () if found.required and name != "system" and certain else (Doubt.FAR,)
+            diagnostic = Diagnostic(at, name, package.name, data, "upcoming", (*doubts, *besides))
+            yield Upcoming(diagnostic, found.name, known.horizon, diagnostic.place)
         if known.is_missing:
             if found.quiet and not found.required:
                 doubts = (Doubt.DISPENSABLE,)
