@@ -54,3 +54,11 @@ def test_a_field_that_goes_with_the_next_sync(target, expected, tmp_path):
     )
     found = check(tmp_path, Options(targets=(target,), select=("unknown-field",), cache=tmp_path / "cache", jobs=1))
     assert {f.severity for f in found.findings} == expected
+
+
+@pytest.mark.parametrize(("target", "expected"), [("melodic", ["note", "warning"]), ("noetic", ["error", "error"])])
+def test_a_component_that_goes_with_the_newest_distro_is_one_warning_for_the_workspace(target, expected, tmp_path):
+    alarm = rule_cases.read_changed_files("packages/library_component")
+    again = {path.replace("alarm/", "bell/", 1): text.replace("alarm", "bell") for path, text in alarm.items()}
+    report = rule_cases.check_files(alarm | again, Options(targets=(target,), cache=tmp_path / "cache"))
+    assert sorted(f.severity for f in report.findings if f.rule == "library-component") == expected
