@@ -18,7 +18,7 @@ Use instead
 
 Not reported
     Headers of the same path that something else has, or that may be made; includes under conditions that may not hold;
-    packages of which it is not known what their CMake code does; workspaces with folders that were not read.
+    packages of which it is not known what their CMake code does, and those that folders which were not read may belong to.
 """
 
 import re
@@ -38,7 +38,7 @@ _OF_PACKAGE = re.compile(r"\$\{\w+_INCLUDE_?(?:DIRS?|PATH)\}")
 )
 def unsearched_header(view: TargetView, package: Package):
     build, seen = package.build, set()
-    if not package.linked.unsearched or build.unresolved or not build.project or view.workspace.unread:
+    if not package.linked.unsearched or build.unresolved or not build.project:
         return
     searched = [path for path in build.list_paths() if path.how == "include"]
     known = not any("$" in one.path and not _OF_PACKAGE.fullmatch(one.path) for one in searched)
@@ -48,11 +48,22 @@ def unsearched_header(view: TargetView, package: Package):
             continue
         if view.workspace.provides_header(path) != [package.name] or _has_another(view, package, path):
             continue
+        if view.workspace.unread and _may_be_unread(view, package, path):
+            continue
         seen.add(place)
         inside = f"/{header}".rpartition("/include/")
         data = {"header": package.strip_path(header), "replacement": inside[2] if inside[1] else ""}
         doubts = (*list_place_doubts(view, include.role), known or Doubt.INCOMPLETE)
         yield Diagnostic(include.at, path, package.name, data, doubts=doubts)
+
+
+def _may_be_unread(view: TargetView, package: Package, path: str) -> bool:
+    """Whether a header may lie in a folder that was not read: of the package, or of something that it is built with."""
+    workspace = view.workspace
+    if workspace.is_unread(package.path) or not package.path or view.unknown_contents.may_hold(package, path):
+        return True
+    searched = (one.path for one in package.build.list_paths() if one.how == "include")
+    return any(map(workspace.is_unread, searched)) or not workspace.unread_names.isdisjoint(package.declared)
 
 
 def _has_another(view: TargetView, package: Package, path: str) -> bool:
