@@ -56,7 +56,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). parents:
     derived classes and aliases of types, with the words of their bases or of what they stand for. initializes: a
     constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
-    comments, literals, includes and blanks.
+    comments, literals, includes and blanks. values: names of several words that stand where values do, and
+    seem to be declared nowhere, nor given to a macro.
     """
 
     includes: tuple[Include, ...]
@@ -79,6 +80,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     parents: tuple[tuple[str, str], ...] = ()
     initializes: bool = False
     code: str = ""
+    values: tuple[str, ...] = ()
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -549,6 +551,7 @@ def extract(data: bytes) -> CppFile:
         made=_list_made_classes(visible, tokens_text),
         parents=parents,
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
+        values=_list_values(visible),
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
     )
 
@@ -643,6 +646,21 @@ _MADE = [
     re.compile(rf"{word}(?<!\w{word}){between}(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{{,)]")
     for word, between in (("new", r"\s+"), ("make_shared", r"\s*<\s*"), ("make_unique", r"\s*<\s*"))
 ]
+
+
+_VALUE = re.compile(r"(?:[=+/!?|-]|return)\s*([a-z][a-z0-9]*_[a-z0-9_]*)(?=\s*[^\s\w(:{])")
+# What stands behind a type, or another word.
+_DECLARED = re.compile(r"\s[&*]*(?<=[\w>&*\]]\s)(?<!return\s)([a-z][a-z0-9]*_[a-z0-9_]*)")
+_TO_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{2,}\s*\(([^;{}]*)")
+
+
+def _list_values(visible: str) -> tuple[str, ...]:
+    """The names of several words that are values and not declared, as far as that shows."""
+    found = {name for name in _VALUE.findall(visible) if len(name) > 5 and not name.endswith(("_t", "_cast"))}
+    found.difference_update(_DECLARED.findall(visible))
+    if found:
+        found.difference_update(*map(_IDENTIFIER.findall, _TO_MACRO.findall(visible)))
+    return tuple(sorted(found))
 
 
 def _list_namespaces(visible: str) -> tuple[str, ...]:

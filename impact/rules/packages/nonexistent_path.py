@@ -25,8 +25,8 @@ Use instead
     add_executable(sled_node src/sled_node.cpp)
 
 Not reported
-    Files that the build makes, and sources in folders that something in it may make; paths that cannot be resolved; folders that
-    were not read, such as submodules; include directories in other packages, which need not exist.
+    Files that the build makes, and sources in folders that something in it may make; paths that cannot be resolved;
+    folders that were not read, such as submodules; include directories in other packages, which need not exist.
 """
 
 import posixpath

@@ -64,7 +64,8 @@ def uninstalled_script(view: TargetView, package: Package):
         node = path in nodes
         if _OF_OTHERS[view.target.ros] in imported.get(path, ()):
             continue
-        if (name in scripts or beside or node) and name not in others and not is_installed(installs, path):
+        rules = installs if path in known else package.build.installs
+        if (name in scripts or beside or node) and name not in others and not is_installed(rules, path):
             kind = "script" if name in scripts else "beside" if beside else "node"
             of_catkin = package.build_type == "catkin" and path not in package.linked.shells
             data = {"command": _OF_CATKIN if of_catkin else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"}

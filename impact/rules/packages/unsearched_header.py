@@ -8,7 +8,8 @@ Why it breaks
     The compiler stops: "No such file or directory".
 
 Severity
-    error; warning in tests, and where not all folders that targets search are known.
+    error; warning in tests, and where it is not known which folders targets search, or what a command that is called
+    does.
 
 Example
     #include "lift.h"                           // which is include/winch/lift.h, and include_directories(include)
@@ -18,12 +19,13 @@ Use instead
 
 Not reported
     Headers of the same path that something else has, or that may be made; includes under conditions that may not hold;
-    packages of which it is not known what their CMake code does, and those that folders which were not read may belong to.
+    packages of which it is not known what their CMake code does, and those that may have folders which were not read.
 """
 
 import re
 
-from ...model.absent_headers import may_be_made
+from ...model.absent_headers import is_made
+from ...model.cmake.interpreter import calls_unmodelled
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 
 _OF_PACKAGE = re.compile(r"\$\{\w+_INCLUDE_?(?:DIRS?|PATH)\}")
@@ -40,11 +42,14 @@ def unsearched_header(view: TargetView, package: Package):
     build, seen = package.build, set()
     if not package.linked.unsearched or build.unresolved or not build.project:
         return
+    called = calls_unmodelled(build)
+    if called and view.unknown_contents.list_unknown_found(package):
+        return  # a command of which nothing is known may make headers, and search folders
     searched = [path for path in build.list_paths() if path.how == "include"]
-    known = not any("$" in one.path and not _OF_PACKAGE.fullmatch(one.path) for one in searched)
+    known = not called and not any("$" in one.path and not _OF_PACKAGE.fullmatch(one.path) for one in searched)
     for include, header in package.linked.unsearched:
         path, place = include.path, (include.at.path, include.path)
-        if place in seen or not view.is_sure(include.conditions) or may_be_made(package, path.rpartition("/")[2]):
+        if place in seen or not view.is_sure(include.conditions) or is_made(package, path.rpartition("/")[2]):
             continue
         if view.workspace.provides_header(path) != [package.name] or _has_another(view, package, path):
             continue
