@@ -499,6 +499,8 @@ def extract(data: bytes) -> CppFile:
     """
     scanned = scan(data)
     visible, locate, tokens_text = scanned.visible, scanned.locate, scanned.tokens_text
+    if visible.count("(") != visible.count(")") and (at := _find_unmatched(scanned)) is not None:
+        scanned.problems.append(Problem(locate(at)[0], UNMATCHED))
     words: set[bytes] = set()
     with_colons: set[bytes] = set()
     qualified: list[NameUseInFile] = []
@@ -554,6 +556,33 @@ def extract(data: bytes) -> CppFile:
         values=_list_values(visible),
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
     )
+
+
+UNMATCHED = "a parenthesis has no counterpart"
+_BRACKET = re.compile(r"[(){}]")
+
+
+def _find_unmatched(scanned: Scan) -> int | None:
+    """The first parenthesis without a counterpart; None where it may depend on conditions which one has it."""
+    parts = [(start, scanned.visible[start:end], conditions) for start, end, conditions in scanned.segments]
+    written = (match.group() for match in _DIRECTIVE.finditer(scanned.visible))
+    if any(text.count("(") != text.count(")") for text in written):
+        return None  # a macro may have what the code lacks
+    if any(conditions and part.count("(") != part.count(")") for _, part, conditions in parts):
+        return None
+    opened: list[tuple[str, int]] = []
+    for start, part, conditions in parts:
+        for match in () if conditions else _BRACKET.finditer(part):
+            bracket, at = match.group(), start + match.start()
+            if bracket in "({":
+                opened.append((bracket, at))
+            elif bracket == ")" and (not opened or opened[-1][0] == "{"):
+                return at
+            elif bracket == "}" and opened and opened[-1][0] == "(":
+                return opened[-1][1]
+            elif opened:
+                opened.pop()
+    return next((at for bracket, at in opened if bracket == "("), None)
 
 
 def _list_using_names(visible: str) -> tuple[tuple[str, ...], tuple[str, ...]]:

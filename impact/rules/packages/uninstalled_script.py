@@ -54,18 +54,15 @@ def uninstalled_script(view: TargetView, package: Package):
     imported = group_pairs((use.at.path, use.module.partition(".")[0]) for use in package.linked.imports)
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
     nodes = _list_nodes(package, installs, view.target.ros, imported, folders)
-    known = (*package.linked.scripts, *package.linked.shells)
     kinds = Counter((posixpath.dirname(item), posixpath.splitext(item)[1]) for item in programs)
-    named = [path for path in package.linked.files if "." in (name := posixpath.basename(path)) and name in scripts]
-    for path in dict.fromkeys((*known, *named, *_list_shells(package, kinds))):
+    for path in (*package.linked.scripts, *package.linked.shells, *_list_shells(package, kinds)):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         alike = "." not in name or kinds[folder, posixpath.splitext(name)[1]] > 1
         beside = folder in folders and folder != package.path and alike and find_folder_role(name) is None
         node = path in nodes
         if _OF_OTHERS[view.target.ros] in imported.get(path, ()):
             continue
-        rules = installs if path in known else package.build.installs
-        if (name in scripts or beside or node) and name not in others and not is_installed(rules, path):
+        if (name in scripts or beside or node) and name not in others and not is_installed(installs, path):
             kind = "script" if name in scripts else "beside" if beside else "node"
             of_catkin = package.build_type == "catkin" and path not in package.linked.shells
             data = {"command": _OF_CATKIN if of_catkin else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"}
