@@ -153,6 +153,9 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         installs = owner.build.installs if owner.build.files else list_copied(owner)
         if installs is None or owner.build.unresolved or not is_absent(view, owner, path):
             continue
+        last = f"/{posixpath.basename(name)}"
+        if not owner.build.files and not any(file.endswith(last) for file in owner.linked.files):
+            continue  # it may be made, as calibrations are
         places = list_places(owner, installs)
         if places is not None and f"share/{owner.name}/{name}" not in places:  # as which another file is installed
             together = (Together(f"no {name} in {owner.name}", everywhere=True),)
