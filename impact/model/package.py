@@ -20,7 +20,7 @@ from ...edges.reach import walk
 from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
-from ..facts.cpp.lexical import CppFile, Include
+from ..facts.cpp.lexical import CppFile, Include, NameUseInFile
 from ..facts.cpp.schema import CodeSpot
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
@@ -910,6 +910,11 @@ class PackageJoin:
             if not targets or is_header(path) or self._includes_template(path):
                 continue
             others = [self.list_words(at) for at in (*self.list_reached(path)[1:], *self.list_offered(path))]
+            for one in self._list_lacking(path):
+                if not any(one.text.rpartition("::")[2] in words for words in others):
+                    around = conditions + self.macros.resolve_conditions(one.conditions, targets)
+                    at = At(path, one.line, one.column)
+                    yield NameUse(one.text, at, role, False, "cpp", around, targets), (), self.list_outward(path)
             spoken = () if self.cpp[path].type_names else self.list_words(path)
             ending = {word for word in spoken if word.endswith("_") and len(word) > 4}
             words = {word for word in (*ending, *self.cpp[path].values) if others and word[0].islower()}
@@ -935,6 +940,18 @@ class PackageJoin:
                     at = At(path, first.at.line, first.at.column)
                     use = NameUse(word, at, role, False, "cpp", around, targets, first.place.owner)
                     yield use, bases, self.list_outward(path)
+
+    def _list_lacking(self, path: str) -> Iterator[NameUseInFile]:
+        """Names that are written as those of functions are, of a namespace that is called like the package and that a
+        header opens, where a source has them in no other way."""
+        facts = self.cpp[path]
+        named = [one for one in facts.qualified if one.text.startswith(f"{self.name}::")]
+        headers = (*self.list_reached(path)[1:], *self.list_offered(path)) if named else ()
+        spaces = {space for at in headers for space in self.facts(at).facts.namespaces}
+        for one in named if spaces else ():
+            space, _, last = one.text.rpartition("::")
+            if space in spaces and last[0].islower() and len(last) > 5 and last not in facts.words.split():
+                yield one
 
     def _has_alike(self, path: str, owner: str, word: str) -> bool:
         """Whether a class has a member that a word may stand for: one letter off, or shortened."""

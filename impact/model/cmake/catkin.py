@@ -69,7 +69,8 @@ def refuse_late(run: Interpreter, call: CommandCall) -> None:
 def refuse_unguarded(run: Interpreter, call: CommandCall) -> None:
     """Refuses a command for tests that stops where tests are switched off. Source:
     _generate_function_if_testing_is_disabled() of catkin."""
-    if not call.name.startswith(("rosbuild", "roslaunch")) and not any("TESTING" in held.text for held in run.conditions):
+    tested = any("TESTING" in held.text for held in run.conditions)
+    if not tested and not call.name.startswith(("rosbuild", "roslaunch")):
         run.refuse("unguarded", wrap(call.name, call.at, run.conditions))
 
 
