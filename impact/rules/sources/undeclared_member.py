@@ -2,8 +2,8 @@
 
 What it does
     Reports names that end with an underscore, as names of members do, in methods that a source defines outside of their
-    class, values whose names are several words, and functions of namespaces of the package, where neither the source, nor any file of the workspace that it
-    includes, nor a package that it depends on declares something of this name.
+    class, values whose names are several words, and functions of the package's namespace, where neither the source, nor
+    any file of the workspace that it includes, nor a package that it depends on declares something of this name.
 
 Why it breaks
     The compiler stops: "was not declared in this scope".
