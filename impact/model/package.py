@@ -20,7 +20,7 @@ from ...edges.reach import walk
 from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
-from ..facts.cpp.lexical import CppFile, Include, NameUseInFile
+from ..facts.cpp.lexical import KEYWORDS, CppFile, Include, NameUseInFile
 from ..facts.cpp.schema import CodeSpot
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
@@ -893,9 +893,11 @@ class PackageJoin:
         members = (one for own in known.declarations.classes for same in own.members.values() for one in same)
         has_member = any(one.kind == "variable" and alone.search(one.type) for one in members)
         for use in known.list_uses(known.list_mentions((word,))):
-            own = use.form == "bare" or use.name.partition("::")[0] in self._own_spaces
-            used = anyhow and (use.made or not use.last or has_member) and use.local is None
-            if own and (used or (defined and not use.last and not use.place.function)):
+            bare = use.form == "bare"
+            used = use.made if not bare else use.made or not use.last or has_member
+            own = bare or use.name.partition("::")[0] in self._own_spaces
+            used = own and anyhow and used and use.local is None
+            if used or (bare and defined and not use.last and not use.place.function):
                 yield use.at
 
     @cached_property
@@ -950,7 +952,8 @@ class PackageJoin:
         spaces = {space for at in headers for space in self.facts(at).facts.namespaces}
         for one in named if spaces else ():
             space, _, last = one.text.rpartition("::")
-            if space in spaces and last[0].islower() and len(last) > 5 and last not in facts.words.split():
+            written = last[0].islower() and len(last) > 5 and last not in KEYWORDS
+            if space in spaces and written and last not in facts.words.split():
                 yield one
 
     def _has_alike(self, path: str, owner: str, word: str) -> bool:

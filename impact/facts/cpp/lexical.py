@@ -500,7 +500,8 @@ def extract(data: bytes) -> CppFile:
     scanned = scan(data)
     visible, locate, tokens_text = scanned.visible, scanned.locate, scanned.tokens_text
     if visible.count("(") != visible.count(")") and (at := _find_unmatched(scanned)) is not None:
-        scanned.problems.append(Problem(locate(at)[0], UNMATCHED))
+        calls = [name for name in _CALLED.findall(visible, max(0, at - 1000), at + 1) if name not in KEYWORDS]
+        scanned.problems.append(Problem(locate(at)[0], UNMATCHED + (calls[-1] if calls else "this") + "()"))
     words: set[bytes] = set()
     with_colons: set[bytes] = set()
     qualified: list[NameUseInFile] = []
@@ -558,7 +559,8 @@ def extract(data: bytes) -> CppFile:
     )
 
 
-UNMATCHED = "a parenthesis has no counterpart"
+UNMATCHED = "a parenthesis has no counterpart in a call of "
+_CALLED = re.compile(r"([^\W\d]\w*)\s*\(")
 _BRACKET = re.compile(r"[(){}]")
 
 

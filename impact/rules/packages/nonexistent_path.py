@@ -147,6 +147,8 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         if r.kind != "file" or use.role != "run" or r.conditional or owner is None or "launch" not in use.at.path:
             continue
         name = posixpath.normpath(r.name)
+        if use.at.path.endswith(".sh"):
+            continue  # the command roslaunch looks for a name in all folders
         if not _OPENED.search(name) or "$" in name or name.startswith(".."):
             continue
         path = posixpath.join(owner.path, name)

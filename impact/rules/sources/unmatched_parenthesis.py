@@ -23,14 +23,14 @@ from ...facts.cpp.lexical import UNMATCHED
 from ..vocabulary import At, Diagnostic, Package, TargetView, Text, list_place_doubts, rule
 
 
-@rule(texts=Text("a parenthesis in `{subject}` has no counterpart, and the compiler stops", "close or remove it"))
+@rule(texts=Text("a parenthesis behind `{subject}` has no counterpart, and the compiler stops", "close or remove it"))
 def unmatched_parenthesis(view: TargetView, package: Package):
-    wrong = [(path, line) for path, line, message in package.linked.problems if message == UNMATCHED]
+    wrong = [one for one in package.linked.problems if one[2].startswith(UNMATCHED)]
     compiled = dict(package.linked.source_targets) if wrong else {}
     targets = {target.name: target for target in package.build.targets}
-    for path, line in wrong:
+    for path, line, message in wrong:
         made = [targets[name] for name in compiled.get(path, ()) if name in targets]
         if made and any(view.is_sure(target.conditions) for target in made):
             role = "test" if all(target.kind == "test" for target in made) else "build"
-            at, name = At(path, line), path.rpartition("/")[2]
-            yield Diagnostic(at, name, package.name, doubts=list_place_doubts(view, role))
+            name = message.removeprefix(UNMATCHED).removesuffix("()")
+            yield Diagnostic(At(path, line), name, package.name, doubts=list_place_doubts(view, role))
