@@ -85,8 +85,13 @@ def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:
 
 def may_be_made(package: Package, name: str) -> bool:
     """Whether configuring or building may write a file of this name."""
+    return calls_unmodelled(package.build) or is_made(package, name)
+
+
+def is_made(package: Package, name: str) -> bool:
+    """Whether what is known of configuring and building may write a file of this name."""
     build = package.build
-    if calls_unmodelled(build) or any(made.rstrip("/").endswith(name) or made.endswith("/") for made in build.made):
+    if any(made.rstrip("/").endswith(name) or made.endswith("/") for made in build.made):
         return True
     return any(target.kind in ("custom", "external", "fetched", "unknown") for target in build.targets)
 

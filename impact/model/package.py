@@ -20,7 +20,7 @@ from ...edges.reach import walk
 from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
-from ..facts.cpp.lexical import CppFile, Include
+from ..facts.cpp.lexical import KEYWORDS, CppFile, Include, NameUseInFile
 from ..facts.cpp.schema import CodeSpot
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
@@ -836,78 +836,125 @@ class PackageJoin:
                 yield IncludeUse(include.path, at, role, public, around, targets, angled=include.angled), to
 
     def list_unincluded(self, roles) -> Iterator[tuple[NameUse, str, tuple[str, ...]]]:
-        """As LinkedPackage.unincluded. A header counts that is called like its class."""
+        """As LinkedPackage.unincluded. A header counts that is called like its class, or the only one of a class whose
+        members the source defines."""
         headers: dict[str, list[str]] = {}
         for path in filter(is_header, self.cpp):
-            stem = normalise_stem(path)
             for word in self.cpp[path].type_names:
-                if len(word) > 5 and stem == word.lower():
-                    headers.setdefault(word, []).append(path)
+                headers.setdefault(word, []).append(path)
+        alike = {
+            word: [path for path in paths if normalise_stem(path) == word.lower()]
+            for word, paths in headers.items()
+            if len(word) > 5
+        }
         inner = {to for resolved in self.resolved.values() for to, _ in resolved}
         for path, (role, _, targets, conditions) in roles.items() if headers else ():
             if not targets or is_header(path) or path in inner or self._includes_template(path):
                 continue
+            scopes = {part for use in self.cpp[path].qualified for part in use.text.split("::")[:-1]}
             for word in sorted(headers.keys() & self.list_words(path)):
-                if headers[word][0] in self.list_reached(path) or not self._lacks_class(path, word):
+                found = alike.get(word) or (headers[word] if word in scopes and len(headers[word]) == 1 else ())
+                if not found or not {*headers[word]}.isdisjoint(self.list_reached(path)):
                     continue
-                spot = next(self._find_class_uses(path, word), None)
+                anyhow = bool(alike.get(word)) and self._lacks_class(path, word)
+                if not anyhow and (word not in scopes or not self._lacks_class(path, word, True)):
+                    continue
+                spot = next(self._find_class_uses(path, word, anyhow), None)
                 if spot is not None:
                     around = conditions + self.macros.resolve_conditions(spot.conditions or (), targets)
                     use = NameUse(word, At(path, spot.line, spot.column), role, False, "cpp", around, targets)
-                    yield use, headers[word][0], self.list_outward(path)
+                    yield use, found[0], self.list_outward(path)
 
     def _includes_template(self, path: str) -> bool:
         """Whether a source includes a header that CMake makes of a template, which may declare anything."""
         return any(at.endswith(".in") for at in self.list_reached(path))
 
-    def _lacks_class(self, path: str, word: str) -> bool:
-        """Whether nothing of the workspace that a source includes says what a class is, nor may it be another one."""
-        reached = map(self.load, (*self.list_reached(path), *self.list_offered(path)))
-        if any(file.declares_type(word) or word in (*file.facts.defined, *file.facts.namespaces) for file in reached):
-            return False
+    def _lacks_class(self, path: str, word: str, announced: bool = False) -> bool:
+        """Whether nothing of the workspace that a source includes says what a class is, nor may it be another one.
+        announced: it may say that there is such a class."""
+        for file in map(self.load, (*self.list_reached(path), *self.list_offered(path))):
+            told = word in file.type_names if announced else file.declares_type(word)
+            if told or word in (*file.facts.defined, *file.facts.namespaces):
+                return False
         known = self.load(path)
         own = {space for at in self.cpp.values() for space in at.namespaces}
         return word not in known.using and own.union(("std",)).issuperset(
             space.partition("::")[0] for space in known.facts.opened
         )
 
-    def _find_class_uses(self, path: str, word: str) -> Iterator[CodeSpot]:
-        """Where a source defines members of a class, has some of its type, makes objects of it, or uses it as a scope;
-        to a macro, a name can be anything."""
+    def _find_class_uses(self, path: str, word: str, anyhow: bool) -> Iterator[CodeSpot]:
+        """Where a source defines members of a class; anyhow: or has some of its type, makes objects of it, or uses it
+        as a scope; to a macro, a name can be anything."""
         known = self.load(path)
-        for found in known.declarations.names:
-            if found.at is not None and found.kind == "function" and found.scope.rpartition("::")[2] == word:
-                yield found.at
+        defined = any(found.scope.rpartition("::")[2] == word for found in known.declarations.names)
+        if not defined and not anyhow:
+            return
         alone = re.compile(rf"(?<![\w:]){word}(?!\w)")
         members = (one for own in known.declarations.classes for same in own.members.values() for one in same)
         has_member = any(one.kind == "variable" and alone.search(one.type) for one in members)
         for use in known.list_uses(known.list_mentions((word,))):
-            if use.form == "bare" and (use.made or not use.last or has_member) and use.local is None:
+            bare = use.form == "bare"
+            used = use.made if not bare else use.made or not use.last or has_member
+            own = bare or use.name.partition("::")[0] in self._own_spaces
+            used = own and anyhow and used and use.local is None
+            if used or (bare and defined and not use.last and not use.place.function):
                 yield use.at
 
+    @cached_property
+    def _own_spaces(self) -> frozenset[str]:
+        """First parts of the namespaces of its files."""
+        return frozenset(space.partition("::")[0] for at in self.cpp.values() for space in at.namespaces)
+
     def list_undeclared(self, roles) -> Iterator[tuple[NameUse, tuple[str, ...], tuple[str, ...]]]:
-        """As LinkedPackage.undeclared: words that end with an underscore, in sources that define no class."""
+        """As LinkedPackage.undeclared: words that end with an underscore, as members do, in sources that define no
+        class, and values of which nothing shows that they are declared."""
         for path, (role, _, targets, conditions) in roles.items():
-            if not targets or is_header(path) or self.cpp[path].type_names or self._includes_template(path):
+            if not targets or is_header(path) or self._includes_template(path):
                 continue
             others = [self.list_words(at) for at in (*self.list_reached(path)[1:], *self.list_offered(path))]
-            ending = (word for word in self.list_words(path) if word.endswith("_") and len(word) > 4)
-            words = {word for word in ending if others and word[0].islower() and not any(word in one for one in others)}
+            for one in self._list_lacking(path):
+                if not any(one.text.rpartition("::")[2] in words for words in others):
+                    around = conditions + self.macros.resolve_conditions(one.conditions, targets)
+                    at = At(path, one.line, one.column)
+                    yield NameUse(one.text, at, role, False, "cpp", around, targets), (), self.list_outward(path)
+            spoken = () if self.cpp[path].type_names else self.list_words(path)
+            ending = {word for word in spoken if word.endswith("_") and len(word) > 4}
+            words = {word for word in (*ending, *self.cpp[path].values) if others and word[0].islower()}
+            words = {word for word in words if not any(word in one for one in others)}
             if not words:
                 continue
             known, uses = self.load(path), {}
-            for use in known.list_uses(known.list_mentions(sorted(words - known.defines - {*self.cpp[path].defined}))):
+            mentions = known.list_mentions(sorted(words - known.defines - {*self.cpp[path].defined}))
+            for use in known.list_uses(mentions):
                 uses.setdefault(use.word, []).append(use)
             for word, same in uses.items():
                 first, plain = same[0], all(one.form == "bare" and one.last and one.call is None for one in same)
-                if not plain or any(one.local is not None or not one.place.owner for one in same):
+                if not plain or any(one.local is not None for one in same):
                     continue
-                bases = self._list_outer_bases(path, first.place.owner)
-                if bases is not None and (not bases or self._has_alike(path, first.place.owner, word)):
+                if word in ending and not all(one.place.owner for one in same):
+                    continue
+                if word not in ending and not all(one.place.function for one in same):
+                    continue
+                bases = self._list_outer_bases(path, first.place.owner) if first.place.owner else ()
+                alike = word not in ending or not bases or self._has_alike(path, first.place.owner, word)
+                if bases is not None and alike:
                     around = conditions + self.macros.resolve_conditions(first.at.conditions or (), targets)
                     at = At(path, first.at.line, first.at.column)
                     use = NameUse(word, at, role, False, "cpp", around, targets, first.place.owner)
                     yield use, bases, self.list_outward(path)
+
+    def _list_lacking(self, path: str) -> Iterator[NameUseInFile]:
+        """Names that are written as those of functions are, of a namespace that is called like the package and that a
+        header opens, where a source has them in no other way."""
+        facts = self.cpp[path]
+        named = [one for one in facts.qualified if one.text.startswith(f"{self.name}::")]
+        headers = (*self.list_reached(path)[1:], *self.list_offered(path)) if named else ()
+        spaces = {space for at in headers for space in self.facts(at).facts.namespaces}
+        for one in named if spaces else ():
+            space, _, last = one.text.rpartition("::")
+            written = last[0].islower() and len(last) > 5 and last not in KEYWORDS
+            if space in spaces and written and last not in facts.words.split():
+                yield one
 
     def _has_alike(self, path: str, owner: str, word: str) -> bool:
         """Whether a class has a member that a word may stand for: one letter off, or shortened."""

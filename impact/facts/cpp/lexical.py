@@ -56,7 +56,8 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). parents:
     derived classes and aliases of types, with the words of their bases or of what they stand for. initializes: a
     constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
-    comments, literals, includes and blanks.
+    comments, literals, includes and blanks. values: names of several words that stand where values do, and
+    seem to be declared nowhere, nor given to a macro.
     """
 
     includes: tuple[Include, ...]
@@ -79,6 +80,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     parents: tuple[tuple[str, str], ...] = ()
     initializes: bool = False
     code: str = ""
+    values: tuple[str, ...] = ()
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -497,6 +499,9 @@ def extract(data: bytes) -> CppFile:
     """
     scanned = scan(data)
     visible, locate, tokens_text = scanned.visible, scanned.locate, scanned.tokens_text
+    if visible.count("(") != visible.count(")") and (at := _find_unmatched(scanned)) is not None:
+        calls = [name for name in _CALLED.findall(visible, max(0, at - 1000), at + 1) if name not in KEYWORDS]
+        scanned.problems.append(Problem(locate(at)[0], UNMATCHED + (calls[-1] if calls else "this") + "()"))
     words: set[bytes] = set()
     with_colons: set[bytes] = set()
     qualified: list[NameUseInFile] = []
@@ -549,8 +554,37 @@ def extract(data: bytes) -> CppFile:
         made=_list_made_classes(visible, tokens_text),
         parents=parents,
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
+        values=_list_values(visible),
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
     )
+
+
+UNMATCHED = "a parenthesis has no counterpart in a call of "
+_CALLED = re.compile(r"([^\W\d]\w*)\s*\(")
+_BRACKET = re.compile(r"[(){}]")
+
+
+def _find_unmatched(scanned: Scan) -> int | None:
+    """The first parenthesis without a counterpart; None where it may depend on conditions which one has it."""
+    parts = [(start, scanned.visible[start:end], conditions) for start, end, conditions in scanned.segments]
+    written = (match.group() for match in _DIRECTIVE.finditer(scanned.visible))
+    if any(text.count("(") != text.count(")") for text in written):
+        return None  # a macro may have what the code lacks
+    if any(conditions and part.count("(") != part.count(")") for _, part, conditions in parts):
+        return None
+    opened: list[tuple[str, int]] = []
+    for start, part, conditions in parts:
+        for match in () if conditions else _BRACKET.finditer(part):
+            bracket, at = match.group(), start + match.start()
+            if bracket in "({":
+                opened.append((bracket, at))
+            elif bracket == ")" and (not opened or opened[-1][0] == "{"):
+                return at
+            elif bracket == "}" and opened and opened[-1][0] == "(":
+                return opened[-1][1]
+            elif opened:
+                opened.pop()
+    return next((at for bracket, at in opened if bracket == "("), None)
 
 
 def _list_using_names(visible: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -643,6 +677,21 @@ _MADE = [
     re.compile(rf"{word}(?<!\w{word}){between}(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{{,)]")
     for word, between in (("new", r"\s+"), ("make_shared", r"\s*<\s*"), ("make_unique", r"\s*<\s*"))
 ]
+
+
+_VALUE = re.compile(r"(?:[=+/!?|-]|return)\s*([a-z][a-z0-9]*_[a-z0-9_]*)(?=\s*[^\s\w(:{])")
+# What stands behind a type, or another word.
+_DECLARED = re.compile(r"\s[&*]*(?<=[\w>&*\]]\s)(?<!return\s)([a-z][a-z0-9]*_[a-z0-9_]*)")
+_TO_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{2,}\s*\(([^;{}]*)")
+
+
+def _list_values(visible: str) -> tuple[str, ...]:
+    """The names of several words that are values and not declared, as far as that shows."""
+    found = {name for name in _VALUE.findall(visible) if len(name) > 5 and not name.endswith(("_t", "_cast"))}
+    found.difference_update(_DECLARED.findall(visible))
+    if found:
+        found.difference_update(*map(_IDENTIFIER.findall, _TO_MACRO.findall(visible)))
+    return tuple(sorted(found))
 
 
 def _list_namespaces(visible: str) -> tuple[str, ...]:

@@ -224,7 +224,7 @@ class RefusedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
     project), `version` (project() is given a version under the policies of a CMake before 3.0), `no value` (a property
     of set_target_properties() whose value is a variable that nothing sets), `no sources` (a library or executable of
     what file(GLOB) finds with `patterns`, which is nothing), `late` (a macro that has to come before
-    catkin_package())."""
+    catkin_package()), `unguarded` (a command for tests that is called although tests may be switched off)."""
 
     kind: str
     name: str

@@ -66,6 +66,14 @@ def refuse_late(run: Interpreter, call: CommandCall) -> None:
             run.refuse("late", wrap(call.name, call.at, run.conditions), conditions)
 
 
+def refuse_unguarded(run: Interpreter, call: CommandCall) -> None:
+    """Refuses a command for tests that stops where tests are switched off. Source:
+    _generate_function_if_testing_is_disabled() of catkin."""
+    tested = any("TESTING" in held.text for held in run.conditions)
+    if not tested and not call.name.startswith(("rosbuild", "roslaunch")):
+        run.refuse("unguarded", wrap(call.name, call.at, run.conditions))
+
+
 # parse_cmake_arguments() as a script, which it was before CMake 3.5, forgets what followed a keyword that comes again.
 _KEEPS_ALL = Condition("cmake", "CMAKE_VERSION VERSION_LESS 3.5", negated=True)
 
@@ -190,6 +198,7 @@ _TEST_OPTIONS = make_name_set("WORKING_DIRECTORY TIMEOUT ENVIRONMENT DEPENDENCIE
 )
 def add_catkin_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that are executables: add_catkin_gtest(), add_rostest_gtest() and kin."""
+    refuse_unguarded(run, call)
     draft = run.add_target(args[0], "test")
     given = group_by_keyword(args[1:], _TEST_OPTIONS)
     sources = given[""]
@@ -209,6 +218,7 @@ def add_catkin_gtest(run: Interpreter, call: CommandCall, args: list[Word]) -> N
 )
 def add_catkin_test(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Tests that are launch files or Python: a test target named after the file."""
+    refuse_unguarded(run, call)
     item = args[0]
     name = f"{run.package}_{item.replace('/', '_')}"
     draft = run.ensure_target(wrap(name, item.at, item.conditions), "test", item.at)

@@ -62,11 +62,14 @@ def invalid_manifest(workspace: Workspace):
         for problem in manifest.problems:
             if problem.line not in misspelt:
                 at, data = At(path, problem.line), {"problem": problem.message}
-                yield Diagnostic(at, package.name or path, package.name, data, "problem")
+                named = _NAMED.search(problem.message)  # what is at fault, such as a dependency
+                yield Diagnostic(at, named[1] if named else package.name or path, package.name, data, "problem")
         for condition, line in {d.condition: d.line for d in manifest.dependencies if d.condition}.items():
             if not _PLAIN.match(condition) and not _is_readable(condition):
                 yield Diagnostic(At(path, line), condition, package.name, kind="condition")
 
+
+_NAMED = re.compile(r"`([^`\s]{1,60})`")
 
 # One comparison, or several joined by and/or: nothing that catkin_pkg could refuse. Asking it costs 60 ms of import.
 _TERM = r"""\s*(?:\$\w+|[\w.-]+|"[^"]*"|'[^']*')\s*(?:==|!=|<=|>=|<|>)\s*(?:\$\w+|[\w.-]+|"[^"]*"|'[^']*')\s*"""

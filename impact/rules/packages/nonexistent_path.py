@@ -25,17 +25,19 @@ Use instead
     add_executable(sled_node src/sled_node.cpp)
 
 Not reported
-    Files that the build makes, and sources in folders that it may make; paths that cannot be resolved; folders that
-    were not read, such as submodules; include directories in other packages, which need not exist.
+    Files that the build makes, and sources in folders that something in it may make; paths that cannot be resolved;
+    folders that were not read, such as submodules; include directories in other packages, which need not exist.
 """
 
 import posixpath
 import re
 from collections.abc import Iterator
 
+from ...model.absent_headers import may_be_made
 from ...model.cmake.build import WrittenPath, is_for_tests
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .absent_paths import is_absent
+from .data_files import list_copied
 from .install_rules import list_places
 from .refused_names import find_policy_version
 
@@ -118,7 +120,8 @@ def _find_fault(view: TargetView, package: Package, use: WrittenPath) -> tuple[s
     if file != path and path in package.folders and find_policy_version(package) < (2, 8):
         return "", ""  # a folder without CMakeLists.txt, which was ignored (CMP0014)
     folder = posixpath.dirname(path)
-    if use.how == "source" and folder != package.path and folder not in package.folders:
+    apart = folder != package.path and folder not in package.folders
+    if use.how == "source" and apart and (package.build.unresolved or may_be_made(package, posixpath.basename(path))):
         return "", ""  # generators make folders of their own
     if posixpath.basename(file).isupper():
         return "", ""  # a keyword
@@ -144,12 +147,18 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         if r.kind != "file" or use.role != "run" or r.conditional or owner is None or "launch" not in use.at.path:
             continue
         name = posixpath.normpath(r.name)
+        if use.at.path.endswith(".sh"):
+            continue  # the command roslaunch looks for a name in all folders
         if not _OPENED.search(name) or "$" in name or name.startswith(".."):
             continue
         path = posixpath.join(owner.path, name)
-        if not owner.build.files or owner.build.unresolved or not is_absent(view, owner, path):
+        installs = owner.build.installs if owner.build.files else list_copied(owner)
+        if installs is None or owner.build.unresolved or not is_absent(view, owner, path):
             continue
-        places = list_places(owner, owner.build.installs)
+        last = f"/{posixpath.basename(name)}"
+        if not owner.build.files and not any(file.endswith(last) for file in owner.linked.files):
+            continue  # it may be made, as calibrations are
+        places = list_places(owner, installs)
         if places is not None and f"share/{owner.name}/{name}" not in places:  # as which another file is installed
             together = (Together(f"no {name} in {owner.name}", everywhere=True),)
             data = {"by": owner.name}

@@ -19,6 +19,7 @@ Not reported
 """
 
 import posixpath
+from collections import Counter
 from collections.abc import Collection, Mapping
 
 from ....edges.groups import group_pairs
@@ -53,9 +54,11 @@ def uninstalled_script(view: TargetView, package: Package):
     imported = group_pairs((use.at.path, use.module.partition(".")[0]) for use in package.linked.imports)
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
     nodes = _list_nodes(package, installs, view.target.ros, imported, folders)
-    for path in (*package.linked.scripts, *package.linked.shells):
+    kinds = Counter((posixpath.dirname(item), posixpath.splitext(item)[1]) for item in programs)
+    for path in (*package.linked.scripts, *package.linked.shells, *_list_shells(package, kinds)):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
-        beside = folder in folders and folder != package.path and "." not in name and find_folder_role(name) is None
+        alike = "." not in name or kinds[folder, posixpath.splitext(name)[1]] > 1
+        beside = folder in folders and folder != package.path and alike and find_folder_role(name) is None
         node = path in nodes
         if _OF_OTHERS[view.target.ros] in imported.get(path, ()):
             continue
@@ -64,6 +67,12 @@ def uninstalled_script(view: TargetView, package: Package):
             of_catkin = package.build_type == "catkin" and path not in package.linked.shells
             data = {"command": _OF_CATKIN if of_catkin else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"}
             yield Diagnostic(At(path, 1), name, package.name, data, kind, together=_ONCE)
+
+
+def _list_shells(package: Package, kinds: Counter[tuple[str, str]]) -> list[str]:
+    """The shell scripts with an ending beside installed ones. kinds: how often programs of a folder have an ending."""
+    folders = {folder for folder, ending in kinds if ending == ".sh"}
+    return [path for path in package.linked.files if path.endswith(".sh") and posixpath.dirname(path) in folders]
 
 
 def _list_nodes(

@@ -8,7 +8,8 @@ Why it breaks
     The compiler stops: "No such file or directory".
 
 Severity
-    error; warning in tests, and where not all folders that targets search are known.
+    error; warning in tests, and where it is not known which folders targets search, or what a command that is called
+    does.
 
 Example
     #include "lift.h"                           // which is include/winch/lift.h, and include_directories(include)
@@ -18,12 +19,13 @@ Use instead
 
 Not reported
     Headers of the same path that something else has, or that may be made; includes under conditions that may not hold;
-    packages of which it is not known what their CMake code does; workspaces with folders that were not read.
+    packages of which it is not known what their CMake code does, and those that may have folders which were not read.
 """
 
 import re
 
-from ...model.absent_headers import may_be_made
+from ...model.absent_headers import is_made
+from ...model.cmake.interpreter import calls_unmodelled
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 
 _OF_PACKAGE = re.compile(r"\$\{\w+_INCLUDE_?(?:DIRS?|PATH)\}")
@@ -38,21 +40,35 @@ _OF_PACKAGE = re.compile(r"\$\{\w+_INCLUDE_?(?:DIRS?|PATH)\}")
 )
 def unsearched_header(view: TargetView, package: Package):
     build, seen = package.build, set()
-    if not package.linked.unsearched or build.unresolved or not build.project or view.workspace.unread:
+    if not package.linked.unsearched or build.unresolved or not build.project:
         return
+    called = calls_unmodelled(build)
+    if called and view.unknown_contents.list_unknown_found(package):
+        return  # a command of which nothing is known may make headers, and search folders
     searched = [path for path in build.list_paths() if path.how == "include"]
-    known = not any("$" in one.path and not _OF_PACKAGE.fullmatch(one.path) for one in searched)
+    known = not called and not any("$" in one.path and not _OF_PACKAGE.fullmatch(one.path) for one in searched)
     for include, header in package.linked.unsearched:
         path, place = include.path, (include.at.path, include.path)
-        if place in seen or not view.is_sure(include.conditions) or may_be_made(package, path.rpartition("/")[2]):
+        if place in seen or not view.is_sure(include.conditions) or is_made(package, path.rpartition("/")[2]):
             continue
         if view.workspace.provides_header(path) != [package.name] or _has_another(view, package, path):
+            continue
+        if view.workspace.unread and _may_be_unread(view, package, path):
             continue
         seen.add(place)
         inside = f"/{header}".rpartition("/include/")
         data = {"header": package.strip_path(header), "replacement": inside[2] if inside[1] else ""}
         doubts = (*list_place_doubts(view, include.role), known or Doubt.INCOMPLETE)
         yield Diagnostic(include.at, path, package.name, data, doubts=doubts)
+
+
+def _may_be_unread(view: TargetView, package: Package, path: str) -> bool:
+    """Whether a header may lie in a folder that was not read: of the package, or of something that it is built with."""
+    workspace = view.workspace
+    if workspace.is_unread(package.path) or not package.path or view.unknown_contents.may_hold(package, path):
+        return True
+    searched = (one.path for one in package.build.list_paths() if one.how == "include")
+    return any(map(workspace.is_unread, searched)) or not workspace.unread_names.isdisjoint(package.declared)
 
 
 def _has_another(view: TargetView, package: Package, path: str) -> bool:
