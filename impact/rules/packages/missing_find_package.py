@@ -137,7 +137,8 @@ def missing_find_package(view: TargetView, package: Package):
         if not ros and any(p.name in named for f in found for p in view.find_cmake(f)):
             continue
         seen.add(name)
-        counts = ros and not header_only
+        own_folder = view.target.ros == 2 or not installed
+        counts = ros and not header_only and (own_folder or name in view.collect_declared(package))
         doubts = (_find_include_doubt(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
         folder = "" if ros or not shipped.intersection(need.targets) else load_libraries().find_folder(need.subject)
         if folder and not any(folder in item or "$" in item for item in list_given_items(package, need.targets)):
