@@ -343,7 +343,7 @@ class TargetView(WorkspaceOnTarget):
             return owner if any(one.partition("_")[0] == word for one in started & set(along)) else ""
         # Who loads plugins brings their base class, in a package beside its own.
         bases = {self.target.find_repository(one) for one in along} - {None}
-        loaders = (one for one in started if "pluginlib" in self.list_installed_with(one))
+        loaders = (one for one in started.difference(along) if "pluginlib" in self.list_installed_with(one))
         return owner if any(not along or self.target.find_repository(one) in bases for one in loaders) else ""
 
     @cache_method

@@ -91,6 +91,8 @@ def missing_find_package(view: TargetView, package: Package):
         if (name in built and not by_chance) or name in seen or name in package.linked.modules or name == package.name:
             continue
         seen.add(name)
+        if how == "made" and name not in view.workspace.packages and view.target.find_version(name) is None:
+            continue  # other rules report what the target does not have
         linked = how == "linked"
         if linked and _may_be_defined(view, package, item, built):
             continue
