@@ -341,6 +341,8 @@ class TargetView(WorkspaceOnTarget):
         if library is not None:  # Gazebo is started by a package that is called after it
             word = owner.partition("_")[0]
             return owner if any(one.partition("_")[0] == word for one in started & set(along)) else ""
+        if self.offers.has_plugin(owner, name) is False and owner not in self.workspace.packages:
+            return ""  # it may be called after another package than its own
         # Who loads plugins brings their base class, in a package beside its own.
         bases = {self.target.find_repository(one) for one in along} - {None}
         loaders = (one for one in started.difference(along) if "pluginlib" in self.list_installed_with(one))
