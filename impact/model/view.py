@@ -18,11 +18,14 @@ from ..targets.symbol import Symbol
 from ..targets.target import Provider
 from .cmake.build import At, FoundPackage, Stop, is_for_tests
 from .on_target import INTERFACES, PACKAGE, UnresolvedUse, WorkspaceOnTarget
-from .package import find_folder_role
+from .package import ReferenceUse, find_folder_role
 from .roles import Roles
+from .settings import get_plugin_package
 from .unknown_contents import UnknownContents
 from .workspace import Package
 
+# A file that Gazebo loads.
+_LIBRARY = re.compile(r"(?:lib)?([\w-]+)\.so")
 _DISTRO = re.compile(rf"(?<![A-Za-z0-9])(?:{'|'.join(DISTROS)})(?![A-Za-z0-9])")
 
 
@@ -39,10 +42,11 @@ def _mark_distro(path: str) -> tuple[str, str] | None:
 class Need(NamedTuple):
     """Something a package uses of somebody else.
 
-    how: find_package, part (a component of it), component (of catkin), pkg-config, program, environment, include,
-    import, launch, plugin or shell. subject: as written. providers: who could give it, best first. role: build, test,
-    run or aside. certain: stands under no condition that is unknown on the target. required: its absence stops the
-    configuration (find_package) or the program.
+    how: tool (of the build type), find_package, part (a component of it), component (of catkin), pkg-config, program,
+    environment, include, import, launch, plugin, shell or setting (what settings or a description name). subject: as
+    written. providers: who could give it, best first. role: build, test, run or aside. certain: stands under no
+    condition that is unknown on the target. required: its absence stops the configuration (find_package) or the
+    program.
     """
 
     how: str
@@ -57,8 +61,8 @@ class Need(NamedTuple):
 
 
 _HOW = {
-    "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "part": 0, "environment": 0, "include": 1,
-    "import": 2, "plugin": 3, "launch": 4, "shell": 5,
+    "tool": 0, "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "part": 0, "environment": 0,
+    "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5, "setting": 6,
 }  # fmt: skip
 _ROLE = {"build": 0, "run": 1, "test": 2, "aside": 3}
 
@@ -138,6 +142,10 @@ class TargetView(WorkspaceOnTarget):
 
     def _collect(self, package: Package) -> Iterator[Need]:
         linked = package.linked
+        if package.build_type == "cmake" and package.build.files:
+            line = next((one.line for one in package.manifest.exports if one.text == "cmake"), package.manifest.line)
+            providers = tuple(self.providers.find_executable("cmake"))
+            yield Need("tool", "cmake", providers, At(linked.manifest_path, line), "build", True)
         for found in package.build.found:
             if found.how == "pkg_check_modules" and self.applies(found.conditions):
                 yield from self._list_module_needs(found)
@@ -201,14 +209,21 @@ class TargetView(WorkspaceOnTarget):
         for use in linked.references:
             reference = use.reference
             name = reference.package
-            if not name and reference.kind == "plugin" and ".launch" in use.at.path:
-                # Nodelets are called `package/Class`.
-                name = reference.name.partition("/")[0] if "/" in reference.name else ""
+            if reference.kind == "command":
+                yield from self._list_started(package, use)
+                continue
+            if not name and reference.kind == "plugin":
+                name = self._find_loaded(package, use)
             if not name or name == package.name or "$" in name:
                 continue
-            if not self.is_package(name) and not (".launch" in use.at.path and PACKAGE.match(name)):
+            known, of_launch, is_plugin = self.is_package(name), ".launch" in use.at.path, reference.kind == "plugin"
+            # What a launch file starts, or a description includes, cannot be anything else.
+            included = not known and reference.kind == "file" and reference.name.endswith(".xacro")
+            if not known and not (PACKAGE.match(name) and (of_launch or included)):
                 continue
-            how = {"plugin": "plugin", "command": "shell"}.get(reference.kind, "launch")
+            how = "plugin" if is_plugin else "launch"
+            if not of_launch and (included or (is_plugin and not reference.package)):
+                how = "setting"
             certain = not reference.conditional
             yield Need(how, name, (Provider("ros", name),), use.at, use.role, certain, certain)
 
@@ -311,6 +326,43 @@ class TargetView(WorkspaceOnTarget):
             certain = not there and all(self.is_sure((c,)) or list_tested_packages(c.text) for c in found.conditions)
             required = self.is_sure(found.conditions)
             yield Need("program", found.name, providers, found.at, _find_role(found.conditions), certain, required)
+
+    def _find_loaded(self, package: Package, use: ReferenceUse) -> str:
+        """The package that a plugin is of, which a launch file names, or settings and models of a package that starts
+        what loads it; empty where there is none."""
+        name, library = use.reference.name, _LIBRARY.fullmatch(use.reference.name)
+        if ".launch" in use.at.path:
+            return name.partition("/")[0] if "/" in name else ""  # nodelets are called `package/Class`
+        owners = self.offers.list_library_owners(library[1]) if library is not None else [get_plugin_package(name)]
+        if len(owners) != 1 or name.startswith("transmission_interface/"):  # a word for whoever reads the description
+            return ""
+        (owner,) = owners
+        along, started = self.list_installed_with(owner), self._list_started_packages(package)
+        if library is not None:  # Gazebo is started by a package that is called after it
+            word = owner.partition("_")[0]
+            return owner if any(one.partition("_")[0] == word for one in started & set(along)) else ""
+        if self.offers.has_plugin(owner, name) is False and owner not in self.workspace.packages:
+            return ""  # it may be called after another package than its own
+        # Who loads plugins brings their base class, in a package beside its own.
+        bases = {self.target.find_repository(one) for one in along} - {None}
+        loaders = (one for one in started.difference(along) if "pluginlib" in self.list_installed_with(one))
+        return owner if any(not along or self.target.find_repository(one) in bases for one in loaders) else ""
+
+    @cache_method
+    def _list_started_packages(self, package: Package) -> frozenset[str]:
+        """Packages whose programs a package starts."""
+        return frozenset(u.reference.package for u in package.linked.references if u.reference.kind == "executable")
+
+    def _list_started(self, package: Package, use: ReferenceUse) -> Iterator[Need]:
+        """A program that a launch file or Python runs by its name alone; those that every machine has are left out, and
+        what the workspace makes itself."""
+        name, certain = use.reference.name, not use.reference.conditional
+        providers = tuple(self.providers.find_executable(name))
+        if not providers or not providers[0].name or name in self.apt.base or name in self.workspace.packages:
+            return
+        if any(target.name == name for target in package.build.targets):
+            return
+        yield Need("shell", name, providers, use.at, use.role, certain, certain)
 
 
 def _find_role(conditions: Iterable[Condition]) -> str:

@@ -307,8 +307,14 @@ def _add_node(found: _Found, element: Element, conditional: bool) -> None:
 
 
 def _add_command(found: _Found, attribute: Attribute | None, conditional: bool) -> None:
-    """The program that a command line starts with, where it is named by itself and not by a path."""
+    """The program that a command line starts with, where it is named by itself and not by a path; what ROS is told to
+    start."""
     if attribute is None:
+        return
+    started = SHELL.match(attribute.value.lstrip())
+    if started is not None:
+        start = attribute.offset + len(attribute.value) - len(attribute.value.lstrip())
+        _add_shell_command(found, started, start, conditional)
         return
     first = re.match(r"\s*([A-Za-z][\w.-]*)(?=\s|$)", attribute.value)
     if first is not None:

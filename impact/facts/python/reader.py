@@ -74,6 +74,8 @@ _COMMAND_CALLS = frozenset((
     "system", "popen", "Popen", "call", "check_call", "check_output", "run", "getoutput", "ExecuteProcess",
     "ExecuteLocal", "Command",
 ))  # fmt: skip
+# Where the functions among these are from.
+_STARTING = frozenset(("os", "subprocess", "commands"))
 _PROGRAM = re.compile(r"[A-Za-z_][\w.+-]*")
 _IN_STRING = re.compile(
     r"package://(?P<url>[A-Za-z]\w*)(?P<url_path>/[^\s'\"<>$%{}]*)?"
@@ -688,6 +690,8 @@ class PythonReader(ObjectUses, SourceText):
         else:
             scope.machine.pop(name, None)
         scope.bound.add(name)
+        if isinstance(node, ast.List):
+            scope.lists[name] = node
         value = self.find_text(node) or self.find_unpacked(name, node)
         if name in scope.values and scope.values[name] != value:
             value = None
@@ -828,7 +832,7 @@ class PythonReader(ObjectUses, SourceText):
         elif function == "Node" and len(node.args) > 1 and format_dotted(node.func).startswith("roslaunch."):
             self.add_launched_node({"package": node.args[0], "executable": node.args[1]})
         elif function in _COMMAND_CALLS:
-            self.add_command(node, keywords)
+            self.add_command(node, function, keywords)
         elif function == "FindExecutable":
             name = self.find_text(keywords.get("name") or (node.args[0] if node.args else node.func))
             if isinstance(name, str) and _PROGRAM.fullmatch(name):
@@ -913,26 +917,48 @@ class PythonReader(ObjectUses, SourceText):
             kind, name, at = "package", "", keywords["package"]
         self.refer_to(kind, package[0], name, at, package[1])
 
-    def add_command(self, node: ast.Call, keywords: dict) -> None:
+    def add_command(self, node: ast.Call, function: str, keywords: dict) -> None:
         """A program started with literal arguments, and what rosrun, roslaunch and ros2 are told to start."""
         given = keywords.get("cmd") or keywords.get("args") or keywords.get("command") or next(iter(node.args), None)
         words: list[str | None] = []
+        if isinstance(given, ast.Name):
+            given = next((scope.lists[given.id] for scope in self.scope.chain if given.id in scope.lists), given)
         for item in given.elts if isinstance(given, (ast.List, ast.Tuple)) else filter(None, (given,)):
             text = self.find_text(item)
-            words += text.split() if isinstance(text, str) else [None]
+            words += text.split() if isinstance(text, str) else [*_find_start(item).split(), None]
+        if words[:1] == ["sudo"]:
+            del words[0]
         program = words[0] if words else None
         if program is None or not _PROGRAM.fullmatch(program):
             return
         if program == "ros2" and len(words) > 3 and words[1] in ("run", "launch"):
             kind, words = ("executable" if words[1] == "run" else "file"), words[2:]
-        elif program in ("rosrun", "roslaunch") and len(words) > 2:
-            kind, words = ("executable" if program == "rosrun" else "file"), words[1:]
+        elif program in ("rosrun", "roslaunch"):
+            kind, words = ("executable" if program == "rosrun" else "file"), [*words[1:], None, None]
         else:
-            self.refer_to("command", "", program, node)
+            known = self.find_imported(format_dotted(node.func).partition(".")[0])
+            if function[0].isupper() or any(dotted.partition(".")[0] in _STARTING for dotted, _ in known):
+                self.refer_to("command", "", program, node)
             return
         package, name = words[0], words[1]
         if package and name and PACKAGE_NAME.fullmatch(package):
             self.refer_to(kind, package, name, node)
+
+
+def _find_start(node: ast.expr) -> str:
+    """The whole words that a text which is put together begins with, where they are written out."""
+    while True:
+        if node.__class__ is ast.BinOp:
+            node = node.left  # type: ignore[attr-defined]
+        elif node.__class__ is ast.JoinedStr:
+            node = node.values[0]  # type: ignore[attr-defined]
+        elif node.__class__ is ast.Call and getattr(node.func, "attr", "") == "format":  # type: ignore[attr-defined]
+            node = node.func.value  # type: ignore[attr-defined]
+        else:
+            break
+    text = getattr(node, "value", None)
+    words = re.match(r".*\s", text, re.DOTALL) if isinstance(text, str) else None
+    return words.group() if words is not None else ""
 
 
 # What Python has itself, and what tells nothing of other names.

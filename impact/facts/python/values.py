@@ -32,7 +32,8 @@ class PythonScope:
     """Names of a module, class or function: imported, otherwise bound, and bound to a known value."""
 
     __slots__ = (
-        "binder", "bound", "chain", "imports", "is_class", "machine", "objects", "parameters", "parent", "values",
+        "binder", "bound", "chain", "imports", "is_class", "lists", "machine", "objects", "parameters", "parent",
+        "values",
     )  # fmt: skip
 
     def __init__(self, parent: "PythonScope | None", is_class: bool) -> None:
@@ -44,6 +45,8 @@ class PythonScope:
         self.imports: dict[str, list[tuple[str, tuple[Condition, ...]]]] = {}
         self.bound: set[str] = set()
         self.values: dict[str, object] = {}
+        # Lists that names are bound to, as they are written.
+        self.lists: dict[str, ast.List] = {}
         # Names bound once, to what reads a variable of the environment that ROS sets, with the source of that.
         self.machine: dict[str, str] = {}
         # Types of what variables hold, see uses.py.

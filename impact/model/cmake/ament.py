@@ -5,6 +5,7 @@ Source: the CMake files of those packages, and the ament_cmake user documentatio
 
 import posixpath
 
+from ...facts.condition import Condition
 from .blocks import CommandCall
 from .build import At, DependencyCall, FoundPackage, GeneratedInterfaces, WrittenPath
 from .find import set_catkin_destinations
@@ -99,6 +100,8 @@ def register_extension(run: Interpreter, call: CommandCall, args: list[Word]) ->
         run.hand_on(run.resolve_tree_path(args[2]), call.at)
 
 
+# What the generators of rosidl find where they make tests of what they generate.
+_LINTERS = ("ament_cmake_cppcheck", "ament_cmake_cpplint", "ament_cmake_uncrustify")
 _ROSIDL = make_name_set(
     """
     DEPENDENCIES LIBRARY_NAME SKIP_INSTALL SKIP_GROUP_MEMBERSHIP_CHECK ADD_LINTER_TESTS
@@ -137,6 +140,12 @@ def generate_interfaces(run: Interpreter, call: CommandCall, args: list[Word]) -
             "SKIP_INSTALL" not in given,
         )
     )
+    if "ADD_LINTER_TESTS" in given:
+        tested = (*run.conditions, Condition("cmake", "BUILD_TESTING"))
+        for name in _LINTERS:
+            run.add_found(
+                FoundPackage(name, "find_package", run.locate(call.at), True, conditions=tested, via=call.name)
+            )
     run.add_target(target, "generated")
     if "SKIP_INSTALL" not in given:  # else nothing is done under the name of the package
         run.refuse_project()

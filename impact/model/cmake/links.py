@@ -85,7 +85,6 @@ def list_found_names(view: TargetView, package: Package) -> set[str] | None:
             names.add(export.item)
     if any("${" in f.name for f in package.build.found):
         return None
-    names.update(dependency for generated in package.build.generated for dependency, _ in generated.dependencies)
     return names
 
 
@@ -95,9 +94,10 @@ def stops_at_names(view: TargetView) -> bool:
     return is_at_least(view.target.find_version("ament_cmake_target_dependencies") or "0.8.0", "0.8.0")
 
 
-def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, str, str]]:
-    """What only find_package() can define: names in ament_target_dependencies, and what stands before `::` in links,
-    where nothing of the package has targets of that name. Also what is written there."""
+def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, str, str, str]]:
+    """What only find_package() can define, with the place, what is written there, and how it is used: `given` by
+    ament_target_dependencies, `linked` as what stands before `::`, where nothing of the package has targets of that
+    name, or `made`: what interfaces are said to depend on."""
     own = {t.name for t in package.build.targets}
     spaces = {name.partition("::")[0] for name in own if "::" in name}
     for link in package.build.target_links:
@@ -105,7 +105,10 @@ def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, s
             continue
         head, separator, _ = link.item.partition("::")
         if link.how == "ament" or (link.how == "link" and separator and head not in spaces):
-            yield link.at, head, link.item
+            yield link.at, head, link.item, "linked" if separator else "given"
+    for made in package.build.generated:
+        if made.how in ("rosidl", "catkin") and view.is_sure(made.conditions) and not is_for_tests(made.conditions):
+            yield from ((at, name, name, "made") for name, at in made.dependencies if "$" not in name)
 
 
 @cache_in_derived

@@ -13,7 +13,7 @@ from .dependants import list_compiled_elsewhere
 
 ASKED = frozenset(("find_package", "part", "component", "pkg-config", "program", "environment"))
 """How CMake asks for something, so that the configuration stops without it."""
-_STARTED = frozenset(("launch", "plugin", "shell"))
+_STARTED = frozenset(("launch", "plugin", "shell", "setting"))
 TEST_HEADERS = ("gtest/", "gmock/")
 """How the headers begin that macros which make tests bring along."""
 # Debian packages of libraries: `libgazebo11-dev`, `libqt5core5a`.
@@ -30,7 +30,7 @@ def collect_missing_doubts(view: TargetView, package: Package, need: Need, name:
         return (Doubt.DISPENSABLE,)
     if not need.certain:
         return (Doubt.DISPENSABLE,)
-    if need.how == "environment":
+    if need.how in ("tool", "environment"):
         return (Doubt.LUCKY,)
     if need.how == "include":
         return _collect_include_doubts(view, package, need, name)
@@ -97,6 +97,9 @@ def _collect_run_time_doubts(view: TargetView, package: Package, need: Need, nam
     if by_hand and view.roles.comes_with_launch(name, need.at.path):
         return (Doubt.DISPENSABLE,)
     if view.is_circular(package, name):
+        return (Doubt.DISPENSABLE,)
+    # Settings and models are made for what loads them, which may lie in another package.
+    if need.how == "setting" and view.is_met(need.providers, view.brought_to_workspace):
         return (Doubt.DISPENSABLE,)
     # What starts only under an argument is started sooner or later, where it lies in the workspace itself.
     wanted = need.required or (need.how == "launch" and name in view.workspace.packages)

@@ -11,8 +11,7 @@ Why it breaks
 Severity
     error where a target is linked or given under a name that only the missing find_package defines, and for includes of
     compiled code where the package has an include folder of its own; warning for other includes, since an include path
-    may come along by accident, and for those of tests; note for what is not declared, since undeclared-package reports
-    it.
+    may come along by accident, and for those of tests; note for libraries, and for headers of messages in ROS 1.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -49,6 +48,10 @@ _SYSTEM_BY_DEFAULT = (
             "`{subject}` is given to a target but find_package(`{subject}`) is not called",
             "add find_package({subject} REQUIRED)",
         ),
+        "made": Text(
+            "interfaces depend on `{subject}` but find_package(`{subject}`) is not called before",
+            "add find_package({subject} REQUIRED)",
+        ),
         "linked": Text(
             "`{item}` is linked but find_package(`{subject}`) is not called", "add find_package({subject} REQUIRED)"
         ),
@@ -82,11 +85,15 @@ def missing_find_package(view: TargetView, package: Package):
     finds_tested = any(f.how in ("declared", "ament_lint_auto") for f in build.found)
     near, prefixes = SpellingIndex({*view.collect_declared(package), *found}), {f.prefix for f in package.build.found}
     seen = set()
-    for at, name, item in list_given_names(view, package):
-        if name in built or name in seen or name in package.linked.modules or name == package.name:
+    brought = view.roles.list_brought(found)
+    for at, name, item, how in list_given_names(view, package):
+        by_chance = how == "made" and name in built and name not in brought
+        if (name in built and not by_chance) or name in seen or name in package.linked.modules or name == package.name:
             continue
         seen.add(name)
-        linked = "::" in item
+        if how == "made" and name not in view.workspace.packages and view.target.find_version(name) is None:
+            continue  # other rules report what the target does not have
+        linked = how == "linked"
         if linked and _may_be_defined(view, package, item, built):
             continue
         known = linked or view.is_package(name)
@@ -98,10 +105,13 @@ def missing_find_package(view: TargetView, package: Package):
         )
         if linked:
             opaque, lucky = opaque or calls_unmodelled(build), view.target.ros == 1
+        elif how == "made":
+            # catkin is content with the folder of a package that is configured along.
+            lucky = by_chance or (view.target.ros == 1 and name in view.workspace.packages)
         else:
             lucky = not stops_at_names(view)
         doubts = (Doubt.LUCKY if lucky else None, Doubt.INCOMPLETE if opaque else None)
-        yield Diagnostic(at, name, package.name, {"item": item}, "linked" if linked else "given", doubts)
+        yield Diagnostic(at, name, package.name, {"item": item}, how, doubts)
     sought = {strip_to_letters(f.name) for f in package.build.found if f.name in outside}
     linked = sought | {strip_to_letters(link.item) for link in package.build.target_links if link.how == "link"}
     for need in view.sort_needs(package):
@@ -122,12 +132,15 @@ def missing_find_package(view: TargetView, package: Package):
         parts = () if called else ((a, b) for a in stems for b in near_by if len(a) > 2 and len(b) > 2)
         if not stems.isdisjoint(near_by) or any(a in b or b in a for a, b in parts):
             continue
-        header_only = ros and view.target.ros == 1 and find_included_interface(view, need.subject) is not None
+        # Headers of messages that are installed lie beside those of all packages; others are yet to be made.
+        installed = view.target.ros == 1 and name not in view.workspace.packages
+        header_only = ros and installed and find_included_interface(view, need.subject) is not None
         named = {p.name for p in need.providers}
         if not ros and any(p.name in named for f in found for p in view.find_cmake(f)):
             continue
         seen.add(name)
-        counts = name in view.collect_declared(package) and ros and not header_only
+        own_folder = view.target.ros == 2 or not installed
+        counts = ros and not header_only and (own_folder or name in view.collect_declared(package))
         doubts = (_find_include_doubt(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
         folder = "" if ros or not shipped.intersection(need.targets) else load_libraries().find_folder(need.subject)
         if folder and not any(folder in item or "$" in item for item in list_given_items(package, need.targets)):

@@ -11,6 +11,7 @@ _COMPILED = (".cpp", ".cc", ".cxx", ".c", ".h", ".hpp", ".hh")
 DECLARE = "add `<{tag}>{subject}</{tag}>`[[ and `<{also}>{subject}</{also}>`]] to {manifest}"
 """The help that names what to declare, with the data of describe_need()."""
 _USES = {
+    "tool": "packages of its build type are built with `{used}`",
     "find_package": "CMake looks for `{used}`",
     "part": "CMake looks for the component `{used}`",
     "component": "CMake asks catkin for `{used}`",
@@ -22,7 +23,8 @@ _USES = {
     "launch": "`{used}` is used when launching",
     "look up": "`{used}` is looked up at run time",
     "plugin": "a plugin of `{used}` is loaded",
-    "shell": "`{used}` is run by a script",
+    "shell": "the program `{used}` is run",
+    "setting": "settings or a description name something of `{used}`",
 }
 
 
@@ -83,7 +85,8 @@ def _choose_name(view: TargetView, need: Need) -> str | None:
         if provider.name and view.is_available(provider.name):
             return provider.name
     first = need.providers[0]
-    if need.how not in ("launch", "find_package", "component", "import") or first.kind != "ros" or not first.sure:
+    by_form = need.how in ("launch", "setting", "find_package", "component", "import")
+    if not by_form or first.kind != "ros" or not first.sure:
         return None
     meant = first.name == need.subject.partition(".")[0] and not view.target.is_other_generation(first.name)
     return first.name if meant else None
@@ -122,8 +125,8 @@ def _tag(need: Need) -> str:
         return "test_depend"
     if need.how == "environment":
         return "build_depend"
-    if need.how == "find_package" and need.subject.startswith(_BUILD_TOOLS):
+    if need.how == "tool" or (need.how == "find_package" and need.subject.startswith(_BUILD_TOOLS)):
         return "buildtool_depend"
-    if need.how in ("import", "launch", "plugin", "shell"):
+    if need.how in ("import", "launch", "plugin", "shell", "setting"):
         return "exec_depend"
     return "depend"

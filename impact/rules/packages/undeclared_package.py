@@ -2,9 +2,10 @@
 
 What it does
     Reports packages and system libraries that CMake or pkg-config is asked for, sources include, Python imports, launch
-    files or scripts start, programs that ExternalProject_Add or FetchContent start, components with a package of their
-    own, and environment variables that CMake tests and `ros_environment` sets, when neither the manifest nor anything
-    it declares brings them, directly or in turn. What a rosdep key's packages depend on comes along.
+    files or scripts start, programs that these, ExternalProject_Add or FetchContent start, plugins that settings or
+    models name in a package that starts something, components with a package of their own, environment variables that
+    CMake tests and `ros_environment` sets, and CMake where the build type is `cmake`, when neither the manifest nor
+    anything it declares brings them, directly or in turn. What a rosdep key's packages depend on comes along.
 
 Why it breaks
     The build works on the machine of whoever happens to have the package. On a machine that has just what the manifest
@@ -16,11 +17,11 @@ Severity
     package on a clean machine of the target: nothing that is declared brings it, and where the target's manifest of
     something declared is not known, no version of that in any distro does. What CMake is asked for where tests are
     built counts, since it is asked whenever the package is configured, and so do tests of ROS 2, which are compiled
-    along. warning: environment variables, tests of ROS 1, imports, launch files, installed headers that nothing here
-    compiles, or where a dependency is known nowhere and may bring it (a package named like an interface package may
-    provide interfaces). note: conditional code, examples (installed ones too, in what they import and start),
-    documentation, files that nothing compiles, and all but the first of more than five imports (in ROS 1, of several),
-    or packages that launch files start, which a package does not declare.
+    along. warning: environment variables, tests of ROS 1, imports, launch files, settings, the tool of the build type,
+    installed headers that nothing here compiles, or where a dependency is known nowhere and may bring it (a package
+    named like an interface package may provide interfaces). note: conditional code, examples (installed ones too, in
+    what they import and start), documentation, files that nothing compiles, and all but the first of more than five
+    imports (in ROS 1, of several), or packages that launch files start, which a package does not declare.
 
 Example
     find_package(tf2_eigen REQUIRED)            # and package.xml does not mention tf2_eigen
@@ -103,5 +104,6 @@ def _find_together(view: TargetView, need: Need) -> tuple[Together, ...]:
     """Launch files and modules are used one by one, and whoever declares the first looks for the others."""
     if need.how in (*ASKED, "include"):
         return ()
-    cause = "import" if need.how == "import" and view.target.ros > 1 else "started"
+    apart = need.how in ("setting", "shell") or (need.how == "import" and view.target.ros > 1)
+    cause = need.how if apart else "started"
     return (Together(cause, few=_FEW[view.target.ros]),)

@@ -102,6 +102,13 @@ class Offers:
         build = history.build(history.versions[-1], ("libraries",)) if history is not None else None
         return build.libraries if build is not None else ()
 
+    def has_plugin(self, package: str, name: str) -> bool | None:
+        """Whether the newest stored version of a package has a plugin of this name or type; None where none is
+        stored."""
+        history = self.find_history(package)
+        build = history.build(history.versions[-1], ("plugins",)) if history is not None else None
+        return None if build is None else any(name in (plugin.name, plugin.type) for plugin in build.plugins)
+
     def find_standard(self, name: str) -> int:
         """The C++ standard that a package asks of those who link it, as CMake writes it; 0 when nothing tells."""
         offer = self.find_package(name)

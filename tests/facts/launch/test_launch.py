@@ -31,6 +31,8 @@ LAUNCH = [
     ('<param name="d" command="xacro $(find bot)/b.xacro"/>', [("command", "", "xacro"), ("file", "bot", "b.xacro")]),
     ("<param name=\"d\" value=\"$(command 'xacro $(find-pkg-share bot)/b.xacro')\"/>",
      [("command", "", "xacro"), ("file", "bot", "b.xacro")]),
+    ('<param name="d" command="rosrun xacro xacro.py $(find bot)/b.xacro"/>',
+     [("executable", "xacro", "xacro.py"), ("file", "bot", "b.xacro")]),
     ('<arg name="map" default="$(find maps)/a.yaml"/>', [("file", "maps", "a.yaml")]),
     ('<executable cmd="ls -l $(find-pkg-prefix a)/lib/a/tool"/>', [("command", "", "ls"), ("executable", "a", "tool")]),
     ('<let name="x" value="$(exec-in-pkg tool a)"/>', [("executable", "a", "tool")]),
