@@ -18,7 +18,7 @@ from __future__ import annotations
 import argparse
 import json
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Container, Iterable, Iterator, Sequence
 from functools import cache
 from itertools import pairwise
@@ -34,7 +34,7 @@ from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.providers import includes
 from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.includes import Included
-from ..impact.targets.surface.store import Surfaces, load_shipped
+from ..impact.targets.surface.store import TYPES, Surfaces, load_shipped
 from ..impact.targets.version import parse
 from .history import _find_tree
 from .surface.releases import find_git_directory
@@ -188,6 +188,10 @@ def find_types(text: str) -> tuple[frozenset[str], frozenset[str]]:
 _PRIVATE = re.compile(
     r"^(?:std|testing|cv|tl|boost|Eigen)::|(?:^|::)(?:detail|details|impl|internal|deprecated)(?:::|_)|_impl$"
 )
+
+
+_MANY = 4
+"""Headers that define a name, which is then too common to be one type."""
 
 
 class HeaderContent(msgspec.Struct, frozen=True):
@@ -485,7 +489,7 @@ def _main() -> None:
     table = msgspec.structs.replace(
         table,
         versions={distro: _list_versions(distro, table) for distro in DISTROS},
-        names={n: tuple(sorted(p)) for n, p in defining.items() if len(p) < 4 and not _PRIVATE.search(n)},
+        names={n: tuple(sorted(p)) for n, p in defining.items() if len(p) < _MANY and not _PRIVATE.search(n)},
     )
     stopped = frozenset().union(*(_find_stopped_types(table, ros) for ros in (1, 2)))
     names = {n: p for n, p in table.names.items() if n in stopped}
@@ -495,10 +499,10 @@ def _main() -> None:
 
 def drop_stored(surfaces: Surfaces, table: includes.IncludesTable) -> includes.IncludesTable:
     """The table without what stored surfaces tell: what their packages' headers include, from the first stored version
-    of each on. Names get the headers that define or announce them there."""
+    of each on. Names get the headers that define or announce them there, and those of much used packages are added."""
     numbers: dict[str, int] = {}
     owners: dict[str, dict[str, str]] = {}
-    names = {name: dict.fromkeys(headers) for name, headers in table.names.items()}
+    names = {name: dict.fromkeys(headers) for name, headers in {**_find_used_names(surfaces), **table.names}.items()}
     announced = {name: dict.fromkeys(headers) for name, headers in table.announced.items()}
     for owner, headers in table.owners.items():
         each = [] if owner in table.libraries else [surfaces.find_included(owner, n) for n in surfaces.list_ros(owner)]
@@ -528,6 +532,47 @@ def drop_stored(surfaces: Surfaces, table: includes.IncludesTable) -> includes.I
         announced={name: tuple(headers) for name, headers in announced.items()},
         versions=versions,
     )
+
+
+_USED = 5
+"""How many released packages have to declare a package in a distro, for its names to be much used."""
+_PARTS = re.compile(r"[/.]")
+# Macros that guard a header, or that a build defines.
+_SETTING = re.compile(r"_(?:H|HPP|HH)_?$|_(?:PUBLIC|LOCAL|EXPORT|IMPORT|TYPE)$|_VERSION")
+
+
+def _find_used_names(surfaces: Surfaces) -> dict[str, tuple[str, ...]]:
+    """Types in a namespace that a folder or file with them is called after, and macros that begin as their package is
+    called, of much used packages and of no other one, with the headers that define them."""
+    used = frozenset().union(*(_list_used_packages(distro) for distro in DISTROS))
+    owners: dict[str, set[str]] = defaultdict(set)
+    found: dict[str, dict[str, None]] = defaultdict(dict)
+    own: set[str] = set()
+    for package in surfaces.packages:
+        for ros in surfaces.list_ros(package):
+            history = surfaces.find_history(package, ros)
+            for name, where in history.index_types({*TYPES, "macro"}).items() if history is not None else ():
+                head = name.partition("::")[0]
+                if head != name or (name.startswith(f"{package.upper()}_") and not _SETTING.search(name)):
+                    owners[name].add(package)
+                    found[name].update(dict.fromkeys(where))
+                    own.update([name] if head == name or any(head in _PARTS.split(path) for path in where) else ())
+    return {
+        name: tuple(sorted(where))
+        for name, where in sorted(found.items())
+        if name in own and len(where) < _MANY and "<" not in name and not _PRIVATE.search(name)
+        if len(owners[name]) == 1 and not owners[name].isdisjoint(used)
+    }
+
+
+def _list_used_packages(distro: str) -> list[str]:
+    target = DistroTarget(distro)
+    declared = Counter(
+        name
+        for package in target.list_released()
+        for name in {dependency.name for dependency in target.list_dependencies(package) or ()}
+    )
+    return [name for name, count in declared.items() if count >= _USED]
 
 
 def _select_unstored(each: Sequence[Included], headers: dict[str, str]) -> dict[str, str]:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 import msgspec
 
 from .condition import Condition
-from .cpp.lexical import CppFile, find_word_uses
+from .cpp.lexical import CppFile, find_word_uses, scan
 from .place import Problem
 from .usage import (
     Pattern,
@@ -26,13 +26,15 @@ from .usage import (
 
 class WordUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """The first use of a bare word outside of comments, with the preprocessor conditions around it; line 1, column 0
-    where it stands in directives alone. own: the file declares a variable of this name with a value, or a function."""
+    where it stands in directives alone. own: the file declares a variable of this name with a value, or a function.
+    in_macro: it stands in macros alone, which may be used elsewhere."""
 
     text: str
     line: int
     column: int
     conditions: tuple[Condition, ...] = ()
     own: bool = False
+    in_macro: bool = False
 
 
 class SearchedCpp(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -53,9 +55,11 @@ def searched_cpp(data: bytes, facts: CppFile, table: UsageTable) -> SearchedCpp:
 
 
 def _find_word_use(data: bytes, word: str) -> WordUse:
-    line, column, conditions = next(iter(find_word_uses(data, word)), (1, 0, ()))
+    in_macros = scan(data).macro_lines
+    outside = next((use for use in find_word_uses(data, word) if use[0] not in in_macros), None)
+    line, column, conditions = outside or next(find_word_uses(data, word), (1, 0, ()))
     own = initializes_variable(data, word) or declares(data, word)
-    return WordUse(word, line, column, conditions, own)
+    return WordUse(word, line, column, conditions, own, outside is None)
 
 
 class SearchedText(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -145,7 +145,7 @@ class NameUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class NeededHeader(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A name whose header the file does not include, itself or through files of the package. whole: a variable of the
-    type stands there, so that it has to be defined, not just announced."""
+    type stands there, or a macro outside of other ones, so that it has to be defined, not just announced."""
 
     name: str
     at: At
@@ -1028,7 +1028,9 @@ class PackageJoin:
                     names.append(self.make_bare_use(word, path, role, public, targets, conditions))
                 headers = watched.headers_of.get(word.text)
                 if headers is not None and self.list_reaching_paths(path).isdisjoint(headers):
-                    needed.append(NeededHeader(word.text, At(path, word.line, word.column), role, conditions))
+                    at = At(path, word.line, word.column)
+                    around = conditions + self.macros.resolve_conditions(word.conditions, targets)
+                    needed.append(NeededHeader(word.text, at, role, around, not word.in_macro))
         return includes, names, needed
 
     @cached_property
@@ -1372,15 +1374,29 @@ class PackageJoin:
             elif to is None:
                 before[include.path] = None
             elif to not in seen:
+                if self._is_by_chance(to, include):
+                    before[include.path] = None
                 seen.add(to)
                 if to in wanted:
                     yield to, frozenset(before)
                 stack.append(iter(self.resolved.get(to, ())))
 
     def list_outward(self, path: str) -> tuple[str, ...]:
-        """The include paths among them that no file of the package answers."""
-        found = {i.path for at in self.list_reached(path) for to, i in self.resolved.get(at, ()) if to is None}
+        """The include paths among them that no file of the package answers, or one that is only called so."""
+        found = {
+            include.path
+            for at in self.list_reached(path)
+            for to, include in self.resolved.get(at, ())
+            if to is None or self._is_by_chance(to, include)
+        }
         return tuple(sorted(found))
+
+    def _is_by_chance(self, to: str, include: Include) -> bool:
+        """Whether a file that answers an include lies where no target is known to search, so that a header of another
+        package may be meant."""
+        folder = to.removesuffix(".in").removesuffix(include.path).rstrip("/")
+        usual = posixpath.basename(folder) == "include" or self.strip_prefix(folder) in ("", "src")
+        return include.angled and "/" in include.path and not usual and folder not in self._folders
 
     @cache_method
     def list_reached(self, path: str) -> tuple[str, ...]:

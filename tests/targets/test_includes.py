@@ -53,6 +53,11 @@ def test_what_a_header_brings_along(distro, header, brought, expected):
         ("noetic", "winch/WinchConfig.h", "dynamic_reconfigure/config_tools.h", True),
         ("hydro", "libavcodec/avcodec.h", "libavutil/mem.h", True),
         ("indigo", "libavcodec/avcodec.h", "libavutil/mem.h", False),
+        ("indigo", "Eigen/Geometry", "limits", True),
+        ("noetic", "Eigen/Geometry", "limits", True),
+        ("noetic", "Eigen/Geometry", "map", False),
+        ("melodic", "opencv2/highgui/highgui.hpp", "opencv2/core.hpp", True),
+        ("noetic", "opencv2/highgui/highgui.hpp", "vector", True),
     ],
 )
 def test_what_a_header_of_ros_1_brings_along(distro, header, brought, expected):

@@ -11,7 +11,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import accumulate, count, islice
+from itertools import accumulate, chain, count, islice
 from operator import add
 from typing import NamedTuple
 
@@ -335,6 +335,13 @@ class Scan:
         """The conditions around an offset, None inside a directive."""
         start, _, conditions = self.find_segment(offset)
         return conditions if start <= offset else None
+
+    @cached_property
+    def macro_lines(self) -> frozenset[int]:
+        """The lines that macros are defined on."""
+        defined = ((start, end) for start, end, keyword, _ in self.directives if keyword == "define")
+        spans = (range(self.locate(start)[0], self.locate(end)[0] + 1) for start, end in defined)
+        return frozenset(chain.from_iterable(spans))
 
     @cached_property
     def pieces(self) -> list[_Piece]:

@@ -31,6 +31,8 @@ _EXTENDED = frozenset({"tf2::toMsg", "tf2::fromMsg", "tf2::convert", "tf2::doTra
 # What compilers have for one processor.
 _OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+|builtins)\.h$")
 
+_PARTS = re.compile(r"[/.]")
+
 _Reach = tuple[frozenset[str], frozenset[str]]
 
 
@@ -126,7 +128,7 @@ def _find_lost(
             dropped = _find_dropped(view, wanted, reach, machine, earlier)
             # Whose headers a platform library's bring, no table tells.
             all_known = made is not None or all(p.kind == "ros" for path in outside for p in view.find_header(path))
-            found = dropped or (_find_owner(need.name, headers, reach, machine) if all_known else None)
+            found = dropped or (_find_owner(need, headers, reach, machine) if all_known else None)
         if found is None or (best is not None and (best.sure or outside)):
             continue
         # Of what reaches the file and is not known, nothing depends on a ROS package whose name it is.
@@ -149,16 +151,20 @@ def _list_offering(view: TargetView, name: str) -> tuple[str, ...]:
 
 
 def _find_owner(
-    name: str, offering: tuple[str, ...], reach: frozenset[str], machine: HeadersOfMachine
+    need: NeededHeader, offering: tuple[str, ...], reach: frozenset[str], machine: HeadersOfMachine
 ) -> tuple[str, str] | None:
-    """Whose a name is that nothing ever brought, and its version: a Boost library's, where a file includes some of its
-    headers, or an interface's."""
+    """Whose a name is that nothing ever brought, and its version. Of Boost it is a library's some of whose headers a
+    file includes: it has other names like those of the standard library. Else a folder or file with the name is called
+    after its namespace, for others define names there by macros, by which types are announced too."""
+    name = need.name
     if (made := parse_type(name)) is not None:
         version = machine.find_version(made.package)
         return (made.package, version) if version else None
+    head = name.partition("::")[0]
+    called = (header for header in offering if head == name or head in _PARTS.split(header))
+    owners = {owner for header in called if (owner := machine.find_owner(header)) is not None}
     if not name.startswith(("boost::", "BOOST_")):
-        return None
-    owners = {owner for header in offering if (owner := machine.find_owner(header)) is not None}
+        return min(owners, default=None) if need.whole else None
     return next((owner for header in sorted(reach) if (owner := machine.find_owner(header)) in owners), None)
 
 

@@ -1,10 +1,11 @@
 """missing-include: a name is used and its header reaches the file only by luck.
 
 What it does
-    Reports names of the standard library, of Boost and of ROS packages (types, and tf2's conversions) in files that do
-    not include the header that offers them, when the headers that they do include stopped bringing it along; names of
-    Boost that none of them brings, where some of them are Boost's; types of messages, services and actions whose header
-    none of them brings; and such types that another package of the workspace, which has interfaces alone, lacks.
+    Reports names of the standard library, of Boost and of ROS packages (types, macros, and tf2's conversions) in files
+    that do not include the header that offers them, when the headers that they do include stopped bringing it along;
+    names of Boost that none of them brings, where some of them are Boost's; types of messages, services and actions,
+    macros and types of much used ROS packages whose header none of them brings; and types of interfaces that another
+    package of the workspace, which has interfaces alone, lacks.
 
 Why it breaks
     Some other header brought it. The next compiler or library version stops including it, and the build fails on the
@@ -27,8 +28,9 @@ Use instead
 Not reported
     Names that a header which reaches the file may still bring; names of the standard library and of Boost in files that
     something unknown reaches; types that a file of the package announces itself; types of interfaces that the workspace
-    has; names of the standard library that packages found bring under a later C++ standard which they ask for; macros
-    that a file of the workspace defines; packages with target_precompile_headers().
+    has; other types of ROS packages that none of the headers ever brought, where the file has no variable of them;
+    names of the standard library that packages found bring under a later C++ standard which they ask for; macros that
+    a file of the workspace defines, or that macros alone use; packages with target_precompile_headers().
 """
 
 from ...model.cmake.build import is_for_tests

@@ -32,9 +32,9 @@ class IncludesTable(msgspec.Struct, frozen=True):
     """The shipped table. paths: include paths, whose places stand for them. owners: owner to header to its states, as
     `VERSION PLACE PLACE ...;VERSION -;...`: from that version on, and `-` where there is no such header. libraries:
     owners that are platform libraries. sparse: owners of which not every version was read, to those that were. names:
-    types to the headers that define them, of types that some header stopped bringing along. announced: types to
-    headers that only announce them. versions: distro to owner to the version that it has in the end, the compiler's
-    as `gcc`."""
+    types and macros to the headers that define them, of types that some header stopped bringing along, and of much used
+    packages. announced: types to headers that only announce them. versions: distro to owner to the version that it has
+    in the end, the compiler's as `gcc`."""
 
     paths: tuple[str, ...]
     owners: dict[str, dict[str, str]]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 import sqlite3
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import cache, cached_property, lru_cache
 from operator import itemgetter
 from pathlib import Path
@@ -30,7 +30,8 @@ from .changes import Line
 from .includes import Included, covers
 from .surface import BuildSurface, InstalledModule, PythonSurface, Surface
 
-_TYPES = CLASSES | {"enum", "alias"}
+TYPES = CLASSES | {"enum", "alias"}
+"""The kinds of types."""
 
 
 class StoredSurfacesError(UserError):
@@ -278,14 +279,14 @@ class SurfaceHistory:
         found = {name: {place for one in spans for place in _expand(one, count)} for name, spans in self._named.items()}
         return {name: tuple(self.versions[place] for place in sorted(places)) for name, places in found.items()}
 
-    def index_types(self) -> dict[str, tuple[str, ...]]:
-        """Classes, enums and aliases of namespaces that any version had, with the headers that define them."""
+    def index_types(self, kinds: Collection[str] = TYPES) -> dict[str, tuple[str, ...]]:
+        """What any version had of some kinds, outside of classes, with the headers that define it."""
         inline = {name for _, value, _ in self._rows.get("header", ()) for name in _decoded(value)[0]}
         found: dict[str, dict[str, None]] = {}
         classes: set[str] = set()
         for scope, value, _ in self._rows.get("entity", ()):
             head = _decode_head(value)
-            if head.kind in _TYPES:
+            if head.kind in kinds:
                 name = drop_inline(head.name, inline)
                 found.setdefault(name, {})[scope] = None
                 if head.kind in CLASSES:
