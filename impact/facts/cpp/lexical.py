@@ -686,19 +686,34 @@ _MADE = [
 ]
 
 
-_VALUE = re.compile(r"(?:[=+/!?|-]|return)\s*([a-z][a-z0-9]*_[a-z0-9_]*)(?=\s*[^\s\w(:{])")
-# What stands behind a type, or another word.
-_DECLARED = re.compile(r"\s[&*]*(?<=[\w>&*\]]\s)(?<!return\s)([a-z][a-z0-9]*_[a-z0-9_]*)")
-_TO_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{2,}\s*\(([^;{}]*)")
+_VALUES = [
+    re.compile(before + r"([a-z][a-z0-9]*_[a-z0-9_]*[a-z0-9])(?=\s*[^\s\w(:{<])")
+    for before in (r"[=+/!?|-]\s*", r"return\s+")
+]
+_TO_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{2,}\s*\([^;{}]*\Z")
 
 
 def _list_values(visible: str) -> tuple[str, ...]:
     """The names of several words that are values and not declared, as far as that shows."""
-    found = {name for name in _VALUE.findall(visible) if len(name) > 5 and not name.endswith(("_t", "_cast"))}
-    found.difference_update(_DECLARED.findall(visible))
-    if found:
-        found.difference_update(*map(_IDENTIFIER.findall, _TO_MACRO.findall(visible)))
-    return tuple(sorted(found))
+    values = chain.from_iterable(pattern.findall(visible) for pattern in _VALUES)
+    found = {name for name in values if len(name) > 5 and not name.endswith(("_t", "_cast"))}
+    return tuple(sorted(name for name in found if not _may_be_declared(name, visible)))
+
+
+def _may_be_declared(name: str, visible: str) -> bool:
+    """Whether a name stands behind a type or another word somewhere, as it does where it is declared, or is given to a
+    macro."""
+    at = visible.find(name)
+    while at >= 0:
+        around = visible[max(0, at - 200) : at]
+        before = around.rstrip(" \t\n&*")
+        last = before[-1:]
+        if before != around and (last.isalnum() or last in ("_", ">", "]")) and not before.endswith("return"):
+            return True
+        if "(" in around and _TO_MACRO.search(around):
+            return True
+        at = visible.find(name, at + 1)
+    return False
 
 
 def _list_namespaces(visible: str) -> tuple[str, ...]:
