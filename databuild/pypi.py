@@ -50,8 +50,8 @@ from .python_std import prepare_stub
 
 FILE = "changes_pypi.json.zst"
 PROJECTS = {name: name for name in (
-    "flask", "jinja2", "matplotlib", "networkx", "numpy", "paho-mqtt", "pillow", "pyserial", "scikit-image", "scipy",
-    "shapely", "transforms3d",
+    "flask", "jinja2", "matplotlib", "networkx", "numpy", "paho-mqtt", "pillow", "pyserial", "pytest",
+    "pyyaml", "scikit-image", "scipy", "setuptools", "shapely", "transforms3d",
 )}  # fmt: skip
 """Platform libraries, by their names in platform_versions.yaml, with what PyPI calls them: those behind rosdep's keys
 `python3-*` that released packages name, and that PyPI has under the versions of the platforms."""
