@@ -14,8 +14,9 @@ Why it breaks
 Severity
     error when a source compiles the file, none of the headers that reach it there brings the name on the target, under
     the C++ standard in force, and all of them are known, or for a ROS package's name none of the others depends on
-    that; warning when something else is not known, or is known to announce the type, and in installed headers that only
-    tests compile, or nothing; note for files that no source compiles, and for what lies ahead, in the newest distro.
+    that; warning when something else is not known, or is known to announce the type, where no header ever brought a
+    ROS package's name, and in installed headers that only tests compile, or nothing; note for files that no source
+    compiles, and for what lies ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
@@ -75,7 +76,10 @@ def missing_include(view: TargetView):
             lost = headers.find(need)
             if lost is None or precompiled or (need.at.path, lost.header) in reported:
                 continue
-            sure = places.compiles(need) and lost.sure and need.role == "build" and view.is_sure(need.conditions)
+            # That none ever brought a name of a ROS package rests on all of its headers having been read.
+            known = lost.once or lost.standard or need.name.startswith("boost::") or parse_type(need.name) is not None
+            sure = known and places.compiles(need) and lost.sure and need.role == "build"
+            sure = sure and view.is_sure(need.conditions)
             if lost.standard and not lost.once and not (sure and lost.now):
                 continue
             reported.add((need.at.path, lost.header))
