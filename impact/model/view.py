@@ -60,6 +60,8 @@ class Need(NamedTuple):
     targets: tuple[str, ...] = ()
 
 
+# Build types whose tool is called like them.
+_TOOLS = frozenset(("ament_cmake", "catkin", "cmake"))
 _HOW = {
     "tool": 0, "find_package": 0, "component": 0, "pkg-config": 0, "program": 0, "part": 0, "environment": 0,
     "include": 1, "import": 2, "plugin": 3, "launch": 4, "shell": 5, "setting": 6,
@@ -142,10 +144,13 @@ class TargetView(WorkspaceOnTarget):
 
     def _collect(self, package: Package) -> Iterator[Need]:
         linked = package.linked
-        if package.build_type == "cmake" and package.build.files:
-            line = next((one.line for one in package.manifest.exports if one.text == "cmake"), package.manifest.line)
-            providers = tuple(self.providers.find_executable("cmake"))
-            yield Need("tool", "cmake", providers, At(linked.manifest_path, line), "build", True)
+        if package.build_type in _TOOLS and package.build.files:
+            tool = package.build_type
+            line = next((one.line for one in package.manifest.exports if one.text == tool), package.manifest.line)
+            providers = tuple(self.providers.find_executable(tool)) or self.find_cmake(tool)
+            first = [name for name, kinds in self.collect_declared(package).items() if kinds & {"build", "buildtool"}]
+            if tool == "cmake" or not self.is_met(providers, self.list_transitive(first)):
+                yield Need("tool", tool, providers, At(linked.manifest_path, line), "build", True)
         for found in package.build.found:
             if found.how == "pkg_check_modules" and self.applies(found.conditions):
                 yield from self._list_module_needs(found)
