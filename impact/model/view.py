@@ -147,7 +147,7 @@ class TargetView(WorkspaceOnTarget):
         if package.build_type in _TOOLS and package.build.files:
             tool = package.build_type
             line = next((one.line for one in package.manifest.exports if one.text == tool), package.manifest.line)
-            providers = tuple(self.providers.find_executable(tool)) or self.find_cmake(tool)
+            providers = tuple(self.providers.find_executable(tool)) if tool == "cmake" else self.find_cmake(tool)
             first = [name for name, kinds in self.collect_declared(package).items() if kinds & {"build", "buildtool"}]
             if tool == "cmake" or not self.is_met(providers, self.list_transitive(first)):
                 yield Need("tool", tool, providers, At(linked.manifest_path, line), "build", True)
