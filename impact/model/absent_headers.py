@@ -23,8 +23,8 @@ _OF_RECONFIGURE = re.compile(r"(?P<package>\w+)/\w+Config\.h\Z")
 
 def find_misspelt(view: TargetView, package: Package, path: str, includer: str = "") -> str | None:
     """The header of the package that an include path means: it misses it by one letter, by case or ending, or names a
-    generated one below what is no package. includer: the file that a path such as `../a.h` starts at. None where
-    somebody has what it names."""
+    generated one below what is no package. includer: the file that has the include, where a path such as `../a.h` starts.
+    None where somebody has what it names."""
     if path.startswith("."):
         return _find_other_ending(package, path, includer)
     answered = any(provider.sure or provider.name != package.name for provider in view.find_header(path))
@@ -33,6 +33,8 @@ def find_misspelt(view: TargetView, package: Package, path: str, includer: str =
     bare = "/" not in path
     for header in package.linked.headers:
         own = header.rpartition("/")[2] if bare else f"/{header}".rpartition("/include/")[2]
+        if includer.endswith(f"/{header}") or includer == header:
+            continue  # no header means itself: it is called after what it wraps
         if is_slip(path, own) or _ENDING.sub("", path).lower() == _ENDING.sub("", own).lower():
             return own
     generated = _OF_RECONFIGURE.match(path)

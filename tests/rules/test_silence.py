@@ -235,6 +235,38 @@ SILENT = {
         ),
         ("rosimpact.toml", '"common_interfaces", ', ""),
     ),
+    "a target that a command of a found package may add": Silent(
+        "nonexistent-target",
+        ("jazzy",),
+        ament(
+            "find_package(ament_cmake_gtest REQUIRED)\nament_find_gtest()\ntarget_link_libraries(gtest_main gtest)",
+            "ament_cmake_gtest",
+        ),
+        ("CMakeLists.txt", "ament_find_gtest()\n", ""),
+    ),
+    "a command by the name that it has where the tree defines it anew": Silent(
+        "misspelt-command",
+        ("jazzy",),
+        ament(
+            "include(GoogleTest)\nfunction(gtest_discover_tests)\n  _gtest_discover_tests(${ARGV})\nendfunction()\n"
+            "gtest_discover_tests(sled)",
+        ),
+        ("CMakeLists.txt", "_gtest_discover_tests(${ARGV})", "gtest_discover_testss(${ARGV})"),
+    ),
+    "a header that is called nearly like the one that it wraps": Silent(
+        "unknown-header",
+        ("dashing",),
+        {
+            **ament(
+                "find_package(OpenSplice REQUIRED)\nadd_executable(pull pull.cpp)\n"
+                "target_include_directories(pull PRIVATE include)",
+                "libopensplice69",
+                pull_cpp='#include "rope__handle.h"\nint main() { return 0; }\n',
+            ),
+            "include/rope__handle.h": "#include <rope_handle.h>\n",
+        },
+        ("pull.cpp", "rope__handle.h", "rope_handle.h"),
+    ),
     "modules that the package's own virtual environment may hold": Silent(
         "undeclared-package",
         ("noetic",),

@@ -166,7 +166,7 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
     typesupport = run.is_typesupport(name)
     known = typesupport or name in run.maybe_set or "::" in name
     known = known or (run.command == "add_dependencies" and _may_be_made_along(run, name))
-    if not known and not _is_asked_for(run, name):
+    if not known and not _is_asked_for(run, name) and not calls_unmodelled(run):
         run.refuse("no target", name)
     return run.ensure_target(name, "generated" if typesupport else "unknown", name.at)
 

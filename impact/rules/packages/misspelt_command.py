@@ -36,8 +36,10 @@ def misspelt_command(view: TargetView, package: Package):
     build, known = package.build, (COMMANDS, HANDLERS, WRAPPERS, view.providers.commands.get(view.target.ros, {}))
     seen = set()
     for use in build.uses:
-        if use.kind != "command" or use.name in seen or any(use.name in commands for commands in known):
+        if use.kind != "command" or use.name in seen:
             continue
+        if any(name in commands for commands in known for name in (use.name, use.name.removeprefix("_"))):
+            continue  # with an underscore: what a command was before the tree defined it anew
         seen.add(use.name)
         meant = {name for commands in known for name in commands if is_slip(use.name, name)}
         if len(use.name) >= _SHORTEST and len(meant) == 1:

@@ -8,7 +8,7 @@ Why it breaks
     The compiler does not know the class: "has not been declared".
 
 Severity
-    error; warning in tests, and under conditions that are not known.
+    warning, since another class of that name may be meant.
 
 Example
     #include <Eigen/Dense>                      // and no #include "tracker/pose_estimator.hpp"
@@ -23,7 +23,7 @@ Not reported
 """
 
 from ...model.package import normalise_stem
-from ..vocabulary import Diagnostic, Package, TargetView, Text, list_place_doubts, rule
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, list_place_doubts, rule
 from .known_includes import is_known_include
 
 
@@ -42,5 +42,5 @@ def missing_own_header(view: TargetView, package: Package):
             continue
         if all(is_known_include(view, path) for path in outward):
             data = {"header": package.strip_path(header).removeprefix("include/")}
-            doubts = list_place_doubts(view, use.role, use.conditions)
+            doubts = (*list_place_doubts(view, use.role, use.conditions), Doubt.AMBIGUOUS)
             yield Diagnostic(use.at, use.text, package.name, data, doubts=doubts)
