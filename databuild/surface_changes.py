@@ -47,7 +47,10 @@ class Lines:
             if before is not None:
                 if id(before) not in compared:
                     compared[id(before)] = tuple(_list_events(package, before, state))
+                vanished = _has_headers(package, before) and not _has_headers(package, state)
                 for thing, event in compared[id(before)]:
+                    if vanished and is_out_of_sight(thing[0], event):
+                        continue
                     if thing not in self._events.get(key, {}) and _may_have_been(thing, event):
                         continue
                     placed = msgspec.structs.replace(event, place=len(versions))
@@ -68,6 +71,16 @@ class Lines:
             approximate = tuple(self._approximate.get((package, generation), ()))
             found[package, generation] = pack(Line(tuple(versions), events, bases, approximate))
         return found
+
+
+def _has_headers(package: str, state: RepositorySurfaces) -> bool:
+    return bool(state.surfaces[package].build.headers)
+
+
+def is_out_of_sight(side: str, event: ChangeEvent) -> bool:
+    """Whether a name of C++, or a header, was merely not read, if it goes at a version of which no header was: its build
+    installs them in a way that is not understood. What is found elsewhere has moved."""
+    return side in ("c++", "header") and all(reported.kind == "removed" for reported in event.reported)
 
 
 def _may_have_been(thing: tuple[str, str], event: ChangeEvent) -> bool:

@@ -565,3 +565,17 @@ class Versions:
 
     def list_asked(self, package: str, ros: int) -> tuple[tuple[str, bool], ...]:
         return self._versions
+
+
+@pytest.mark.parametrize(("has_headers", "gone"), [(True, {"away::Sled"}), (False, set())])
+def test_names_of_a_version_without_any_header_are_not_gone(has_headers, gone):
+    lines = Lines()
+    for version, code in (("1.0.0", "namespace away { struct Sled {}; }"), ("2.0.0", "")):
+        there = (Header("a.hpp", "include/a.hpp", "a.hpp"),) if code or has_headers else ()
+        read = tuple(("a.hpp", header(code.encode())) for _ in there)
+        build = BuildSurface("away", version, headers=there)
+        state = RepositorySurfaces({"away": Surface("away", version, build, PythonSurface("away"), read)})
+        lines.add("away", version, (2,), state)
+    events = read_packed(lines.pack_lines()["away", 2], Line).events
+    assert {name for name, found in events.get("c++", {}).items() if any(e.has is None for e in found)} == gone
+    assert "header" not in events

@@ -235,6 +235,16 @@ SILENT = {
         ),
         ("rosimpact.toml", '"common_interfaces", ', ""),
     ),
+    "a program whose last of several destinations is where it is looked for": Silent(
+        "misplaced-install",
+        ("jazzy",),
+        ament(
+            "add_executable(pull pull.cpp)\n"
+            "install(TARGETS pull RUNTIME DESTINATION bin\n  DESTINATION lib/${PROJECT_NAME})",
+            pull_cpp="int main() { return 0; }\n",
+        ),
+        ("CMakeLists.txt", "bin\n  DESTINATION lib/${PROJECT_NAME}", "bin"),
+    ),
     "a target that a command of a found package may add": Silent(
         "nonexistent-target",
         ("jazzy",),

@@ -106,7 +106,7 @@ def _install_targets(run: Interpreter, call: CommandCall, args: list[Word]) -> N
         elif expecting == "DESTINATION" and artifact == "INCLUDES":
             includes.append(run.clean(item))
         elif expecting == "DESTINATION":
-            destinations.setdefault(artifact, run.clean(item))
+            destinations[artifact] = run.clean(item)  # of several, the last
             expecting = ""
         elif expecting == "EXPORT":
             export = str(item)
