@@ -240,8 +240,10 @@ SILENT = {
         ("jazzy",),
         ament(
             "add_executable(pull pull.cpp)\n"
-            "install(TARGETS pull RUNTIME DESTINATION bin\n  DESTINATION lib/${PROJECT_NAME})",
+            "install(TARGETS pull RUNTIME DESTINATION bin\n  DESTINATION lib/${PROJECT_NAME})\n"
+            "install(DIRECTORY launch DESTINATION share/${PROJECT_NAME})",
             pull_cpp="int main() { return 0; }\n",
+            launch__pull_launch_xml='<launch><node pkg="sled" exec="pull"/></launch>\n',
         ),
         ("CMakeLists.txt", "bin\n  DESTINATION lib/${PROJECT_NAME}", "bin"),
     ),
