@@ -235,6 +235,16 @@ SILENT = {
         ),
         ("rosimpact.toml", '"common_interfaces", ', ""),
     ),
+    "the folder of a Python package that the build installs": Silent(
+        "nonexistent-install",
+        ("jazzy",),
+        ament(
+            "find_package(ament_cmake_python REQUIRED)\nament_python_install_package(${PROJECT_NAME})",
+            "ament_cmake_python",
+        )
+        | {"sled/__init__.py": ""},
+        ("CMakeLists.txt", "package(${PROJECT_NAME})", "package(${PROJECT_NAME}_tools)"),
+    ),
     "a program whose last of several destinations is where it is looked for": Silent(
         "misplaced-install",
         ("jazzy",),

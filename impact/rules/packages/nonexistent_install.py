@@ -1,15 +1,15 @@
 """nonexistent-install: an install rule names a file or folder that does not exist.
 
 What it does
-    Reports files, programs and folders in install() that neither the tree has nor the build makes, and patterns such as
-    `lib/*.so`, which install() does not expand.
+    Reports files, programs and folders in install() that neither the tree has nor the build makes, patterns such as
+    `lib/*.so`, which install() does not expand, and folders that ament_python_install_package() is to find.
 
 Why it breaks
     `make install` stops: "file INSTALL cannot find".
 
 Severity
-    error; warning for folders of headers, which may be there and empty, and for folders of which only matching files
-    are installed, since CMake goes on without them.
+    error; warning for folders of Python packages, for folders of headers, which may be there and empty, and for folders
+    of which only matching files are installed, since CMake goes on without them.
 
 Example
     install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})     # there is no folder `config`
@@ -31,6 +31,8 @@ from .install_rules import list_copying_rules
 
 # Endings of files that people write; the build itself may write others.
 _BY_HAND = (".launch", ".xml", ".yaml", ".py", ".h", ".hpp", ".md", ".rviz")
+# What the build makes there, such as the modules of interfaces, is not always known.
+_MAYBE_MADE = (Doubt.INCOMPLETE,)
 
 
 @rule(
@@ -42,9 +44,17 @@ _BY_HAND = (".launch", ".xml", ".yaml", ".py", ".h", ".hpp", ".md", ".rviz")
             "use install(DIRECTORY) with `FILES_MATCHING PATTERN`, or list the files by `file(GLOB)`",
         ),
         "nothing": Text("`{subject}` does not exist, so the rule installs nothing", "correct the folder"),
+        "python": Text(
+            "`{subject}` does not exist, so ament_python_install_package() stops", "create it, or name the folder"
+        ),
     },
 )
 def nonexistent_install(view: TargetView, package: Package):
+    for install in package.build.installs:
+        if install.kind == "python" and install.destination and view.is_sure(install.conditions):
+            for path in map(posixpath.normpath, install.items):
+                if "$" not in path and is_absent(view, package, path):
+                    yield Diagnostic(install.at, package.strip_path(path), package.name, {}, "python", _MAYBE_MADE)
     for install in list_copying_rules(view, package):
         # A folder of which only some files are installed may be missing.
         kind, doubts = ("nothing", (Doubt.DISTURBS,)) if install.only else ("absent", ())
