@@ -5,6 +5,7 @@ This is the join that most rules ask: model by target. Nothing here reads files.
 
 from __future__ import annotations
 
+import posixpath
 import re
 from collections.abc import Iterable, Iterator
 from functools import cached_property
@@ -215,7 +216,9 @@ class TargetView(WorkspaceOnTarget):
             reference = use.reference
             name = reference.package
             if reference.kind == "command":
-                yield from self._list_started(package, use)
+                # What other code runs is often a tool of who develops it, or one of several that it tries.
+                if "launch" in posixpath.basename(use.at.path):
+                    yield from self._list_started(package, use)
                 continue
             if not name and reference.kind == "plugin":
                 name = self._find_loaded(package, use)
@@ -359,7 +362,7 @@ class TargetView(WorkspaceOnTarget):
         return frozenset(u.reference.package for u in package.linked.references if u.reference.kind == "executable")
 
     def _list_started(self, package: Package, use: ReferenceUse) -> Iterator[Need]:
-        """A program that a launch file or Python runs by its name alone; those that every machine has are left out, and
+        """A program that a launch file runs by its name alone; those that every machine has are left out, and
         what the workspace makes itself."""
         name, certain = use.reference.name, not use.reference.conditional
         providers = tuple(self.providers.find_executable(name))

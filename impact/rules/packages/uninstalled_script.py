@@ -21,6 +21,7 @@ Not reported
 import posixpath
 from collections import Counter
 from collections.abc import Collection, Mapping
+from itertools import chain
 
 from ....edges.groups import group_pairs
 from ...model.package import find_folder_role
@@ -55,6 +56,7 @@ def uninstalled_script(view: TargetView, package: Package):
     folders, others = {posixpath.dirname(item) for item in programs}, {posixpath.basename(item) for item in programs}
     nodes = _list_nodes(package, installs, view.target.ros, imported, folders)
     kinds = Counter((posixpath.dirname(item), posixpath.splitext(item)[1]) for item in programs)
+    found: dict[str, list[Diagnostic]] = {"script": [], "node": [], "beside": []}
     for path in (*package.linked.scripts, *package.linked.shells, *_list_shells(package, kinds)):
         name, folder = posixpath.basename(path), posixpath.dirname(path)
         alike = "." not in name or kinds[folder, posixpath.splitext(name)[1]] > 1
@@ -66,7 +68,8 @@ def uninstalled_script(view: TargetView, package: Package):
             kind = "script" if name in scripts else "beside" if beside else "node"
             of_catkin = package.build_type == "catkin" and path not in package.linked.shells
             data = {"command": _OF_CATKIN if of_catkin else "install(PROGRAMS ... DESTINATION lib/${PROJECT_NAME})"}
-            yield Diagnostic(At(path, 1), name, package.name, data, kind, together=_ONCE)
+            found[kind].append(Diagnostic(At(path, 1), name, package.name, data, kind, together=_ONCE))
+    yield from chain.from_iterable(found.values())  # the first of them is the warning
 
 
 def _list_shells(package: Package, kinds: Counter[tuple[str, str]]) -> list[str]:

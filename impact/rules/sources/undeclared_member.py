@@ -32,6 +32,7 @@ from .known_includes import is_known_include
 
 @rule(
     severity="warning",
+    preview=True,
     texts={
         "member": Text("`{subject}` is used, but `{owner}` does not declare it", "declare it, or correct its name"),
         "value": Text("`{subject}` is used, but nothing declares it", "declare it, or correct its name"),
