@@ -78,8 +78,8 @@ def _has_headers(package: str, state: RepositorySurfaces) -> bool:
 
 
 def is_out_of_sight(side: str, event: ChangeEvent) -> bool:
-    """Whether a name of C++, or a header, was merely not read, if it goes at a version of which no header was: its build
-    installs them in a way that is not understood. What is found elsewhere has moved."""
+    """Whether a name of C++, or a header, was merely not read, if it goes at a version of which no header was: its
+    build installs them in a way that is not understood. What is found elsewhere has moved."""
     return side in ("c++", "header") and all(reported.kind == "removed" for reported in event.reported)
 
 

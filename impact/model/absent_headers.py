@@ -23,8 +23,8 @@ _OF_RECONFIGURE = re.compile(r"(?P<package>\w+)/\w+Config\.h\Z")
 
 def find_misspelt(view: TargetView, package: Package, path: str, includer: str = "") -> str | None:
     """The header of the package that an include path means: it misses it by one letter, by case or ending, or names a
-    generated one below what is no package. includer: the file that has the include, where a path such as `../a.h` starts.
-    None where somebody has what it names."""
+    generated one below what is no package. includer: the file that has the include, where a path such as `../a.h`
+    starts. None where somebody has what it names."""
     if path.startswith("."):
         return _find_other_ending(package, path, includer)
     answered = any(provider.sure or provider.name != package.name for provider in view.find_header(path))
