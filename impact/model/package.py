@@ -20,7 +20,7 @@ from ...edges.reach import walk
 from ..conditions import Environment, holds
 from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
-from ..facts.cpp.lexical import KEYWORDS, CppFile, Include, NameUseInFile
+from ..facts.cpp.lexical import CppFile, Include
 from ..facts.cpp.schema import CodeSpot
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
@@ -906,55 +906,28 @@ class PackageJoin:
         return frozenset(space.partition("::")[0] for at in self.cpp.values() for space in at.namespaces)
 
     def list_undeclared(self, roles) -> Iterator[tuple[NameUse, tuple[str, ...], tuple[str, ...]]]:
-        """As LinkedPackage.undeclared: words that end with an underscore, as members do, in sources that define no
-        class, and values of which nothing shows that they are declared."""
+        """As LinkedPackage.undeclared: words that end with an underscore, in sources that define no class."""
         for path, (role, _, targets, conditions) in roles.items():
-            if not targets or is_header(path) or self._includes_template(path):
+            if not targets or is_header(path) or self.cpp[path].type_names or self._includes_template(path):
                 continue
             others = [self.list_words(at) for at in (*self.list_reached(path)[1:], *self.list_offered(path))]
-            for one in self._list_lacking(path):
-                if not any(one.text.rpartition("::")[2] in words for words in others):
-                    around = conditions + self.macros.resolve_conditions(one.conditions, targets)
-                    at = At(path, one.line, one.column)
-                    yield NameUse(one.text, at, role, False, "cpp", around, targets), (), self.list_outward(path)
-            spoken = () if self.cpp[path].type_names else self.list_words(path)
-            ending = {word for word in spoken if word.endswith("_") and len(word) > 4}
-            words = {word for word in (*ending, *self.cpp[path].values) if others and word[0].islower()}
-            words = {word for word in words if not any(word in one for one in others)}
+            ending = (word for word in self.list_words(path) if word.endswith("_") and len(word) > 4)
+            words = {word for word in ending if others and word[0].islower() and not any(word in one for one in others)}
             if not words:
                 continue
             known, uses = self.load(path), {}
-            mentions = known.list_mentions(sorted(words - known.defines - {*self.cpp[path].defined}))
-            for use in known.list_uses(mentions):
+            for use in known.list_uses(known.list_mentions(sorted(words - known.defines - {*self.cpp[path].defined}))):
                 uses.setdefault(use.word, []).append(use)
             for word, same in uses.items():
                 first, plain = same[0], all(one.form == "bare" and one.last and one.call is None for one in same)
-                if not plain or any(one.local is not None for one in same):
+                if not plain or any(one.local is not None or not one.place.owner for one in same):
                     continue
-                if word in ending and not all(one.place.owner for one in same):
-                    continue
-                if word not in ending and not all(one.place.function for one in same):
-                    continue
-                bases = self._list_outer_bases(path, first.place.owner) if first.place.owner else ()
-                alike = word not in ending or not bases or self._has_alike(path, first.place.owner, word)
-                if bases is not None and alike:
+                bases = self._list_outer_bases(path, first.place.owner)
+                if bases is not None and (not bases or self._has_alike(path, first.place.owner, word)):
                     around = conditions + self.macros.resolve_conditions(first.at.conditions or (), targets)
                     at = At(path, first.at.line, first.at.column)
                     use = NameUse(word, at, role, False, "cpp", around, targets, first.place.owner)
                     yield use, bases, self.list_outward(path)
-
-    def _list_lacking(self, path: str) -> Iterator[NameUseInFile]:
-        """Names that are written as those of functions are, of a namespace that is called like the package and that a
-        header opens, where a source has them in no other way."""
-        facts = self.cpp[path]
-        named = [one for one in facts.qualified if one.text.startswith(f"{self.name}::")]
-        headers = (*self.list_reached(path)[1:], *self.list_offered(path)) if named else ()
-        spaces = {space for at in headers for space in self.facts(at).facts.namespaces}
-        for one in named if spaces else ():
-            space, _, last = one.text.rpartition("::")
-            written = last[0].islower() and len(last) > 5 and last not in KEYWORDS
-            if space in spaces and written and last not in facts.words.split():
-                yield one
 
     def _has_alike(self, path: str, owner: str, word: str) -> bool:
         """Whether a class has a member that a word may stand for: one letter off, or shortened."""

@@ -56,8 +56,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). parents:
     derived classes and aliases of types, with the words of their bases or of what they stand for. initializes: a
     constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
-    comments, literals, includes and blanks. values: names of several words that stand where values do, and
-    seem to be declared nowhere, nor given to a macro.
+    comments, literals, includes and blanks.
     """
 
     includes: tuple[Include, ...]
@@ -80,7 +79,6 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     parents: tuple[tuple[str, str], ...] = ()
     initializes: bool = False
     code: str = ""
-    values: tuple[str, ...] = ()
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -561,7 +559,6 @@ def extract(data: bytes) -> CppFile:
         made=_list_made_classes(visible, tokens_text),
         parents=parents,
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
-        values=_list_values(visible),
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
     )
 
@@ -684,36 +681,6 @@ _MADE = [
     re.compile(rf"{word}(?<!\w{word}){between}(?:::)?([A-Za-z_]\w*(?:::\w+)*)\s*[>(;{{,)]")
     for word, between in (("new", r"\s+"), ("make_shared", r"\s*<\s*"), ("make_unique", r"\s*<\s*"))
 ]
-
-
-_VALUES = [
-    re.compile(before + r"([a-z][a-z0-9]*_[a-z0-9_]*[a-z0-9])(?=\s*[^\s\w(:{<])")
-    for before in (r"[=+/!?|-]\s*", r"return\s+")
-]
-_TO_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{2,}\s*\([^;{}]*\Z")
-
-
-def _list_values(visible: str) -> tuple[str, ...]:
-    """The names of several words that are values and not declared, as far as that shows."""
-    values = chain.from_iterable(pattern.findall(visible) for pattern in _VALUES)
-    found = {name for name in values if len(name) > 5 and not name.endswith(("_t", "_cast"))}
-    return tuple(sorted(name for name in found if not _may_be_declared(name, visible)))
-
-
-def _may_be_declared(name: str, visible: str) -> bool:
-    """Whether a name stands behind a type or another word somewhere, as it does where it is declared, or is given to a
-    macro."""
-    at = visible.find(name)
-    while at >= 0:
-        around = visible[max(0, at - 200) : at]
-        before = around.rstrip(" \t\n&*")
-        last = before[-1:]
-        if before != around and (last.isalnum() or last in ("_", ">", "]")) and not before.endswith("return"):
-            return True
-        if "(" in around and _TO_MACRO.search(around):
-            return True
-        at = visible.find(name, at + 1)
-    return False
 
 
 def _list_namespaces(visible: str) -> tuple[str, ...]:
