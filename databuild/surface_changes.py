@@ -9,6 +9,7 @@ import msgspec
 from ..impact.facts.surface import CLASSES, FUNCTIONS
 from ..impact.targets.surface.changes import ChangeEvent, ComparedThing, Form, Line, make_overload
 from ..impact.targets.surface.python import UNKNOWN
+from ..impact.targets.surface.surface import BuildSurface
 from .surface.compare import RepositorySurfaces, compare
 from .surface.version_change import VersionChange
 from .surface_file import pack, shorten_message
@@ -47,7 +48,8 @@ class Lines:
             if before is not None:
                 if id(before) not in compared:
                     compared[id(before)] = tuple(_list_events(package, before, state))
-                vanished = _has_headers(package, before) and not _has_headers(package, state)
+                built = [one.surfaces[package].build for one in (before, state)]
+                vanished = is_read_in_part(*built)
                 for thing, event in compared[id(before)]:
                     if vanished and is_out_of_sight(thing[0], event):
                         continue
@@ -73,13 +75,15 @@ class Lines:
         return found
 
 
-def _has_headers(package: str, state: RepositorySurfaces) -> bool:
-    return bool(state.surfaces[package].build.headers)
+def is_read_in_part(before: BuildSurface, after: BuildSurface) -> bool:
+    """Whether a version has no header, although the one before has some, and still has what is built: its build installs
+    them in a way that is not understood. One that has nothing at all any more was given up, or split."""
+    return bool(before.headers and not after.headers and (after.targets or after.libraries or after.programs))
 
 
 def is_out_of_sight(side: str, event: ChangeEvent) -> bool:
-    """Whether a name of C++, or a header, was merely not read, if it goes at a version of which no header was: its
-    build installs them in a way that is not understood. What is found elsewhere has moved."""
+    """Whether a name of C++, or a header, was merely not read, if it goes at a version that was read in part. What is
+    found elsewhere has moved."""
     return side in ("c++", "header") and all(reported.kind == "removed" for reported in event.reported)
 
 

@@ -150,7 +150,8 @@ class TargetView(WorkspaceOnTarget):
             line = next((one.line for one in package.manifest.exports if one.text == tool), package.manifest.line)
             providers = tuple(self.providers.find_executable(tool)) if tool == "cmake" else self.find_cmake(tool)
             first = [name for name, kinds in self.collect_declared(package).items() if kinds & {"build", "buildtool"}]
-            if tool == "cmake" or not self.is_met(providers, self.list_transitive(first)):
+            parts = any(name.startswith(tool) for name in first)  # such as ament_cmake_core
+            if tool == "cmake" or not (parts or self.is_met(providers, self.list_transitive(first))):
                 yield Need("tool", tool, providers, At(linked.manifest_path, line), "build", True)
         for found in package.build.found:
             if found.how == "pkg_check_modules" and self.applies(found.conditions):

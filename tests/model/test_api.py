@@ -12,7 +12,7 @@ from rosimpact.impact.model.api import ASSIGNING, Changes, Vocabulary
 from rosimpact.impact.model.cpp.resolver import Resolver
 from rosimpact.impact.model.cpp.uses import ApiUses, normalise_parameter
 from rosimpact.impact.targets.surface.changes import Line
-from rosimpact.impact.targets.surface.surface import BuildSurface, Header, PythonSurface, Surface
+from rosimpact.impact.targets.surface.surface import BuildSurface, Header, InstalledProgram, PythonSurface, Surface
 from rosimpact.impact.targets.unpacked import read_packed
 
 from tests.model.known_files import make_known
@@ -567,15 +567,18 @@ class Versions:
         return self._versions
 
 
-@pytest.mark.parametrize(("has_headers", "gone"), [(True, {"away::Sled"}), (False, set())])
-def test_names_of_a_version_without_any_header_are_not_gone(has_headers, gone):
+@pytest.mark.parametrize(
+    ("has_headers", "programs", "gone"),
+    [(True, 1, {"away::Sled"}), (False, 1, set()), (False, 0, {"away::Sled"})],
+)
+def test_names_of_a_version_that_was_read_without_its_headers_are_not_gone(has_headers, programs, gone):
     lines = Lines()
     for version, code in (("1.0.0", "namespace away { struct Sled {}; }"), ("2.0.0", "")):
         there = (Header("a.hpp", "include/a.hpp", "a.hpp"),) if code or has_headers else ()
         read = tuple(("a.hpp", header(code.encode())) for _ in there)
-        build = BuildSurface("away", version, headers=there)
+        build = BuildSurface("away", version, headers=there, programs=(InstalledProgram("sled", "bin", "binary"),) * programs)
         state = RepositorySurfaces({"away": Surface("away", version, build, PythonSurface("away"), read)})
         lines.add("away", version, (2,), state)
     events = read_packed(lines.pack_lines()["away", 2], Line).events
     assert {name for name, found in events.get("c++", {}).items() if any(e.has is None for e in found)} == gone
-    assert "header" not in events
+    assert ("header" in events) == (not has_headers and bool(gone))
