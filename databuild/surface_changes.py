@@ -76,8 +76,8 @@ class Lines:
 
 
 def is_read_in_part(before: BuildSurface, after: BuildSurface) -> bool:
-    """Whether a version has no header, although the one before has some, and still has what is built: its build installs
-    them in a way that is not understood. One that has nothing at all any more was given up, or split."""
+    """Whether a version has no header, although the one before has some, and still has what is built: its build
+    installs them in a way that is not understood. One that has nothing at all any more was given up, or split."""
     return bool(before.headers and not after.headers and (after.targets or after.libraries or after.programs))
 
 

@@ -576,7 +576,8 @@ def test_names_of_a_version_that_was_read_without_its_headers_are_not_gone(has_h
     for version, code in (("1.0.0", "namespace away { struct Sled {}; }"), ("2.0.0", "")):
         there = (Header("a.hpp", "include/a.hpp", "a.hpp"),) if code or has_headers else ()
         read = tuple(("a.hpp", header(code.encode())) for _ in there)
-        build = BuildSurface("away", version, headers=there, programs=(InstalledProgram("sled", "bin", "binary"),) * programs)
+        made = (InstalledProgram("sled", "bin", "binary"),) * programs
+        build = BuildSurface("away", version, headers=there, programs=made)
         state = RepositorySurfaces({"away": Surface("away", version, build, PythonSurface("away"), read)})
         lines.add("away", version, (2,), state)
     events = read_packed(lines.pack_lines()["away", 2], Line).events
