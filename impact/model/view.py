@@ -363,11 +363,11 @@ class TargetView(WorkspaceOnTarget):
         return frozenset(u.reference.package for u in package.linked.references if u.reference.kind == "executable")
 
     def _list_started(self, package: Package, use: ReferenceUse) -> Iterator[Need]:
-        """A program that a launch file runs by its name alone; those that every machine has are left out, and
-        what the workspace makes itself."""
+        """A program of a ROS package that a launch file runs by its name alone, and that the workspace does not make.
+        Which key brings a program of the platform is not sure enough: several do, and other packages vendor it."""
         name, certain = use.reference.name, not use.reference.conditional
         providers = tuple(self.providers.find_executable(name))
-        if not providers or not providers[0].name or name in self.apt.base or name in self.workspace.packages:
+        if not providers or providers[0].kind != "ros" or name in self.workspace.packages:
             return
         if any(target.name == name for target in package.build.targets):
             return

@@ -95,8 +95,11 @@ def undeclared_package(view: TargetView, package: Package):
 
 
 def _find_gravest(view: TargetView, package: Package, name: str, needs: list[Need]) -> tuple[Need, tuple[Doubt, ...]]:
-    """The need of a package that is surest to break, with what speaks against an error there."""
-    found = [(need, collect_missing_doubts(view, package, need, name)) for need in sorted(needs, key=make_sort_key)]
+    """The need of a package that is surest to break, with what speaks against an error there. Settings for what CMake
+    looks for, and goes on without, are of use where that is there."""
+    spared = any(need.how == "find_package" and not need.required for need in needs)
+    needs = [need for need in sorted(needs, key=make_sort_key) if not (spared and need.how == "setting")]
+    found = [(need, collect_missing_doubts(view, package, need, name)) for need in needs]
     return max(found, key=lambda one: SEVERITIES.index(limit_severity(*one[1])))
 
 
