@@ -536,7 +536,6 @@ def drop_stored(surfaces: Surfaces, table: includes.IncludesTable) -> includes.I
 
 _USED = 5
 """How many released packages have to declare a package in a distro, for its names to be much used."""
-_PARTS = re.compile(r"[/.]")
 # Macros that guard a header, or that a build defines.
 _SETTING = re.compile(r"_(?:H|HPP|HH)_?$|_(?:PUBLIC|LOCAL|EXPORT|IMPORT|TYPE)$|_VERSION")
 
@@ -556,7 +555,8 @@ def _find_used_names(surfaces: Surfaces) -> dict[str, tuple[str, ...]]:
                 if head != name or (name.startswith(f"{package.upper()}_") and not _SETTING.search(name)):
                     owners[name].add(package)
                     found[name].update(dict.fromkeys(where))
-                    own.update([name] if head == name or any(head in _PARTS.split(path) for path in where) else ())
+                    called = head == name or any(includes.is_called_after(path, head) for path in where)
+                    own.update([name] if called else ())
     return {
         name: tuple(sorted(where))
         for name, where in sorted(found.items())

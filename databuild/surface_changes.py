@@ -48,11 +48,7 @@ class Lines:
             if before is not None:
                 if id(before) not in compared:
                     compared[id(before)] = tuple(_list_events(package, before, state))
-                built = [one.surfaces[package].build for one in (before, state)]
-                vanished = is_read_in_part(*built)
                 for thing, event in compared[id(before)]:
-                    if vanished and is_out_of_sight(thing[0], event):
-                        continue
                     if thing not in self._events.get(key, {}) and _may_have_been(thing, event):
                         continue
                     placed = msgspec.structs.replace(event, place=len(versions))
@@ -103,6 +99,7 @@ def _list_events(
 ) -> Iterator[tuple[tuple[str, str], ChangeEvent]]:
     """What changed of a package, by side and name. The places are filled in later."""
     found: dict[tuple[str, str], list[ComparedThing]] = {}
+    in_part = is_read_in_part(before.surfaces[package].build, after.surfaces[package].build)
     for change in compare(before.surfaces[package], after.surfaces[package], before, after):
         if change.side == "message" or change.what in _UNTOLD:
             continue
@@ -118,7 +115,9 @@ def _list_events(
         had, has = _find_form(package, side, name, before), _find_form(package, side, name, after)
         if side == "c++" and had is not None and had == has and all(reported.kind == "added" for reported in each):
             continue  # another header declares it too
-        yield (side, name), ChangeEvent(0, tuple(each), had, has)
+        event = ChangeEvent(0, tuple(each), had, has)
+        if not (in_part and is_out_of_sight(side, event)):
+            yield (side, name), event
 
 
 def _find_form(package: str, side: str, name: str, state: RepositorySurfaces) -> Form | None:

@@ -32,9 +32,9 @@ def find_misspelt(view: TargetView, package: Package, path: str, includer: str =
         return None
     bare = "/" not in path
     for header in package.linked.headers:
-        own = header.rpartition("/")[2] if bare else f"/{header}".rpartition("/include/")[2]
-        if includer.endswith(f"/{header}") or includer == header:
+        if header == includer:
             continue  # no header means itself: it is called after what it wraps
+        own = header.rpartition("/")[2] if bare else f"/{header}".rpartition("/include/")[2]
         if is_slip(path, own) or _ENDING.sub("", path).lower() == _ENDING.sub("", own).lower():
             return own
     generated = _OF_RECONFIGURE.match(path)

@@ -146,13 +146,7 @@ class TargetView(WorkspaceOnTarget):
     def _collect(self, package: Package) -> Iterator[Need]:
         linked = package.linked
         if package.build_type in _TOOLS and package.build.files:
-            tool = package.build_type
-            line = next((one.line for one in package.manifest.exports if one.text == tool), package.manifest.line)
-            providers = tuple(self.providers.find_executable(tool)) if tool == "cmake" else self.find_cmake(tool)
-            first = [name for name, kinds in self.collect_declared(package).items() if kinds & {"build", "buildtool"}]
-            parts = any(name.startswith(tool) for name in first)  # such as ament_cmake_core
-            if tool == "cmake" or not (parts or self.is_met(providers, self.list_transitive(first))):
-                yield Need("tool", tool, providers, At(linked.manifest_path, line), "build", True)
+            yield from self._list_tool_needs(package, package.build_type)
         for found in package.build.found:
             if found.how == "pkg_check_modules" and self.applies(found.conditions):
                 yield from self._list_module_needs(found)
@@ -235,6 +229,16 @@ class TargetView(WorkspaceOnTarget):
                 how = "setting"
             certain = not reference.conditional
             yield Need(how, name, (Provider("ros", name),), use.at, use.role, certain, certain)
+
+    def _list_tool_needs(self, package: Package, tool: str) -> Iterator[Need]:
+        """The tool that packages of a build type are built with: CMake itself, or a package of ROS, where neither a
+        part of it is declared to build with, such as ament_cmake_core, nor what is brings it."""
+        line = next((one.line for one in package.manifest.exports if one.text == tool), package.manifest.line)
+        providers = tuple(self.providers.find_executable(tool)) if tool == "cmake" else self.find_cmake(tool)
+        first = [name for name, kinds in self.collect_declared(package).items() if kinds & {"build", "buildtool"}]
+        parts = any(name.startswith(tool) for name in first)
+        if tool == "cmake" or not (parts or self.is_met(providers, self.list_transitive(first))):
+            yield Need("tool", tool, providers, At(package.linked.manifest_path, line), "build", True)
 
     def _list_environment_needs(self, package: Package) -> Iterator[Need]:
         """Environment variables of ROS that CMake tests, or stops without, where nothing that sets them comes along:

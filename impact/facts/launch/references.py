@@ -307,8 +307,8 @@ def _add_node(found: _Found, element: Element, conditional: bool) -> None:
 
 
 def _add_command(found: _Found, attribute: Attribute | None, conditional: bool) -> None:
-    """The program that a command line starts with, where it is named by itself and not by a path; what ROS is told to
-    start."""
+    """The program that a command line starts with, where it is named by itself and not by a path; the node or launch
+    file that a command of ROS starts."""
     if attribute is None:
         return
     started = SHELL.match(attribute.value.lstrip())

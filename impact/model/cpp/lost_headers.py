@@ -12,7 +12,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 from ....edges.memory import cache_method
-from ...targets.providers.includes import HeadersOfMachine, list_announcing_headers, load_offered
+from ...targets.providers.includes import HeadersOfMachine, is_called_after, list_announcing_headers, load_offered
 from ...targets.providers.message_headers import find_package, parse_type
 from ...targets.providers.standard import find_named, find_oldest_gcc, get_bit, index_headers
 
@@ -30,8 +30,6 @@ _OF_LINKER = re.compile(r"(?:_export|visibility(?:_control)?|/export)\.h(?:pp)?$
 _EXTENDED = frozenset({"tf2::toMsg", "tf2::fromMsg", "tf2::convert", "tf2::doTransform"})
 # What compilers have for one processor.
 _OF_PROCESSOR = re.compile(r"intrin(?:sics)?\.h$|^(?:altivec|msa|arm_\w+|builtins)\.h$")
-
-_PARTS = re.compile(r"[/.]")
 
 _Reach = tuple[frozenset[str], frozenset[str]]
 
@@ -161,7 +159,7 @@ def _find_owner(
         version = machine.find_version(made.package)
         return (made.package, version) if version else None
     head = name.partition("::")[0]
-    called = (header for header in offering if head == name or head in _PARTS.split(header))
+    called = (header for header in offering if head == name or is_called_after(header, head))
     owners = {owner for header in called if (owner := machine.find_owner(header)) is not None}
     if not name.startswith(("boost::", "BOOST_")):
         return min(owners, default=None) if need.whole else None

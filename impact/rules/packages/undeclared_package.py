@@ -2,10 +2,11 @@
 
 What it does
     Reports packages and system libraries that CMake or pkg-config is asked for, sources include, Python imports, launch
-    files or scripts start, programs that these, ExternalProject_Add or FetchContent start, plugins that settings or
-    models name in a package that starts something, components with a package of their own, environment variables that
-    CMake tests and `ros_environment` sets, and CMake where the build type is `cmake`, when neither the manifest nor
-    anything it declares brings them, directly or in turn. What a rosdep key's packages depend on comes along.
+    files or scripts start, programs of ROS packages that launch files run by their names, programs that
+    ExternalProject_Add or FetchContent start, plugins that settings or models name in a package that starts something,
+    components with a package of their own, environment variables that CMake tests and `ros_environment` sets, and the
+    tool of the build type, when neither the manifest nor anything it declares brings them, directly or in turn. What a
+    rosdep key's packages depend on comes along.
 
 Why it breaks
     The build works on the machine of whoever happens to have the package. On a machine that has just what the manifest

@@ -27,6 +27,13 @@ from . import message_headers
 from .libraries import load_libraries
 from .standard import DEFINED_IN, find_named, find_oldest_gcc, get_bit, list_brought, list_naming_headers
 
+_PARTS = re.compile(r"[/.]")
+
+
+def is_called_after(header: str, space: str) -> bool:
+    """Whether a folder or file of a header's path is called as a namespace is."""
+    return space in _PARTS.split(header)
+
 
 class IncludesTable(msgspec.Struct, frozen=True):
     """The shipped table. paths: include paths, whose places stand for them. owners: owner to header to its states, as
