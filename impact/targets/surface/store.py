@@ -69,8 +69,11 @@ class SurfaceHistory:
         versions, approximate, rows = read_packed(data, _Rows)
         self.versions: tuple[str, ...] = tuple(versions)
         self.approximate = frozenset(approximate)
-        # Values are read where they are asked for.
-        self._rows = group_pairs((kind, (scope, value, spans)) for kind, scope, value, spans in rows)
+        # Values are read where they are asked for; a header is the scope of all that it declares.
+        scopes: dict[str, str] = {}
+        self._rows = group_pairs(
+            (kind, (scopes.setdefault(scope, scope), value, spans)) for kind, scope, value, spans in rows
+        )
 
     def load_surface(self, version: str) -> Surface | None:
         """What a version offers; None for one that is not stored."""
@@ -258,25 +261,25 @@ class SurfaceHistory:
                 yield scope, decode(value)
 
     @cached_property
-    def _named(self) -> dict[str, list[list[int]]]:
-        """The spans of everything that has a name of its own."""
-        found: dict[str, list[list[int]]] = {}
+    def _named(self) -> dict[str, tuple[int, ...]]:
+        """The spans of everything that has a name of its own, of all that have the same; none are all versions."""
+        found: dict[str, tuple[int, ...]] = {}
         for kind, named in _NAMED.items():
             for scope, value, spans in self._rows.get(kind, ()):
-                found.setdefault(named(self.package, scope, value), []).append(spans)
+                name = named(self.package, scope, value)
+                others = found.get(name, spans)
+                found[name] = others + spans if others and spans and others != spans else others and spans
         return found
 
     def has(self, name: str, version: str) -> bool:
         """Whether a version has a header, interface, C++ name, Python module or name."""
-        if version not in self.versions:
-            return False
-        place = self.versions.index(version)
-        return any(covers(spans, place) for spans in self._named.get(name, ()))
+        spans = self._named.get(name)
+        return version in self.versions and spans is not None and covers(spans, self.versions.index(version))
 
     def index_names(self) -> dict[str, tuple[str, ...]]:
         """Headers, interfaces, C++ names, Python modules and names that any version had, with the versions that do."""
         count = len(self.versions)
-        found = {name: {place for one in spans for place in _expand(one, count)} for name, spans in self._named.items()}
+        found = {name: set(_expand(spans, count)) for name, spans in self._named.items()}
         return {name: tuple(self.versions[place] for place in sorted(places)) for name, places in found.items()}
 
     def index_types(self, kinds: Collection[str] = TYPES) -> dict[str, tuple[str, ...]]:
@@ -301,7 +304,7 @@ class SurfaceHistory:
         return frozenset(found.union(*(scope.split(".") for scope, *_ in self._rows.get("module", ()))))
 
 
-_Rows = tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, list[int]]]]
+_Rows = tuple[list[str], list[str], list[tuple[str, str, msgspec.Raw, tuple[int, ...]]]]
 _name = itemgetter(0)
 
 
