@@ -11,8 +11,10 @@ sources judged it benchmarks/systems/NAME.drawn.jsonl. A record is a fact, never
 
 usage: flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py score --set NAME
+       flow_sight.py recheck --set NAME --clones FOLDER
 
-`draw` writes the records without verdicts; `score` prints the figures of those that have one.
+`draw` writes the records without verdicts; `score` prints the figures of those that have one; `recheck` prints which
+endpoints that were judged right the graph of today still has, and which wrong ones it still states.
 """
 
 from __future__ import annotations
@@ -82,6 +84,12 @@ def read_graph(folder: Path, commit: str) -> dict:
     return json.loads(done.stdout)
 
 
+def is_certain(endpoint: dict, names: dict[str, str]) -> bool:
+    """Whether the graph states an endpoint without reserve: its name is known, a node of the workspace runs it, and the
+    preprocessor does not leave it out. names: of the nodes, by id; empty for a library that no node runs."""
+    return endpoint.get("how") in CERTAIN and bool(names.get(endpoint["node"])) and not endpoint.get("only_if")
+
+
 def draw(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[dict]:
     """Records of a system: as many endpoints and sites, each chosen at random."""
     chance = random.Random(f"{seed} {clone.name} {commit}")
@@ -92,7 +100,7 @@ def draw(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[d
         {**about, "kind": "endpoint", "role": role, "path": one["path"], "line": one["line"],
          "node": names.get(one["node"], one["node"]), "name": one.get("topic", one.get("name", "")),
          "type": one.get("type", ""), "how": one.get("how", one.get("kind", "")),
-         "certain": one.get("how") in CERTAIN}
+         "certain": is_certain(one, names)}
         for listed, role in ROLES.items() if role not in ("timer", "parameter")
         for one in found[listed] if not one.get("implied") and one.get("topic")
     ]  # fmt: skip
@@ -112,6 +120,30 @@ def draw(clone: mining.Clone, commit: str, number: int, seed: int) -> Iterator[d
                "found": not near.isdisjoint(have[role]), "named": not near.isdisjoint(named)}  # fmt: skip
 
 
+def recheck(clones: Path, systems: list[dict], records: list[dict]) -> None:
+    """Prints how many of the judged endpoints the graph of today has, by verdict, and names the right ones it lost and
+    the wrong ones it kept."""
+    kept: dict[str, Counter[bool]] = defaultdict(Counter)
+    for system in systems:
+        (clone,) = mining.find_clones(clones, [system["repo"]])
+        found = read_graph(clone.folder, system["commit"])
+        names = {node["id"]: node["name"] for node in found["nodes"]}
+        have = {
+            (role, one["path"], one["line"], names.get(one["node"], one["node"]), one.get("topic"), one.get("type"))
+            for listed, role in ROLES.items() if role not in ("timer", "parameter")
+            for one in found[listed] if is_certain(one, names)
+        }  # fmt: skip
+        for one in records:
+            if one["repo"] == system["repo"] and one["kind"] == "endpoint" and one.get("verdict"):
+                key = tuple(one[part] for part in ("role", "path", "line", "node", "name", "type"))
+                kept[one["verdict"]][key in have] += 1
+                if (key in have) != (one["verdict"] == "right"):
+                    said = f"{one['role']} {one['name']} of {one['node']}, {one['path']}:{one['line']}"
+                    print(f"{one['repo']}: {one['verdict']}, {'still' if key in have else 'no longer'} there: {said}")
+    for verdict, count in kept.items():
+        print(f"{verdict}: {count[True]} of {sum(count.values())} still stated as certain")
+
+
 def score(records: list[dict]) -> None:
     """Prints how the endpoints that readers judged are right, and which sites the graph has."""
     endpoints = [one for one in records if one["kind"] == "endpoint" and one.get("verdict")]
@@ -129,7 +161,7 @@ def score(records: list[dict]) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("command", choices=("draw", "score"))
+    parser.add_argument("command", choices=("draw", "score", "recheck"))
     parser.add_argument("--set", required=True)
     parser.add_argument("--clones", type=Path)
     parser.add_argument("--number", type=int, default=20)
@@ -140,6 +172,9 @@ def main() -> None:
         score([json.loads(line) for line in drawn.read_text().splitlines()])
         return
     systems = [json.loads(line) for line in (SETS / f"{options.set}.systems.jsonl").read_text().splitlines()]
+    if options.command == "recheck":
+        recheck(options.clones, systems, [json.loads(line) for line in drawn.read_text().splitlines()])
+        return
     with drawn.open("w") as out:
         for system in systems:
             (clone,) = mining.find_clones(options.clones, [system["repo"]])

@@ -105,8 +105,34 @@ def edges(text: str) -> set[tuple[str, str, str]]:
     }
 
 
-def test_nodes_are_told_by_what_is_built_and_installed(ws):
+def test_a_system_has_the_names_that_its_launch_files_give(ws):
     code, out, _ = run(ws, "-f", "json")
+    assert code == 0
+    assert edges(out) == {
+        ("/front/speaker", "publisher", "/front/speech"),
+        ("/listener", "subscriber", "/front/speech"),
+    }
+
+
+def test_what_no_launch_file_starts_has_the_names_of_its_code(ws):
+    launch = ws / "src/talk/launch/talk.launch.xml"
+    launch.write_text(launch.read_text().replace('<node pkg="hear" exec="hear_node">', '<node pkg="hear" exec="gone">'))
+    assert edges(run(ws, "-f", "json")[1]) == {
+        ("/front/speaker", "publisher", "/front/speech"),
+        ("hear/hear_node", "subscriber", "/chatter"),
+    }
+
+
+def test_what_a_launch_file_leaves_open_stands_in_brackets(ws):
+    launch = ws / "src/talk/launch/talk.launch.xml"
+    launch.write_text(launch.read_text().replace('default="front"', ""))
+    found = json.loads(run(ws, "-f", "json")[1])
+    ((name, how),) = {(each["topic"], each["how"]) for each in found["publishers"] if not each["implied"]}
+    assert (name, how) == ("/<where>/speech", "partly")
+
+
+def test_nodes_are_told_by_what_is_built_and_installed(ws):
+    code, out, _ = run(ws, "--code", "-f", "json")
     assert code == 0
     assert edges(out) == {("talk/talker_node", "publisher", "/chatter"), ("hear/hear_node", "subscriber", "/chatter")}
     names = {node["id"]: (node["name"], node["kind"], node["language"]) for node in json.loads(out)["nodes"]}
@@ -146,7 +172,7 @@ def test_beside_a_base(ws):
     source.write_text(source.read_text().replace("pub_->publish", "if (ready_) pub_->publish"))
     code, out, _ = run(ws, "--base", "HEAD")
     assert code == 0
-    assert "~ publishes   /talker" in out
+    assert "~ publishes   /front/speaker" in out
     assert "changed: guards" in out
     code, out, _ = run(ws, "--rev", "HEAD")
     assert "when ready_" not in out

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from ...edges import processes
 from ..facts.store import Store
 from ..model.flow.graph import Graph
 from ..model.flow.workspace import link_for_flow, make_graph
@@ -24,19 +25,20 @@ class Graphs(NamedTuple):
 def build_graphs(
     path: Path, *, rev: str = "", base: Sequence[str] = (), launch: str = "",
     arguments: Mapping[str, str] | None = None, jobs: int | None = None,
-    progress: Callable[[int, int], None] | None = None, follow_links: bool = False,
+    progress: Callable[[int, int], None] | None = None, follow_links: bool = False, code_alone: bool = False,
 ) -> Graphs:  # fmt: skip
     """The message-flow graph of the workspace at a path.
 
     rev, base, jobs, follow_links: as for check. launch: a launch file, as a path or relative to the workspace's
-    root: then only what it starts, under the names it gives; arguments: those of the launch file. Raises CheckError,
-    TreeError and BaseError with a text for the user.
+    root: then only what it starts, under the names it gives; arguments: those of the launch file. code_alone: all
+    programs, as if no launch file started them. Raises CheckError, TreeError and BaseError with a text for the user.
     """
     tree = open_tree(path, rev, follow_links=follow_links)
     with Store() as store:
         file = _launch_file(path, tree, launch) if launch else ""
         workspace = link_flow(path, tree, store, jobs, progress)
-        now = make_graph(workspace, store, os.fspath(path), rev, file, arguments)
+        how = {"code_alone": code_alone, "jobs": jobs or processes.count_cores()}
+        now = make_graph(workspace, store, os.fspath(path), rev, file, arguments, **how)
         strangers = _describe_undeclared(workspace, file, arguments) if file and arguments else ()
         if not base:
             return Graphs(now, None, strangers)
@@ -45,7 +47,7 @@ def build_graphs(
         old_tree, notes = open_base_tree(tree, tuple(base))
         had = not file or old_tree.exists(file)
         old = link_for_flow(old_tree, store, jobs)
-        before = make_graph(old, store, os.fspath(path), " ".join(base), file if had else "", arguments)
+        before = make_graph(old, store, os.fspath(path), " ".join(base), file if had else "", arguments, **how)
         return Graphs(now, before, (*strangers, *notes))
 
 

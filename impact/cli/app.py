@@ -204,6 +204,10 @@ def graph(
     path: _Workspace = Path("."),
     launch: str = _make_option("Only what this launch file starts, with the names that it assigns.", default=""),
     set_: list[str] = _make_option("An argument of the launch file, NAME:=VALUE. May be repeated.", "--set"),
+    code: bool = _make_option(
+        "All programs, with the names that the code gives them, as if no launch file started them.", "--code",
+        default=False,
+    ),
     node: list[str] = _make_option("Only this node and its neighbours; `*` matches any text."),
     topic: list[str] = _make_option("Only this topic, service or action, and the nodes that use it."),
     package: list[str] = _make_option("Only nodes of this package."),

@@ -8,7 +8,7 @@ from .output import find_style, make_command, make_progress_bar, say_notes
 
 @make_command("text", "json", "graphml", "dot", "mermaid", "html")
 def graph(
-    path: Path, *, launch, set_, node, topic, package, around, hops, rev, base, format, output, all, jobs, quiet,
+    path: Path, *, launch, set_, code, node, topic, package, around, hops, rev, base, format, output, all, jobs, quiet,
     follow_links,
 ) -> str:  # fmt: skip
     """The message-flow graph."""
@@ -17,12 +17,14 @@ def graph(
         raise UserError("--set: write NAME:=VALUE")
     if given and not launch:
         raise UserError("--set: arguments belong to a launch file; name it with --launch")
+    if code and launch:
+        raise UserError("--code: shows the graph without launch files; leave out --code or --launch")
     from ..analysis.graph import build_graphs
     from ..report.graph import draw
 
     found = build_graphs(
         path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
-        progress=None if quiet else make_progress_bar(), follow_links=follow_links,
+        progress=None if quiet else make_progress_bar(), follow_links=follow_links, code_alone=code,
     )  # fmt: skip
     say_notes(found.notes)
     return draw(

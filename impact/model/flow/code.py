@@ -673,9 +673,13 @@ class FlowCode:
             if target.facts.returns:
                 return self.resolve_written(target.facts.returns, target.source, target.scope)
         meant = self.resolve_name(name, fn.source, fn.scope)
-        if get_tail(meant)[:1].isupper():
+        if get_tail(meant)[:1].isupper() or self.is_class(name, fn):
             return FlowType(meant, (), self.find_class(name, fn.source, fn.scope))
         return UNKNOWN
+
+    def is_class(self, name: str, fn: Fn) -> bool:
+        """Whether a name in a function is that of a class of the code."""
+        return get_tail(name) in self.classes and self.find_class(name, fn.source, fn.scope) is not None
 
     def list_kept(self, variable: Variable) -> Iterator[tuple[Fn, FlowCall | FlowExpr]]:
         """The calls whose result a variable keeps, and what is assigned to it, with the function they stand in; by the
@@ -900,7 +904,7 @@ def _find_made(fn: Fn, code: FlowCode) -> Iterator[tuple[str, tuple[FlowExpr, ..
             yield call.types, call.arguments, call.line
         elif last == "make_shared" and "::" in call.callee:
             yield get_outer(call.callee), call.arguments, call.line
-        elif fn.source.facts.language == "python" and last[:1].isupper():
+        elif fn.source.facts.language == "python" and (last[:1].isupper() or code.is_class(call.callee, fn)):
             yield code.resolve_name(call.callee, fn.source), call.arguments, call.line
         for argument in call.arguments:
             if argument.parts or argument.kind == "make":

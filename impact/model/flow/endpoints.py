@@ -453,6 +453,8 @@ class Sites:
                 name = kind.name if not kind.arguments else f"{kind.name}<{', '.join(kind.arguments)}>"
                 if get_tail(kind.name) == "MessageEvent" and kind.arguments:
                     name = parse_flow_type(kind.arguments[0]).name
+                if use.row.does == "server" and not name.endswith("::Request"):
+                    name = name.removesuffix("Request")  # the name that ROS 1 gives to the type outside of the service
                 if name:
                     return name
         return ""

@@ -52,9 +52,10 @@ def compute_stamp(workspace: Workspace, second: ExtractedFacts | None = None) ->
     """Differs whenever something does that message flow, or what launch files start, is joined from. second: the flow
     facts alone, for what is joined of nothing else."""
     found = hashlib.sha1(workspace.identity + compute_code_stamp().encode())
-    extraction = second or workspace.extraction
-    for path in sorted(extraction.kinds):
-        if second is not None or extraction.kinds[path] in _READ:
-            row = f"{path} {extraction.ids.get(path, '')} {extraction.kinds[path]}\n"
-            found.update(row.encode("utf-8", "surrogateescape"))
+    main = workspace.extraction
+    for extraction in (second,) if second is not None else (main, main.second):
+        for path in sorted(extraction.kinds if extraction is not None else ()):
+            if extraction is not main or extraction.kinds[path] in _READ:
+                row = f"{path} {extraction.ids.get(path, '')} {extraction.kinds[path]}\n"
+                found.update(row.encode("utf-8", "surrogateescape"))
     return found.digest()

@@ -10,10 +10,10 @@ from typing import Literal
 import msgspec
 
 Role = Literal["publisher", "subscriber", "server", "client", "action server", "action client"]
-How = Literal["literal", "default", "launch", "given", "unresolved"]
+How = Literal["literal", "default", "launch", "given", "partly", "unresolved"]
 """How a name became known: written so in the source; the default of a parameter, which whoever starts the node may
-change; set by the launch file; fixed by the framework (`/tf`, `/rosout`), or given on the command line;
-or not at all."""
+change; set by the launch file; fixed by the framework (`/tf`, `/rosout`), or given on the command line; in part, with
+brackets for what is not known (`/<$ROBOT>/scan`); or not at all."""
 
 
 class Node(msgspec.Struct, frozen=True):
@@ -22,6 +22,7 @@ class Node(msgspec.Struct, frozen=True):
     name: with its namespace, as in a running system; the name that the source gives where no launch file says another.
     kind: `executable`, `component`, `nodelet`, `plugin`, `script`, or `library` for code that no executable of the
     workspace uses. plugin: the class, for what is loaded. started: `path:line` of the launch file, empty without one.
+    uncertain: why the launch file may give it another name, or may not start it at all.
     """
 
     id: str
@@ -34,6 +35,7 @@ class Node(msgspec.Struct, frozen=True):
     path: str = ""
     line: int = 0
     started: str = ""
+    uncertain: tuple[str, ...] = ()
 
 
 class Callback(msgspec.Struct, frozen=True):
@@ -68,7 +70,9 @@ class Endpoint(msgspec.Struct, frozen=True):
     node: the id of its Node, empty when no node is known to run it. topic: the full name (also of a service or action),
     empty when it is not known. written: the name as the source has it. type: `package/Name`, empty when not known, `*`
     for any. function: in which it is made. variable: what it is kept in. implied: made by the framework or a helper of
-    it (a transform listener, a diagnostic updater), not by a call that names the topic.
+    it (a transform listener, a diagnostic updater), not by a call that names the topic. only_if: on what it depends
+    whether the node makes it: the condition of the preprocessor under which the code is compiled, or that something
+    calls a function of its program which nothing is seen to call; empty where it does.
     """
 
     role: Role
@@ -86,6 +90,7 @@ class Endpoint(msgspec.Struct, frozen=True):
     reason: str = ""
     implied: bool = False
     framework: str = ""
+    only_if: str = ""
 
 
 class GuardAt(msgspec.Struct, frozen=True):

@@ -36,7 +36,7 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, list_loaded
-from .names import NameRefused, normalise, resolve_ros1_name, resolve_ros2_name
+from .names import NameRefused, is_open, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .qos import find_qos
 from .started import Instance, make_instance
@@ -93,7 +93,7 @@ class Join:
         self.reach = CodeReach(self.sites)
         self.triggers = group_pairs(self._list_triggers())
         # Of a use it is the same in every node that runs it.
-        self._qos: dict[int, Qos | None] = {}
+        self._qos: dict[int, tuple[Qos | None, str]] = {}
         self._asked: dict[int, list[FlowValue]] = {}
         # Of the last launch, which is asked for more than once.
         self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
@@ -112,7 +112,8 @@ class Join:
         found: list[Running] = []
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             if program.kind in ("executable", "script"):
-                functions, classes = self.reach.find_reached(program.roots)
+                others = programs_of.collect_sources_of_others(program, self.built)
+                functions, classes = self.reach.find_reached(program.roots, without=others)
                 if not program.roots:
                     functions = {fn for fn in self.code.functions if fn.source.path in program.files}
             else:
@@ -122,8 +123,31 @@ class Join:
                 )
                 functions, classes = self.reach.find_reached(program.roots, [cls] if cls is not None else [])
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
-            found.append(Running(program, self._make_node(program, named), functions, classes, self.values))
+            one = Running(program, self._make_node(program, named), functions, classes, self.values)
+            found += self._split_by_class(one, named) if program.kind in ("executable", "script") else [one]
         return found
+
+    def _split_by_class(self, running: Running, named: list[FrameworkCall]) -> Iterator[Running]:
+        """A program, and a node more for each further class that names one: in ROS 2 every object of such a class is a
+        node by itself, and talks in its own name."""
+        names: dict[str, str] = {}
+        for use in named:
+            cls = self.code.find_owner(use.fn)
+            two = self.calls.table.generations.get(use.row.framework, self.ros) == 2
+            values = self.values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line)
+            if cls is not None and two and len(values) == 1 and values[0].text:
+                names.setdefault(cls.key, normalise(f"/{values[0].text}"))
+        own = running.node.name
+        others = {key: name for key, name in names.items() if name != own} if own in names.values() else {}
+        rest = set(running.functions)
+        parts = []
+        for key, name in others.items():
+            methods = {fn for fn in running.functions if (cls := self.code.find_owner(fn)) and cls.key == key}
+            node = structs.replace(running.node, id=f"{running.node.id}{name}", name=name)
+            parts.append(running._replace(node=node, functions=methods))
+            rest -= methods
+        yield running._replace(functions=rest) if parts else running
+        yield from parts
 
     def find_started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
@@ -154,6 +178,7 @@ class Join:
             instance = make_instance(launch, one.node.name.rpartition("/")[2], start)
             node = structs.replace(
                 one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
+                uncertain=instance.uncertain,
             )  # fmt: skip
             arguments = tuple(argument.value for argument in start.arguments if argument.value is not None)
             known = arguments if len(arguments) == len(start.arguments) else None
@@ -223,7 +248,8 @@ class Join:
             if name and "{" not in name:
                 break
         default = program.executable or _convert_to_snake(get_tail(parse_flow_type(program.plugin).name))
-        full = normalise("/" + (name or default).lstrip("/"))
+        # What loads a plugin is another program, which gives it a node.
+        full = "" if program.kind == "plugin" else normalise("/" + (name or default).lstrip("/"))
         language = "python" if program.kind == "script" else "cpp"
         return Node(
             f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,
@@ -409,12 +435,16 @@ class Join:
         node = _get_node(owner)
         topic, how, reason = self.resolve_name(site, value, owner)
         if id(use) not in self._qos:
-            self._qos[id(use)] = find_qos(self.calls, self.values, use)
-        qos = self._qos[id(use)]
+            guards = self.list_guards(use.fn, use.call.guard)
+            switches = " && ".join(guard.text for guard in guards if guard.kind == "cpp")
+            self._qos[id(use)] = find_qos(self.calls, self.values, use), switches
+        qos, only_if = self._qos[id(use)]
+        if isinstance(owner, Running) and use.fn not in owner.functions:
+            only_if = only_if or f"something calls `{use.fn.name or 'it'}`"
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
-            use.row.framework,
+            use.row.framework, only_if,
         )  # fmt: skip
 
     def resolve_name(self, site: Site, value: FlowValue, owner: Owner) -> tuple[str, How, str]:
@@ -425,7 +455,7 @@ class Join:
             return "", "unresolved", value.reason
         text = value.text
         loaded = owner.loaded if isinstance(owner, Running) else None
-        full = node.name if node and node.name else f"/{node.executable or get_tail(node.plugin)}" if node else "/node"
+        full = node.name if node and node.name else f"/<{node.executable or get_tail(node.plugin)}>" if node else "/<node>"
         full = loaded.name if loaded is not None else full
         namespace, _, own = full.rpartition("/")
         generation = self.calls.table.generations.get(site.use.row.framework, self.ros)
@@ -453,6 +483,8 @@ class Join:
                 name = plain if instance is None else instance.remap_name(text, 2, kind)
         except NameRefused as error:
             return "", "unresolved", str(error)
+        if is_open(name):
+            return name, "partly", ""
         if name != plain:
             return name, "launch", ""
         return name, "given" if site.implied and value.how == "literal" else value.how, ""

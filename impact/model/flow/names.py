@@ -85,6 +85,27 @@ def parse_ros2_rule(text: str) -> RemappingRule | None:
 
 _SUBSTITUTION = re.compile(r"\{(\w*)\}")
 _LEGAL = re.compile(r"/?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*\Z")
+_OPEN = re.compile(r"<[^<>/]*>")
+_FILLED = re.compile(r"\$\((?:(?:arg|var) |(?:opt)?env (?=(\$?)))(\w+)\)")
+
+
+def make_open_part(shown: str) -> str:
+    """What stands in a name for what is not known: `<robot_name>`, without slashes, in one pair of brackets. shown: a
+    text of which unknown parts stand in brackets, which may hold others."""
+    found, depth = "", 0
+    for character in _FILLED.sub(r"\1\2", shown):
+        opens, closes = character == "<", character == ">" and depth
+        if (depth == 0 and opens) or (depth == 1 and closes):
+            found += character
+        elif not opens and not closes:
+            found += "_" if depth and character in "/ " else character
+        depth += opens - bool(closes)
+    return found + ">" * bool(depth)
+
+
+def is_open(name: str) -> bool:
+    """Whether a part of a name is not known."""
+    return _OPEN.search(name) is not None
 
 
 @lru_cache(maxsize=10_000)
@@ -92,7 +113,7 @@ def resolve_ros2_name(name: str, node: str, namespace: str) -> str:
     """The full name that a ROS 2 node uses for a topic or service before remapping. node: its name without namespace.
 
     `~` is the node, `~/x` below it, `{node}`, `{ns}` and `{namespace}` are filled in, relative names go into the
-    namespace. Raises NameRefused for a name that rcl refuses.
+    namespace. Parts that are not known stand in brackets. Raises NameRefused for a name that rcl refuses.
     """
     values = {"node": node, "ns": namespace.rstrip("/"), "namespace": namespace.rstrip("/")}
 
@@ -113,7 +134,7 @@ def resolve_ros2_name(name: str, node: str, namespace: str) -> str:
     full = _SUBSTITUTION.sub(substitute_value, full)
     if full[:1] != "/":
         full = f"{namespace.rstrip('/')}/{full}"
-    if not _LEGAL.match(full):
+    if not _LEGAL.match(_OPEN.sub("x", full)):
         raise NameRefused(f"`{name}` is no name of a topic or service")
     return full
 

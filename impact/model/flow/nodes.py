@@ -81,8 +81,11 @@ class CodeReach:
                     self._loaded.update((fn, cls.key) for fn in self.code.list_functions(cls))
         self._lambdas = group_pairs(((fn.source.path, fn.scope), fn) for fn in self.code.functions if fn.is_lambda)
 
-    def find_reached(self, roots: Iterable[Fn], classes: Iterable[Cls] = ()) -> tuple[set[Fn], set[str]]:
-        """Functions and classes (by key) reached from some functions, and from objects of some classes."""
+    def find_reached(
+        self, roots: Iterable[Fn], classes: Iterable[Cls] = (), without: Collection[str] = ()
+    ) -> tuple[set[Fn], set[str]]:
+        """Functions and classes (by key) reached from some functions, and from objects of some classes. without: paths
+        of files that are not linked."""
         functions: set[Fn] = set()
         keys: set[str] = set()
         queue: list[Fn] = list(roots)
@@ -100,7 +103,7 @@ class CodeReach:
             if not queue:
                 break
             fn = queue.pop()
-            if fn in functions:
+            if fn in functions or fn.source.path in without:
                 continue
             loaded = self._loaded.get(fn)
             if loaded is not None and loaded not in keys and fn not in begun:
@@ -193,6 +196,14 @@ def list_programs(code: FlowCode, built: Iterable[BuiltPackage], kinds_of) -> It
                 yield StartableProgram(
                     package.package, "script", name, "", tuple(roots), frozenset((path,)), path, roots[0].facts.line
                 )
+
+
+def collect_sources_of_others(program: StartableProgram, built: Iterable[BuiltPackage]) -> frozenset[str]:
+    """The sources that are compiled into other executables alone, so that an executable does not have them."""
+    every = list(built)
+    in_executables = {path for package in every for paths in package.executables.values() for path in paths}
+    in_libraries = {path for package in every for paths in package.libraries.values() for path in paths}
+    return frozenset(in_executables - in_libraries - program.files)
 
 
 def _list_linked_sources(name: str, package: BuiltPackage, sources: Iterable[str]) -> Iterator[str]:

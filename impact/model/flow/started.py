@@ -9,8 +9,9 @@ from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterFile
 from ..launch.follow import follow
 from ..launch.result import Launched, Remap, Started
+from ..launch.text import LaunchText
 from ..workspace import Workspace
-from .names import RemappingRule, remap_ros1_name, remap_ros2_name
+from .names import RemappingRule, join_name, make_open_part, remap_ros1_name, remap_ros2_name
 
 
 class InWorkspace:
@@ -78,7 +79,7 @@ def follow_workspace_launch(workspace: Workspace, path: str, arguments: Mapping[
 
 class Instance(NamedTuple):
     """A node as a launch starts it. name: full. settings: values of its parameters. uncertain: why its name, or whether
-    it is started at all, is not sure."""
+    it is started at all, is not sure. What is not known of names and values stands in brackets (`/<$ROBOT>/camera`)."""
 
     started: Started
     name: str
@@ -88,7 +89,7 @@ class Instance(NamedTuple):
 
     def remap_name(self, name: str, ros: int, kind: str = "topic") -> str:
         """A name as the code has it, after the remappings of this start; full."""
-        pairs = [(r.old.value, r.new.value) for r in self.remaps if r.old.value is not None and r.new.value is not None]
+        pairs = [(r.old.value, _fill(r.new)) for r in self.remaps if r.old.value is not None]
         if ros == 1:
             return remap_ros1_name(name, self.name, pairs)
         namespace, _, own = self.name.rpartition("/")
@@ -101,10 +102,12 @@ class Instance(NamedTuple):
 
 def make_instance(all_started: Launched, own_name: str, started: Started) -> Instance:
     """A start of a node whose code calls itself own_name (without a namespace)."""
-    name = started.name.value or own_name
-    namespace = started.namespace.value or "/"
-    full = f"{namespace.rstrip('/')}/{name}"
-    values = {key: setting.text.value for key, setting in all_started.collect_parameters(started, full).items()}
-    settings = {key: value for key, value in values.items() if value is not None}
+    name = _fill(started.name) or own_name
+    full = join_name("/" + _fill(started.namespace).lstrip("/"), name)
+    settings = {key: _fill(one.text) for key, one in all_started.collect_parameters(started, full).items()}
     uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
     return Instance(started, full, settings, started.remaps, uncertain)
+
+
+def _fill(text: LaunchText) -> str:
+    return text.value if text.value is not None else make_open_part(text.shown)

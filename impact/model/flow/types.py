@@ -112,7 +112,7 @@ def find_header_interface(header: str) -> str:
     return f"{found[1]}/{name}"
 
 
-_SUFFIXES = re.compile(r"(?:_<.*>|<.*>)\Z")
+_SUFFIXES = re.compile(r"(?:_?<.*>|_)\Z")
 _KINDS = {"msg": "", "srv": "", "action": ""}
 
 

@@ -238,7 +238,19 @@ class FlowValues:
                             yield from self._evaluate(member.value, holder, member.line, seen)
         elif variable.kind == "global":
             yield from self._evaluate_constant(variable, fn, seen)
+        filled = [
+            (use, values)
+            for use in self.filled.get(variable, ())
+            if origins is None
+            or (target := self.calls.find_argument(use, use.row.variable)) is None
+            or self.origins.may_be_of(target.text, use.fn, origins)
+            for values in [list(self._evaluate_parameter(use, seen))]
+        ]
+        # What a parameter that surely has a value is read into is worth nothing else any more.
+        sure = [use for use, values in filled if values and all(one.how in ("launch", "default") for one in values)]
         for writer, each in self.code.list_writes(variable):
+            if any(use.fn is writer and each.line < use.call.line and each.guard == use.call.guard for use in sure):
+                continue
             if origins is not None and not self.origins.may_be_of(each.target, writer, origins):
                 continue
             if self.arguments is not None and self.command_line.excludes(writer, each.guard, len(self.arguments) + 1):
@@ -254,10 +266,8 @@ class FlowValues:
                 yield from self._evaluate_elements(each.value, writer, each.line, seen)
             elif each.operator == "+=":
                 yield FlowValue(None, "unresolved", f"`{variable.name}` is put together in steps")
-        for use in self.filled.get(variable, ()):
-            target = self.calls.find_argument(use, use.row.variable)
-            if origins is None or target is None or self.origins.may_be_of(target.text, use.fn, origins):
-                yield from self._evaluate_parameter(use, seen)
+        for _, values in filled:
+            yield from values
         if not self.code.list_writes(variable) or variable.kind == "local":
             yield from self._evaluate_references(variable, seen)
         if variable.kind == "local":

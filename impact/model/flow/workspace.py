@@ -23,11 +23,13 @@ from .graph import Graph
 from .join import Join
 from .launches import Launch
 from .nodes import BuiltPackage, asks_for_name, find_entry_point
+from .system import merge_launches
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
-_BUILD = frozenset(
-    ("manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action")
-)
+_BUILD = frozenset((
+    "manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action",
+    "launch_xml", "launch_yaml", "params",
+))  # fmt: skip
 
 Progress = Callable[[int, int], None]
 
@@ -48,7 +50,7 @@ class WorkspaceFlow:
     @cached_property
     def graph(self) -> Graph:
         """The message-flow graph of its code, without a launch file."""
-        found = make_graph(self._workspace, self._store)
+        found = make_graph(self._workspace, self._store, code_alone=True)
         if "code" in self.__dict__:
             _ = self.callers  # remembered beside the graph, so that they are not what needs the code joined anew
         return found
@@ -193,12 +195,13 @@ def join_code(workspace: Workspace) -> Join:
 
 def make_graph(
     workspace: Workspace, store: Store | None, root: str = "", rev: str = "", launch: str = "",
-    arguments: Mapping[str, str] | None = None,
+    arguments: Mapping[str, str] | None = None, code_alone: bool = False, jobs: int = 1,
 ) -> Graph:  # fmt: skip
-    """The message-flow graph of a workspace. store: remembers it by the content it was joined from.
+    """The message-flow graph of a workspace: of what its launch files start, and of the programs that none of them
+    does. store: remembers it by the content it was joined from.
 
     launch: the path of a launch file, relative to the workspace's root: then the graph of what it starts; arguments:
-    the launch file's arguments.
+    the launch file's arguments. code_alone: of all programs, as if no launch file started them.
     """
     if launch:
         from .started import follow_workspace_launch
@@ -211,7 +214,12 @@ def make_graph(
         code = get_flow(workspace).code
         return code.build(unread=_list_unread(code))
 
-    graph = recall(store, "graph", _make_key(workspace), Graph, make)
+    launches: tuple[Launch, ...] = ()
+    if not code_alone:
+        flow = get_flow(workspace)
+        flow.jobs = jobs
+        launches = flow.launches
+    graph = merge_launches(recall(store, "graph", _make_key(workspace), Graph, make), launches)
     return msgspec.structs.replace(graph, root=root, rev=rev)
 
 

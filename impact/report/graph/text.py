@@ -150,6 +150,8 @@ def _format_note(endpoint: Endpoint, edge: Edge, style: Style) -> str:
         said.append(f"changed: {edge.why}")
     if endpoint.how == "default":
         said.append("name: a parameter's default")
+    if endpoint.only_if:
+        said.append(f"only if {endpoint.only_if}")
     if endpoint.callback is not None:
         said.append(f"{style.symbols[3]} {endpoint.callback.name}")
     qos = endpoint.qos

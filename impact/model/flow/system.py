@@ -1,0 +1,54 @@
+"""The message flow of a workspace as it is started: one graph of what all its launch files start, and of the programs
+that none of them does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import chain
+from typing import Any, TypeVar
+
+import msgspec
+
+from .graph import Coverage, Graph
+from .launches import Launch
+
+_Row = TypeVar("_Row")
+
+
+def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
+    """The graph of a system. code: the graph of its code, whose names hold for programs that no launch file starts.
+
+    A node that several launch files start under one name is one node, with all names that it has in any of them.
+    """
+    if not launches:
+        return code
+    started = {start.program for launch in launches for start in launch.starts}
+    # What no program of the workspace runs talks in nobody's name.
+    alone = {node.id for node in code.nodes if node.id not in started}
+    graphs = [launch.graph for launch in launches]
+
+    def merge(field: str) -> tuple[Any, ...]:
+        own = (row for row in getattr(code, field) if not row.node or row.node in alone)
+        return _drop_repeats(chain(own, *(getattr(graph, field) for graph in graphs)))
+
+    nodes = {node.id: node for graph in reversed(graphs) for node in graph.nodes}
+    nodes |= {node.id: node for node in code.nodes if node.id in alone}
+    lacking = [one for graph in graphs for one in graph.coverage.unresolved if one.what == "started node"]
+    return msgspec.structs.replace(
+        code,
+        nodes=tuple(sorted(nodes.values(), key=lambda node: node.id)),
+        endpoints=merge("endpoints"),
+        publishes=merge("publishes"),
+        timers=merge("timers"),
+        parameters=merge("parameters"),
+        coverage=_add_unresolved(code.coverage, lacking),
+    )
+
+
+def _add_unresolved(coverage: Coverage, lacking: Iterable[Any]) -> Coverage:
+    every = sorted({*coverage.unresolved, *lacking}, key=lambda one: (one.path, one.line, one.what))
+    return msgspec.structs.replace(coverage, unresolved=tuple(every))
+
+
+def _drop_repeats(rows: Iterable[_Row]) -> tuple[_Row, ...]:
+    return tuple(dict.fromkeys(rows))
