@@ -86,14 +86,14 @@ def parse_ros2_rule(text: str) -> RemappingRule | None:
 _SUBSTITUTION = re.compile(r"\{(\w*)\}")
 _LEGAL = re.compile(r"/?[A-Za-z_]\w*(?:/[A-Za-z_]\w*)*\Z")
 _OPEN = re.compile(r"<[^<>/]*>")
-_FILLED = re.compile(r"\$\((?:(?:arg|var) |(?:opt)?env (?=(\$?)))(\w+)\)")
+_FILLED = re.compile(r"\$\((?:arg|var|env|optenv) (\w+)[^()]*\)")
 
 
 def make_open_part(shown: str) -> str:
     """What stands in a name for what is not known: `<robot_name>`, without slashes, in one pair of brackets. shown: a
     text of which unknown parts stand in brackets, which may hold others."""
     found, depth = "", 0
-    for character in _FILLED.sub(r"\1\2", shown):
+    for character in _FILLED.sub(r"\1", shown):
         opens, closes = character == "<", character == ">" and depth
         if (depth == 0 and opens) or (depth == 1 and closes):
             found += character

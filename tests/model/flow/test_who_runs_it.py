@@ -1,0 +1,195 @@
+"""Which node makes an endpoint, under which name, and what has to hold for it."""
+
+from tests.model.flow.joining import ends, graph, graph_on_disk, joined, manifest
+
+from rosimpact.impact.model.flow.names import is_open, make_open_part
+from rosimpact.impact.model.flow.nodes import BuiltPackage
+
+NODE = """
+    #include <rclcpp/rclcpp.hpp>
+    #include <std_msgs/msg/string.hpp>
+    class {name} : public rclcpp::Node {{
+    public:
+      {name}() : Node("{node}") {{ pub_ = create_publisher<std_msgs::msg::String>("{topic}", 1); }}
+      rclcpp::Publisher<std_msgs::msg::String>::SharedPtr pub_;
+    }};
+"""
+
+
+def test_each_class_of_a_program_that_names_a_node_is_one():
+    main = """
+        #include "front.hpp"
+        #include "rear.hpp"
+        int main(int argc, char ** argv) {
+          rclcpp::init(argc, argv);
+          auto front = std::make_shared<Front>();
+          auto rear = std::make_shared<Rear>();
+        }
+    """
+    found = graph({
+        "car/front.hpp": NODE.format(name="Front", node="front", topic="~/out"),
+        "car/rear.hpp": NODE.format(name="Rear", node="rear", topic="~/out"),
+        "car/main.cpp": main,
+    })  # fmt: skip
+    names = {node.id: node.name for node in found.nodes}
+    told = {(names[node], topic) for node, topic, _ in ends(found, "publisher")}
+    assert told == {("/front", "/front/out"), ("/rear", "/rear/out")}
+
+
+def test_an_executable_has_nothing_of_the_sources_of_another():
+    header = "class Base { public: void begin(); };"
+    body = """
+        #include "base.h"
+        #include <ros/ros.h>
+        #include <std_msgs/String.h>
+        void Base::begin() {{ ros::NodeHandle n; n.advertise<std_msgs::String>("{topic}", 1); }}
+    """
+    main = """
+        #include "base.h"
+        int main(int argc, char ** argv) { ros::init(argc, argv, "%s"); Base base; base.begin(); }
+    """
+    files = {"car/base.h": header}
+    for name in ("old", "new"):
+        files |= {f"car/{name}.cpp": body.format(topic=name), f"car/{name}_main.cpp": main % name}
+    programs = {name: (f"car/{name}.cpp", f"car/{name}_main.cpp") for name in ("old", "new")}
+    found = graph(files, 1, built=(BuiltPackage("car", programs, {}, {}, {}, {}),))
+    assert ends(found, "publisher") == {
+        ("car/old", "/old", "std_msgs/String"), ("car/new", "/new", "std_msgs/String")
+    }  # fmt: skip
+
+
+def test_what_loads_a_plugin_is_not_known_and_not_invented():
+    code = """
+        #include <ros/ros.h>
+        #include <pluginlib/class_list_macros.h>
+        #include <std_msgs/String.h>
+        class Tool : public Base {
+          void onInitialize() {
+            ros::NodeHandle n("~");
+            own_ = n.advertise<std_msgs::String>("state", 1);
+            ros::NodeHandle().advertise<std_msgs::String>("/whole", 1);
+          }
+          ros::Publisher own_;
+        };
+        PLUGINLIB_EXPORT_CLASS(Tool, Base)
+    """
+    found = graph({"car/tool.cpp": code}, 1)
+    assert [(node.kind, node.name) for node in found.nodes] == [("plugin", "")]
+    told = {(one.topic, one.how) for one in found.endpoints if not one.implied}
+    assert told == {("/<Tool>/state", "partly"), ("/whole", "literal")}
+
+
+def test_python_classes_are_classes_whatever_they_are_called():
+    code = """
+        import rospy
+        from std_msgs.msg import String
+        class clean_house():
+            def __init__(self):
+                rospy.init_node('cleaner')
+                self.pub = rospy.Publisher('~state', String, queue_size=1)
+        if __name__ == '__main__':
+            clean_house()
+    """
+    assert ends(graph({"car/clean.py": code}, 1), "publisher") == {
+        ("car/clean.py", "/cleaner/state", "std_msgs/String")
+    }
+
+
+def test_a_service_is_not_of_the_type_of_its_request():
+    code = """
+        #include <ros/ros.h>
+        #include <std_srvs/SetBool.h>
+        bool on(std_srvs::SetBoolRequest & ask, std_srvs::SetBoolResponse & answer) { return true; }
+        int main(int argc, char ** argv) {
+          ros::init(argc, argv, "lamp");
+          ros::NodeHandle n;
+          n.advertiseService("on", on);
+        }
+    """
+    assert ends(graph({"car/lamp.cpp": code}, 1), "server") == {("car/lamp", "/on", "std_srvs/SetBool")}
+
+
+def test_what_the_preprocessor_may_leave_out_is_told_so():
+    code = """
+        #include <ros/ros.h>
+        #include <std_msgs/String.h>
+        int main(int argc, char ** argv) {
+          ros::init(argc, argv, "camera");
+          ros::NodeHandle n;
+          n.advertise<std_msgs::String>("always", 1);
+        #ifdef WITH_IMAGE
+          n.advertise<std_msgs::String>("image", 1);
+        #endif
+        }
+    """
+    found = graph({"car/camera.cpp": code}, 1)
+    told = {one.topic: one.only_if for one in found.endpoints if not one.implied}
+    assert told == {"/always": "", "/image": "defined(WITH_IMAGE)"}
+
+
+def test_what_nothing_is_seen_to_call_is_told_so():
+    code = """
+        import rospy
+        from std_msgs.msg import String
+        class Old:
+            def __init__(self):
+                rospy.Subscriber('old', String, print)
+        if __name__ == '__main__':
+            rospy.init_node('ear')
+            rospy.Subscriber('new', String, print)
+    """
+    found = graph({"car/ear.py": code}, 1)
+    told = {one.topic: one.only_if for one in found.endpoints if not one.implied}
+    assert told == {"/new": "", "/old": "something calls `Old.__init__`"}
+
+
+PARAMETER = """
+    #include <ros/ros.h>
+    #include <std_msgs/String.h>
+    int main(int argc, char ** argv) {
+      std::string topic = "/first";
+      ros::init(argc, argv, "talker");
+      ros::NodeHandle n;
+      ros::param::get("~topic", topic);
+      n.advertise<std_msgs::String>(topic, 1);
+    }
+"""
+CMAKE = """
+    cmake_minimum_required(VERSION 3.0)
+    project(car)
+    find_package(catkin REQUIRED COMPONENTS roscpp std_msgs)
+    add_executable(talker talker.cpp)
+"""
+
+
+def test_what_a_launch_file_sets_takes_the_place_of_what_the_code_begins_with(tmp_path):
+    files = {"car/package.xml": manifest("car", "catkin"), "car/CMakeLists.txt": CMAKE, "car/talker.cpp": PARAMETER}
+    assert ends(graph_on_disk(tmp_path / "alone", files), "publisher") == {("car/talker", "/first", "std_msgs/String")}
+    files["car/launch/a.launch"] = """
+        <launch><node pkg="car" type="talker" name="t"><param name="topic" value="/second"/></node></launch>
+    """
+    assert ends(graph_on_disk(tmp_path / "started", files), "publisher") == {("/t", "/second", "std_msgs/String")}
+
+
+def test_what_two_launch_files_start_under_one_name_has_the_names_of_both(tmp_path):
+    files = {"car/package.xml": manifest("car", "catkin"), "car/CMakeLists.txt": CMAKE, "car/talker.cpp": PARAMETER}
+    for name in ("a", "b"):
+        files[f"car/launch/{name}.launch"] = f"""
+            <launch><node pkg="car" type="talker" name="t"><param name="topic" value="/{name}"/></node></launch>
+        """
+    found = graph_on_disk(tmp_path, files)
+    assert [node.id for node in found.nodes] == ["/t"]
+    assert {topic for _, topic, _ in ends(found, "publisher")} == {"/a", "/b"}
+
+
+def test_what_is_not_known_of_a_name_stands_in_one_pair_of_brackets():
+    assert make_open_part("<$(env ROBOT)>") == "<ROBOT>"
+    assert make_open_part("robot_<$(arg id)>/a") == "robot_<id>/a"
+    assert make_open_part("<$(eval <x> / 2)>") == "<$(eval_x___2)>"
+    assert make_open_part("plain/name") == "plain/name"
+    assert is_open("/<$ROBOT>/scan") and not is_open("/a/scan")
+
+
+def test_ros2_takes_names_that_are_known_in_part_and_refuses_what_it_always_did():
+    code = joined({"car/front.hpp": NODE.format(name="Front", node="front", topic="not a name")})
+    assert not [one for one in code.build().endpoints if one.topic and not one.implied]
