@@ -455,8 +455,8 @@ class Join:
             return "", "unresolved", value.reason
         text = value.text
         loaded = owner.loaded if isinstance(owner, Running) else None
-        full = node.name if node and node.name else f"/<{node.executable or get_tail(node.plugin)}>" if node else "/<node>"
-        full = loaded.name if loaded is not None else full
+        unknown = f"/<{(node.executable or get_tail(node.plugin)) if node else 'node'}>"
+        full = loaded.name if loaded is not None else (node and node.name) or unknown
         namespace, _, own = full.rpartition("/")
         generation = self.calls.table.generations.get(site.use.row.framework, self.ros)
         if not generation:

@@ -1,9 +1,9 @@
 """Which node makes an endpoint, under which name, and what has to hold for it."""
 
-from tests.model.flow.joining import ends, graph, graph_on_disk, joined, manifest
-
 from rosimpact.impact.model.flow.names import is_open, make_open_part
 from rosimpact.impact.model.flow.nodes import BuiltPackage
+
+from tests.model.flow.joining import ends, graph, graph_on_disk, joined, manifest
 
 NODE = """
     #include <rclcpp/rclcpp.hpp>
