@@ -347,6 +347,8 @@ class Sites:
                 )
                 if not known:
                     known = self._resolve_in_namespaces(kind.name, fn) or self._resolve_in_scope(kind.name, fn)
+                if not known and self.defined.has(lower := find_interface(kind.name, lower=True)):
+                    known = lower
                 if known:
                     return known
         if not use.row.type and use.row.does in _ROLES:

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from .graph import Coverage, Graph
+from .graph import Graph
 from .launches import Launch
 
 _Row = TypeVar("_Row")
@@ -18,7 +18,8 @@ _Row = TypeVar("_Row")
 def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     """The graph of a system. code: the graph of its code, whose names hold for programs that no launch file starts.
 
-    A node that several launch files start under one name is one node, with all names that it has in any of them.
+    A node that several launch files start under one name is one node, with all names that it has in any of them. What
+    launch files start of other packages is left out: that is most of what they start.
     """
     if not launches:
         return code
@@ -33,7 +34,6 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
 
     nodes = {node.id: node for graph in reversed(graphs) for node in graph.nodes}
     nodes |= {node.id: node for node in code.nodes if node.id in alone}
-    lacking = [one for graph in graphs for one in graph.coverage.unresolved if one.what == "started node"]
     return msgspec.structs.replace(
         code,
         nodes=tuple(sorted(nodes.values(), key=lambda node: node.id)),
@@ -41,13 +41,7 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
         publishes=merge("publishes"),
         timers=merge("timers"),
         parameters=merge("parameters"),
-        coverage=_add_unresolved(code.coverage, lacking),
     )
-
-
-def _add_unresolved(coverage: Coverage, lacking: Iterable[Any]) -> Coverage:
-    every = sorted({*coverage.unresolved, *lacking}, key=lambda one: (one.path, one.line, one.what))
-    return msgspec.structs.replace(coverage, unresolved=tuple(every))
 
 
 def _drop_repeats(rows: Iterable[_Row]) -> tuple[_Row, ...]:

@@ -116,12 +116,13 @@ _SUFFIXES = re.compile(r"(?:_?<.*>|_)\Z")
 _KINDS = {"msg": "", "srv": "", "action": ""}
 
 
-def find_interface(name: str) -> str:
+def find_interface(name: str, lower: bool = False) -> str:
     """`package/Name` of a message, service or action type, by its qualified name in C++ or Python; empty when the name
-    does not tell a package.
+    does not tell a package. lower: names that begin with a small letter are taken too, which other things have as well.
 
     `std_msgs::msg::String`, `std_msgs::String_<A>`, `std_msgs.msg.String` all give `std_msgs/String`; pointers,
-    `::Request`, `::Goal` and `sensor_msgs::ImageConstPtr` are taken off.
+    `::Request`, `::Goal` and `sensor_msgs::ImageConstPtr` are taken off, and modules that Python generates
+    (`std_msgs.msg._string.String`).
     """
     kind = parse_flow_type(name)
     parts = [part for part in _SUFFIXES.sub("", kind.name).replace("::", ".").split(".") if part]
@@ -139,8 +140,10 @@ def find_interface(name: str) -> str:
             if parts[-1].endswith(ending):
                 parts[-1] = parts[-1].removesuffix(ending)
                 break
+    if len(parts) >= 4 and parts[-2][:1] == "_" and parts[-3] in _KINDS:
+        del parts[-2]
     if len(parts) >= 3 and parts[-2] in _KINDS:
         return f"{parts[-3]}/{parts[-1]}"
-    if len(parts) == 2 and parts[1][:1].isupper() and parts[0][:1].islower():
+    if len(parts) == 2 and (lower or parts[1][:1].isupper()) and parts[0][:1].islower():
         return f"{parts[0]}/{parts[1]}"
     return ""
