@@ -461,7 +461,17 @@ class FlowCode:
                 return Variable("member", fn.facts.owner, head)
         if fn.source.facts.language == "python" and (place := self.modules.find("constant", head, fn.source, fn.scope)):
             return Variable("global", *place)
-        return Variable("global", fn.source.path, head)
+        return Variable("global", self._find_definer(head, fn.source) or fn.source.path, head)
+
+    def _find_definer(self, name: str, source: CodeFile) -> str:
+        """The source file that defines a variable which another source of its package uses (`extern`); empty where the
+        other has one of that name itself, and where it is not one file."""
+        if source.facts.language != "cpp":
+            return ""
+        by_path = self._constants.get(get_tail(name), {})
+        beside = [path for path, rows in by_path.items() if rows[0][1].package == source.package]
+        found = [path for path in beside if path.endswith(_SOURCES)]
+        return found[0] if len(found) == 1 and source.path not in beside else ""
 
     @cache_method
     def list_members(self, cls: Cls) -> frozenset[str]:

@@ -193,3 +193,28 @@ def test_what_is_not_known_of_a_name_stands_in_one_pair_of_brackets():
 def test_ros2_takes_names_that_are_known_in_part_and_refuses_what_it_always_did():
     code = joined({"car/front.hpp": NODE.format(name="Front", node="front", topic="not a name")})
     assert not [one for one in code.build().endpoints if one.topic and not one.implied]
+
+
+def test_a_variable_of_another_source_is_the_one_that_this_defines():
+    files = {
+        "car/window.h": "#include <ros/ros.h>\nextern ros::Publisher tune;",
+        "car/window.cpp": """
+            #include "window.h"
+            void press() { std_msgs::String words; tune.publish(words); }
+        """,
+        "car/node.cpp": """
+            #include "window.h"
+            #include <std_msgs/String.h>
+            ros::Publisher tune;
+            void press();
+            int main(int argc, char ** argv) {
+              ros::init(argc, argv, "tuner");
+              ros::NodeHandle n;
+              tune = n.advertise<std_msgs::String>("tune", 1);
+              press();
+            }
+        """,
+    }
+    built = (BuiltPackage("car", {"tuner": ("car/window.cpp", "car/node.cpp")}, {}, {}, {}, {}),)
+    found = graph(files, 1, built=built)
+    assert [(one.topic, one.path) for one in found.publishes] == [("/tune", "car/window.cpp")]
