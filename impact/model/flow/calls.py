@@ -47,14 +47,33 @@ class Calls:
         """In the order of files and lines."""
         found: list[FrameworkCall] = []
         described = group_pairs(self.code.list_calls_named(self.table.calls))
+        declaring = group_pairs(self.code.list_calls_named(("declare_parameters",)))
         for fn in self.code.functions:
             for call in described.get(fn, ()):
                 use = self.find_use(fn, call)
                 if use is not None:
                     found.append(use)
+            for call in declaring.get(fn, ()):
+                found.extend(self._list_declared(fn, call))
             found.extend(self._list_objects(fn))
         found.sort(key=lambda use: (use.fn.source.path, use.call.line, use.call.column))
         return found
+
+    def _list_declared(self, fn: Fn, call: FlowCall) -> Iterator[FrameworkCall]:
+        """The parameters that one call of declare_parameters() declares, each as if it were declared alone."""
+        given = {one.text: one.parts[0] for one in call.arguments if one.kind == "keyword" and one.parts}
+        positional = [one for one in call.arguments if one.kind != "keyword"]
+        namespace = positional[0] if positional else given.get("namespace", FlowExpr("text"))
+        rows = positional[1] if len(positional) > 1 else given.get("parameters", FlowExpr("list"))
+        head = f"{namespace.text}." if namespace.kind == "text" and namespace.text else ""
+        for row in rows.parts if rows.kind == "list" else ():
+            name = row.parts[0] if row.kind == "list" and row.parts else row
+            if name.kind != "text":
+                continue
+            one = structs.replace(call, arguments=(FlowExpr("text", head + name.text), *row.parts[1:2]))
+            known = self.table.calls.get("declare_parameter", ())
+            described = [each for each in known if each.language in ("", fn.source.facts.language)]
+            yield from (FrameworkCall(fn, each, one) for each in described[:1])
 
     def select_uses(self, what: str) -> list[FrameworkCall]:
         """The uses that do something, as their rows call it; in order."""

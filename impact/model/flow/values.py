@@ -382,6 +382,8 @@ class FlowValues:
         self, callee: str, fn: Fn, line: int, seen: tuple, arguments: tuple[FlowExpr, ...] | None = None
     ) -> Iterator[FlowValue]:
         """What a call inside an expression gives: a parameter's default, or what a function of the code returns."""
+        while arguments is None and get_tail(callee) in _SAME and (head := callee.rpartition(".")[0]).endswith("()"):
+            callee = head.removesuffix("()")
         near = [call for call in fn.facts.calls if call.callee == callee]
         near.sort(key=lambda call: (abs(call.line - line), call.arguments != arguments))
         if arguments is not None:

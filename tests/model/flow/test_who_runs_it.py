@@ -218,3 +218,23 @@ def test_a_variable_of_another_source_is_the_one_that_this_defines():
     built = (BuiltPackage("car", {"tuner": ("car/window.cpp", "car/node.cpp")}, {}, {}, {}, {}),)
     found = graph(files, 1, built=built)
     assert [(one.topic, one.path) for one in found.publishes] == [("/tune", "car/window.cpp")]
+
+
+def test_parameters_that_are_declared_together_are_each_declared():
+    code = """
+        import rclpy
+        from rclpy.node import Node
+        from std_msgs.msg import String
+        class Ear(Node):
+            def __init__(self):
+                super().__init__('ear')
+                self.declare_parameters(namespace='', parameters=[('topic', 'words'), ('rate', 5)])
+                topic = self.get_parameter('topic').get_parameter_value().string_value
+                self.create_subscription(String, topic, print, 1)
+        if __name__ == '__main__':
+            rclpy.init()
+            Ear()
+    """
+    found = graph({"car/ear.py": code})
+    assert ends(found, "subscriber") == {("car/ear.py", "/words", "std_msgs/String")}
+    assert {(one.name, one.kind) for one in found.parameters} >= {("topic", "declared"), ("rate", "declared")}
