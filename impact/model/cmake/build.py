@@ -303,6 +303,11 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return any(found.how == "declared" for found in self.found)
 
     @property
+    def packaged(self) -> At | None:
+        """Where it calls catkin_package() or ament_package()."""
+        return self.catkin_package or self.ament_package
+
+    @property
     def target_links(self) -> tuple[Link, ...]:
         """What is given to targets, target by target."""
         return tuple(link for target in self.targets for link in target.links)
