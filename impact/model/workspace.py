@@ -290,6 +290,13 @@ class Workspace:
         return {p.name: {i.name for i in p.linked.interfaces} for p in self if p.linked.interfaces}
 
     @cached_property
+    def library_names(self) -> frozenset[str]:
+        """What may be the name of a library that a package of it builds, as PluginClass has it."""
+        targets = [t for p in self for t in p.build.targets if t.kind not in ("custom", "executable", "test")]
+        names = (name for target in targets for name in (target.name, target.output_name) if name)
+        return frozenset(name.removeprefix("lib").removesuffix(".so") for name in names)
+
+    @cached_property
     def modules(self) -> dict[str, list[str]]:
         """Python module name to the packages of the workspace that have one of that name."""
         return _group((module, package.name) for package in self for module in {package.name, *list_modules(package)})
