@@ -125,6 +125,13 @@ class Package:
         """The path of one of its files or folders, relative to its own folder."""
         return path[len(self.path) :].lstrip("/")
 
+    def find_doubled(self, path: str) -> str:
+        """The file that a path means where the name of the package's folder stands twice: below the folder itself as
+        CMAKE_SOURCE_DIR, and in the path. Relative to the package; empty for other paths."""
+        doubled = f"{self.path}/{posixpath.basename(self.path)}/" if self.path else f"{self.name}/"
+        inside = path[len(doubled) :] if path.startswith(doubled) and path not in self.files else ""
+        return inside if inside and posixpath.join(self.path, inside) in self.files else ""
+
     def has_files(self, folder: str) -> bool:
         """True when a file lies in the folder (relative to the package)."""
         return (f"{self.path}/{folder}" if self.path else folder) in self.folders
