@@ -332,6 +332,10 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         """Whether what is not read may add targets and set variables."""
         return bool(self.unresolved) or self.builds_others or any(target.name.endswith("()") for target in self.targets)
 
+    def list_uses(self) -> list[CMakeUse]:
+        """Its uses, and as those of the kind `target` the items that targets are given."""
+        return [*self.uses, *(CMakeUse("target", one.item, one.at, "", one.conditions) for one in self.target_links)]
+
     def list_linked_items(self, target: str, hows: Container[str] | None = LINKING) -> set[str] | None:
         """All that a target is linked to, itself and through targets of its package; None where that cannot be told.
         hows: what counts, with None all that it is given."""
