@@ -308,6 +308,11 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return self.catkin_package or self.ament_package
 
     @property
+    def catkin_components(self) -> frozenset[str]:
+        """The packages that find_package(catkin) is asked for."""
+        return frozenset(found.name for found in self.found if found.how == "catkin")
+
+    @property
     def target_links(self) -> tuple[Link, ...]:
         """What is given to targets, target by target."""
         return tuple(link for target in self.targets for link in target.links)
