@@ -873,5 +873,3 @@ def _list_stems(name: str) -> frozenset[str]:
     `yaml_cpp`."""
     plain = name.removeprefix("lib").removesuffix("-dev")
     return frozenset({re.split(r"[-.]", plain)[0], plain.replace("-", "_")})
-
-

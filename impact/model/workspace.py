@@ -99,6 +99,11 @@ class Package:
             for requirement in file.requirements:
                 yield At(path, requirement.line), requirement.text
 
+    @property
+    def is_ros_cmake(self) -> bool:
+        """True when CMake builds it with the macros of catkin or ament."""
+        return self.build_type in ("catkin", "ament_cmake", "ament_cmake_auto")
+
     @cached_property
     def is_interface_package(self) -> bool:
         """True when it generates messages, services or actions."""

@@ -11,7 +11,7 @@ from ..vocabulary import Package, TargetView
 
 def read_installs(view: TargetView, package: Package) -> list[Install] | None:
     """The install rules of a package that count on the target; None where they are not known."""
-    if not package.build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+    if not package.build.files or not package.is_ros_cmake:
         return None
     if package.build.finds_declared and package.build.packaged is None:
         return None

@@ -3,7 +3,7 @@
 What it does
     Reports packages whose headers compiled code includes, or whose targets are used, when no find_package (or catkin
     component, pkg_check_modules, ament_auto) of the package asks for them and none that is asked for brings them. What
-    is found for the tests alone counts for the tests alone. Also libraries that their vendor package no longer finds.
+    is found for the tests alone counts for the tests alone.
 
 Why it breaks
     The compiler misses the include path, or CMake stops at a target, unless another package happens to add them.
@@ -31,7 +31,6 @@ from ...model.misspelling import SpellingIndex
 from ...model.view import find_included_interface
 from ...targets.platform import strip_to_letters
 from ...targets.providers.libraries import load_libraries
-from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
 from .include_folders import find_include_doubt
 
@@ -61,17 +60,12 @@ _SYSTEM_BY_DEFAULT = (
         "library": Text(
             "`{header}` is included but CMakeLists.txt does not find `{subject}`", "[[add {how} and ]]link the library"
         ),
-        "placed": Text(
-            "`{header}` is included, but {vendor} {version} no longer finds `{subject}`",
-            "add find_package({subject} REQUIRED) and link it",
-        ),
     },
 )
 def missing_find_package(view: TargetView, package: Package):
     build = package.build
-    if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+    if not build.files or not package.is_ros_cmake:
         return
-    yield from _find_vendored_libraries(view, package)
     found = list_found_names(view, package)
     if found is None:
         return
@@ -152,28 +146,3 @@ def _list_answered(view: TargetView, package: Package, testing: bool) -> set[str
     """What CMake looks for, for tests alone or not, and who answers."""
     names = {f.name for f in package.build.found if is_for_tests(f.conditions) is testing}
     return names.union(p.name for name in names for p in view.find_cmake(name))
-
-
-# Vendor packages that only tell CMake where the library's configuration is, from which version on: package, version,
-# CMake package, how its include paths begin. Source: the vendor packages' `-extras.cmake.in`.
-_PLACING = (("yaml_cpp_vendor", "9.0.0", "yaml-cpp", "yaml-cpp/"),)
-
-
-def _find_vendored_libraries(view: TargetView, package: Package):
-    """Libraries whose vendor package is found and no longer finds them."""
-    found = {f.name: f for f in package.build.found}
-    for vendor, since, library, root in _PLACING:
-        version = view.target.find_version(vendor)
-        asked = found.get(vendor)
-        if asked is None or library in found or not version or not is_at_least(version, since):
-            continue
-        if any(strip_to_letters(link.item) == strip_to_letters(library) for link in package.build.target_links):
-            continue
-        use = next((i for i in package.linked.includes if i.path.startswith(root) and i.targets), None)
-        if use is None or not view.is_sure(use.conditions):
-            continue
-        others = view.list_transitive(name for name in found if name != vendor)
-        if vendor in others or library in others:
-            continue  # it may come along with those
-        data = {"header": use.path, "vendor": vendor, "version": version}
-        yield Diagnostic(asked.at, library, package.name, data, "placed", (asked.required or Doubt.OPTIONAL,))

@@ -123,4 +123,3 @@ def _add_dependencies(package: Package, targets, variable: str) -> tuple[Insert,
     return tuple(
         Insert(at.path, at.line, f"add_dependencies({name} {variable})") for name, at in sorted(places.items())
     )
-
