@@ -31,8 +31,9 @@ def find_include_doubt(view: TargetView, need: Need) -> Doubt | None:
     """What speaks against a compiler that stops at an include whose package CMake does not look for at all."""
     if not (need.targets or need.public):
         return Doubt.UNCOMPILED
-    together = view.target.ros == 1 or view.offers.has_one_include_folder or not need.targets or len(need.providers) > 1
-    apart = not together and _has_own_folder(view, view.offers, need.providers[0].name, need.subject)
+    first, *others = need.providers
+    together = view.target.ros == 1 or view.offers.has_one_include_folder or not need.targets or others
+    apart = not together and _has_own_folder(view, view.offers, first.name, need.subject)
     return None if apart else Doubt.LUCKY
 
 
