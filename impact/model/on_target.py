@@ -815,6 +815,14 @@ class WorkspaceOnTarget:
         version = self.target.find_library("cmake")
         return module in MODULES and (not version or is_at_least(version, SINCE.get(module, "0")))
 
+    def may_find_module_elsewhere(self, package: Package, module: str) -> bool:
+        """Whether another package may have a module, so that an import of it need not mean this one's."""
+        head = module.partition(".")[0]
+        if head and head != package.name and any(one.name == head for one in package.manifest.dependencies):
+            return True
+        providers = (*self.find_module(module), *self.providers.find_module(module)) if head else ()
+        return any(provider.name != package.name for provider in providers)
+
     @cache_method
     def find_module(self, module: str) -> tuple[Provider, ...]:
         """Who could answer `import module`."""
@@ -865,5 +873,3 @@ def _list_stems(name: str) -> frozenset[str]:
     `yaml_cpp`."""
     plain = name.removeprefix("lib").removesuffix("-dev")
     return frozenset({re.split(r"[-.]", plain)[0], plain.replace("-", "_")})
-
-

@@ -201,6 +201,14 @@ class MemberUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     sure: bool
     conditions: tuple[Condition, ...] = ()
 
+    @property
+    def spellings(self) -> tuple[str, ...]:
+        """A constant as the tables of names have it."""
+        kind, _, name = self.interface.partition("/")
+        part = "" if self.section == "message" else self.section.capitalize()
+        parts = (self.package, kind, name, *filter(None, [part]), self.member)
+        return ("::".join(parts), ".".join(parts), f"{self.package}::{name}{part}::{self.member}")
+
 
 class PythonApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A use of a Python name of another package that may not be the same in all its versions. role: as in ImportUse."""

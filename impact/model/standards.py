@@ -27,7 +27,7 @@ def find_standards(view: TargetView, package: Package) -> dict[str, int]:
                 year = max(year, get_year(own.public_standard))
             others.update(resolve_package(link.item) for link in own.links if link.how in _PASSING_ON)
         if "catkin" in others:
-            others.update(f.name for f in package.build.found if f.how == "catkin")
+            others |= package.build.catkin_components
         for name in view.roles.list_found_with(others - targets.keys()) if others else ():
             other = view.workspace.packages.get(name)
             asked = (
@@ -69,8 +69,8 @@ _ASKS_FOR_LITTLE = frozenset({"Boost", "Eigen3", "Threads", "Qt5", "OpenMP", "ya
 
 
 def _list_found(view: TargetView, package: Package) -> list[Package]:
-    names = (found.name for found in package.build.found if found.how == "catkin")
-    return [view.workspace.packages[name] for name in names if name in view.workspace.packages]
+    packages = view.workspace.packages
+    return [packages[name] for name in package.build.catkin_components if name in packages]
 
 
 def _find_raised(view: TargetView) -> int:

@@ -8,12 +8,14 @@ not stored, packages whose dependencies are not known. What is looked for may co
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from functools import cached_property, lru_cache
 
 from ...edges.memory import cache_method
-from ..targets.platform import strip_separators
+from ..targets.platform import strip_separators, strip_to_letters
 from ..targets.target import Provider
+from .cmake.build import is_for_tests
+from .cmake.interpreter import calls_unmodelled
 from .cmake.names import MODULES
 from .on_target import INTERFACES, SHORTEST_NAME, WorkspaceOnTarget
 from .workspace import Package
@@ -105,6 +107,27 @@ class UnknownContents:
             or any(f"Find{one}" in MODULES or one in self._view.workspace.find_modules for one in named)
             or any(provider.kind == "ros" for one in named for provider in self._view.find_cmake(one)[:1])
         )
+
+    def may_define_target(self, package: Package, item: str, found: Collection[str]) -> bool:
+        """Whether something else than find_package() of its namespace may define a target: the configuration of a
+        library that is found, a package that shares the namespace, or what cannot be read. found: with all that comes
+        along."""
+        space, _, target = item.partition("::")
+        view, build, providers = self._view, package.build, self._view.find_cmake(space)
+        if not providers or build.unresolved or view.is_met(providers, found):
+            return True
+        if view.is_package(space):
+            offer = view.offers.find_package(space)
+            if offer is None:
+                return space not in view.workspace.packages or (target != space and view.is_package(target))
+            return item not in {one.name for one in offer.build.targets}
+        letters = strip_to_letters(space)
+        sought = {n for f in build.found if not is_for_tests(f.conditions) for n in (f.name, f.prefix)}
+        alike = (letters in name or name in letters for name in filter(None, map(strip_to_letters, sought)))
+        if calls_unmodelled(build) or any(alike):
+            return True
+        bringing = view.apt.list_bringing(frozenset(p.package for p in providers if p.package))
+        return any(not bringing.isdisjoint(view.list_debs(name)) for name in found)
 
     def may_build_library(self, package: Package, name: str) -> bool:
         """Whether a package that comes along is called like the library of a target, so that it may have another

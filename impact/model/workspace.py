@@ -99,6 +99,11 @@ class Package:
             for requirement in file.requirements:
                 yield At(path, requirement.line), requirement.text
 
+    @property
+    def is_ros_cmake(self) -> bool:
+        """True when CMake builds it with the macros of catkin or ament."""
+        return self.build_type in ("catkin", "ament_cmake", "ament_cmake_auto")
+
     @cached_property
     def is_interface_package(self) -> bool:
         """True when it generates messages, services or actions."""
@@ -124,6 +129,13 @@ class Package:
     def strip_path(self, path: str) -> str:
         """The path of one of its files or folders, relative to its own folder."""
         return path[len(self.path) :].lstrip("/")
+
+    def find_doubled(self, path: str) -> str:
+        """The file that a path means where the name of the package's folder stands twice: below the folder itself as
+        CMAKE_SOURCE_DIR, and in the path. Relative to the package; empty for other paths."""
+        doubled = f"{self.path}/{posixpath.basename(self.path)}/" if self.path else f"{self.name}/"
+        inside = path[len(doubled) :] if path.startswith(doubled) and path not in self.files else ""
+        return inside if inside and posixpath.join(self.path, inside) in self.files else ""
 
     def has_files(self, folder: str) -> bool:
         """True when a file lies in the folder (relative to the package)."""
@@ -288,6 +300,13 @@ class Workspace:
     def interface_names(self) -> dict[str, set[str]]:
         """Package to the names of its interfaces."""
         return {p.name: {i.name for i in p.linked.interfaces} for p in self if p.linked.interfaces}
+
+    @cached_property
+    def library_names(self) -> frozenset[str]:
+        """What may be the name of a library that a package of it builds, as PluginClass has it."""
+        targets = [t for p in self for t in p.build.targets if t.kind not in ("custom", "executable", "test")]
+        names = (name for target in targets for name in (target.name, target.output_name) if name)
+        return frozenset(name.removeprefix("lib").removesuffix(".so") for name in names)
 
     @cached_property
     def modules(self) -> dict[str, list[str]]:

@@ -30,7 +30,7 @@ class RejectedUse(NamedTuple):
     kind: str = ""
     needs: int = 0
     replacement: str = ""
-    doubts: tuple[Doubt, ...] = ()
+    doubts: tuple[Doubt | bool, ...] = ()
     conditions: tuple[Condition, ...] = ()
 
 

@@ -23,6 +23,11 @@ class PluginClass(msgspec.Struct, frozen=True, array_like=True, gc=False):
     library: str
     line: int
 
+    @property
+    def library_name(self) -> str:
+        """What CMake calls the library."""
+        return self.library.rpartition("/")[2].removeprefix("lib").removesuffix(".so")
+
 
 class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Any file whose only interest is what it mentions. plugins is filled for plugin descriptions. unresolved: mentions

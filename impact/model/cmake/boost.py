@@ -52,7 +52,7 @@ def find_linked_boost(view: TargetView, package: Package, target: str, asked: Se
             packages.add(resolve_package(item))
     linked = set(components)
     if "catkin" in packages:
-        packages |= {f.name for f in package.build.found if f.how == "catkin"}
+        packages |= package.build.catkin_components
     if any(found.name in _BRING_BOOST for found in package.build.found):
         return None
     brought = view.list_transitive(packages - {one.name for one in package.build.targets})

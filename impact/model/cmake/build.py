@@ -303,6 +303,16 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return any(found.how == "declared" for found in self.found)
 
     @property
+    def packaged(self) -> At | None:
+        """Where it calls catkin_package() or ament_package()."""
+        return self.catkin_package or self.ament_package
+
+    @property
+    def catkin_components(self) -> frozenset[str]:
+        """The packages that find_package(catkin) is asked for."""
+        return frozenset(found.name for found in self.found if found.how == "catkin")
+
+    @property
     def target_links(self) -> tuple[Link, ...]:
         """What is given to targets, target by target."""
         return tuple(link for target in self.targets for link in target.links)
@@ -326,6 +336,10 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     def may_add_targets(self) -> bool:
         """Whether what is not read may add targets and set variables."""
         return bool(self.unresolved) or self.builds_others or any(target.name.endswith("()") for target in self.targets)
+
+    def list_uses(self) -> list[CMakeUse]:
+        """Its uses, and as those of the kind `target` the items that targets are given."""
+        return [*self.uses, *(CMakeUse("target", one.item, one.at, "", one.conditions) for one in self.target_links)]
 
     def list_linked_items(self, target: str, hows: Container[str] | None = LINKING) -> set[str] | None:
         """All that a target is linked to, itself and through targets of its package; None where that cannot be told.

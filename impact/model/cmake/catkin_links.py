@@ -102,5 +102,5 @@ def find_linked_packages(view: TargetView, package: Package, items: Iterable[str
     """The packages that link items stand for."""
     names = {resolve_package(item) for item in items}
     if "catkin" in names:
-        names.update(f.name for f in package.build.found if f.how == "catkin")
+        names |= package.build.catkin_components
     return {name for name in names if view.is_package(name)} - {package.name, "catkin"}

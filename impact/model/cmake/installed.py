@@ -39,7 +39,7 @@ def collect_installed_headers(package: Package) -> InstalledHeaders:
             if place.endswith(HEADER_ENDINGS):
                 found[path] = place
     if package.build.finds_declared:
-        known = known and (package.build.ament_package or package.build.catkin_package) is not None
+        known = known and package.build.packaged is not None
     return InstalledHeaders(found, known)
 
 

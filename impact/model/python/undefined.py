@@ -14,6 +14,7 @@ import msgspec
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
+from ...facts.python.bound import PYTHON2_BUILTINS
 from ...facts.python.reader import Import
 from ...facts.python.source import PythonFile
 from ...facts.setup import SetupFile
@@ -99,6 +100,26 @@ BESIDE = "."
 """The name that list_siblings() gives to imports."""
 UNLISTED = ".."
 """The name that list_unlisted() gives to imports."""
+
+
+_MARKS = {ABOVE: "above", ALONE: "alone", BESIDE: "beside", UNLISTED: "unlisted", "*": "itself"}
+
+
+def classify_undefined(module: str, name: str) -> str:
+    """What is wrong with a name: what ABOVE, ALONE, BESIDE and UNLISTED stand for, `itself` (a star import of a package
+    from itself), `imported` (its module does not define it), `python 2` (Python 2 alone has it), `private` (a member of
+    self), `module used`, `module` (that is not there) or `undefined`."""
+    if name in _MARKS:
+        return _MARKS[name]
+    if module:
+        return "imported"
+    if name in PYTHON2_BUILTINS or name.startswith("."):
+        return "python 2"
+    if name.startswith("self."):
+        return "private"
+    if name.endswith("()"):
+        return "module used"
+    return "module" if "." in name else "undefined"
 
 
 def list_siblings(

@@ -27,25 +27,12 @@ Not reported
 
 from collections.abc import Iterable, Iterator
 
-from ...facts.condition import Condition
+from ...model.cmake.build import CMakeUse
 from ...model.cmake.links import is_linked_otherwise
-from ...targets.symbol import Availability, Symbol
-from ..vocabulary import (
-    At,
-    Diagnostic,
-    Doubt,
-    Package,
-    TargetView,
-    Text,
-    Upcoming,
-    list_place_doubts,
-    rate_upcoming,
-    rule,
-)
+from ...targets.symbol import Availability
+from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Upcoming, list_place_doubts, rate_upcoming, rule
 from .diagnosis import build_availability_texts, build_data, diagnose, find_missing
 from .link_fixes import make_link_fix, tell_replacement
-
-Names = list[tuple[str, At, tuple[Condition, ...], str]]
 
 
 @rule(
@@ -60,12 +47,11 @@ Names = list[tuple[str, At, tuple[Condition, ...], str]]
 )
 def removed_cmake_name(view: TargetView):
     for package in view:
-        names: Names = [(use.name, use.at, use.conditions, use.kind) for use in package.build.uses]
-        names += [(link.item, link.at, link.conditions, "target") for link in package.build.target_links]
-        owners = {(name, kind): _find_reviewed_owner(view, kind, name) for name, _, _, kind in names}
-        unknown = [name for name in names if not owners[name[0], name[3]]]
+        uses = package.build.list_uses()
+        owners = {(use.kind, use.name): _find_reviewed_owner(view, use.kind, use.name) for use in uses}
+        unknown = [use for use in uses if not owners[use.kind, use.name]]
         yield from rate_upcoming(_list_unexported(view, package, unknown))
-        yield from rate_upcoming(_list_reviewed(view, package, names, owners))
+        yield from rate_upcoming(_list_reviewed(view, package, uses, owners))
         yield from _list_emptied(view, package)
 
 
@@ -76,60 +62,59 @@ def _find_reviewed_owner(view: TargetView, kind: str, name: str) -> str:
 
 
 def _list_reviewed(
-    view: TargetView, package: Package, names: Names, owners: dict[tuple[str, str], str]
+    view: TargetView, package: Package, uses: list[CMakeUse], owners: dict[tuple[str, str], str]
 ) -> Iterator[Diagnostic | Upcoming]:
     """What the tables of known changes tell, unless what is stored of the very release contradicts it."""
     seen = set()
-    for name, at, conditions, kind in names:
-        owner = owners[name, kind]
-        if not owner or name in seen or not view.applies(conditions):
+    for use in uses:
+        owner = owners[use.kind, use.name]
+        if not owner or use.name in seen or not view.applies(use.conditions):
             continue
-        found = view.find_availability(Symbol(kind, name, (owner,)), conditions)
-        if found.is_missing or found.state == "upcoming":
-            seen.add(name)
-            doubts = (*list_place_doubts(view, "build", conditions), kind != "variable" or Doubt.INCOMPLETE)
-            yield _diagnose(view, package, found._replace(sure=True), at, name, doubts)
+        found = find_missing(view, use.kind, use.name, (owner,), use.conditions)
+        if found is not None:
+            seen.add(use.name)
+            doubts = (*list_place_doubts(view, "build", use.conditions), use.kind != "variable" or Doubt.INCOMPLETE)
+            yield _diagnose(view, package, found._replace(sure=True), use, use.name, doubts)
 
 
-def _list_unexported(view: TargetView, package: Package, names: Names) -> Iterator[Diagnostic | Upcoming]:
+def _list_unexported(view: TargetView, package: Package, uses: list[CMakeUse]) -> Iterator[Diagnostic | Upcoming]:
     """What the stored versions of the packages that are found, or come along with these, do not export alike."""
     found = dict.fromkeys(one.name for one in package.build.found if one.how != "pkg_check_modules")
     brought, owners = view.list_transitive(found), view.providers.commands.get(view.target.ros, {})
     own = {target.name for one in view.workspace for target in one.build.targets}
-    places: dict[tuple[str, str], tuple[At, bool, tuple[Condition, ...]]] = {}
-    for name, at, conditions, kind in names:
+    places: dict[tuple[str, str], tuple[CMakeUse, bool]] = {}
+    for use in uses:
+        kind, name = use.kind, use.name
         # A variable may be set in more ways than its package shows.
         if kind == "variable" or (kind == "target" and ("::" not in name or "$" in name or name in own)):
             continue
-        if not view.applies(conditions):
+        if not view.applies(use.conditions):
             continue
-        certain = view.is_sure(conditions)
+        certain = view.is_sure(use.conditions)
         key = kind, name.lower() if kind == "command" else name
         if key not in places or (certain and not places[key][1]):
-            places[key] = at, certain, conditions
-    for (kind, name), (at, certain, conditions) in places.items():
+            places[key] = use, certain
+    for (kind, name), (use, certain) in places.items():
         if kind == "target":
             packages = [name.partition("::")[0]]
         else:
             packages = [*found, *brought.intersection(owners.get(name, "").split())]
-        lost = find_missing(view, kind, name, packages, conditions)
-        if lost is None:
-            continue
-        if not (lost.library and view.unknown_contents.may_make_target(package, name)):
+        lost = find_missing(view, kind, name, packages, use.conditions)
+        if lost is not None and not (lost.library and view.unknown_contents.may_make_target(package, name)):
             alone = not lost.library or not view.unknown_contents.may_build_library(package, name)
             doubts = (certain or Doubt.CONDITIONAL, alone or Doubt.INCOMPLETE)
-            yield _diagnose(view, package, lost, at, name, doubts)
+            yield _diagnose(view, package, lost, use, name, doubts)
 
 
 def _diagnose(
-    view: TargetView, package: Package, found: Availability, at: At, name: str, doubts: Iterable[Doubt | bool | None]
+    view: TargetView, package: Package, found: Availability, use: CMakeUse, name: str, doubts: Iterable[Doubt | bool]
 ) -> Diagnostic | Upcoming:
-    call = next((call for call in package.build.dependency_calls if call.at == at), None)
+    call = next((call for call in package.build.dependency_calls if call.at == use.at), None)
     if call is None:
-        return diagnose(found, at, name, package.name, doubts)
+        return diagnose(found, use.at, name, package.name, doubts)
     data = {**build_data(found), "replacement": tell_replacement(view, package, call)}
     fix = make_link_fix(view, package) if found.is_missing else ()
-    return diagnose(found, at, name, package.name, doubts, data=data, fix=fix)
+    return diagnose(found, use.at, name, package.name, doubts, data=data, fix=fix)
 
 
 def _list_emptied(view: TargetView, package: Package) -> Iterator[Diagnostic]:

@@ -33,9 +33,8 @@ Not reported
 
 from collections.abc import Iterator
 
-from ...facts.python.bound import PYTHON2_BUILTINS
 from ...model.package import ImportUse
-from ...model.python.undefined import ABOVE, ALONE, BESIDE, UNLISTED
+from ...model.python.undefined import classify_undefined
 from ...targets.distro.distro import DistroTarget
 from ..python_files import RejectedUse, is_no_example, list_python_doubts, report_refused
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
@@ -74,23 +73,21 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together,
 )
 def undefined_name(view: TargetView):
     for package in view:
-        for use, name in _list_uses(view, package):
-            if _is_of_python2(use, name):
+        for use, name, kind in _list_uses(view, package):
+            if kind in _OF_PYTHON2:
                 continue
-            if name == UNLISTED:
+            if kind == "unlisted":
                 if use.role == "run":
                     doubts = (use.lazy is False or Doubt.LATE, package.build_type == "ament_python" or Doubt.DISTURBS)
                     same = (Together(use.module),)
-                    yield Diagnostic(use.at, use.module, package.name, {}, "unlisted", doubts, together=same)
+                    yield Diagnostic(use.at, use.module, package.name, {}, kind, doubts, together=same)
                 continue
-            if name in (ABOVE, ALONE):
-                kind = "above" if name == ABOVE else "alone"
+            if kind in ("above", "alone"):
                 inside, doubts = use.module.lstrip("."), _collect_import_doubts(view, package, use)
                 data = {"replacement": inside if inside.startswith(f"{package.name}.") else f".{inside}"}
-                yield Diagnostic(use.at, use.module, package.name, data, kind, doubts, together=(Together(name),))
+                yield Diagnostic(use.at, use.module, package.name, data, kind, doubts, together=(Together(kind),))
                 continue
-            kind = _find_kind(use, name)
-            if kind in ("imported", "module") and _may_be_of_another(view, package, use.module or name):
+            if kind in ("imported", "module") and view.may_find_module_elsewhere(package, use.module or name):
                 continue
             # A module that is not there has, by its first name, to be one of the package.
             own = kind != "module" or name.partition(".")[0] in package.linked.modules
@@ -102,51 +99,26 @@ def undefined_name(view: TargetView):
         yield from _find_lacking_elsewhere(view, package)
 
     def find(package: Package, target: DistroTarget) -> Iterator[RejectedUse]:
-        for use, name in _list_uses(view, package):
-            if _is_of_python2(use, name):
-                yield from _find_refused(view, package, use, name)
+        for use, name, kind in _list_uses(view, package):
+            head = use.module.partition(".")[0]
+            subject = {"python 2": name.lstrip("."), "beside": head}.get(kind, use.module)
+            if kind == "python 2" or (kind in _OF_PYTHON2 and not view.may_find_module_elsewhere(package, subject)):
+                doubts = (*_collect_doubts(use), kind != "itself" or Doubt.LATE)
+                yield RejectedUse(use, subject, kind, doubts=doubts, conditions=use.conditions)
 
     yield from report_refused(view, find)
 
 
-def _find_kind(use: ImportUse, name: str) -> str:
-    if use.module:
-        return "imported"
-    if name.startswith("self."):
-        return "private"
-    if name.endswith("()"):
-        return "module used"
-    return "module" if "." in name.lstrip(".") else "undefined"
+# Builtins and methods of Python 2, and imports of a module by its bare name, or of all of it, that Python 2 takes from
+# the folder of the importing one.
+_OF_PYTHON2 = ("python 2", "beside", "itself")
 
 
-def _list_uses(view: TargetView, package: Package) -> Iterator[tuple[ImportUse, str]]:
+def _list_uses(view: TargetView, package: Package) -> Iterator[tuple[ImportUse, str, str]]:
+    """What surely counts here, each with its name and kind."""
     for use in package.linked.undefined:
         if view.is_sure(use.conditions):
-            yield use, use.names[0]
-
-
-def _find_refused(view: TargetView, package: Package, use: ImportUse, name: str) -> Iterator[RejectedUse]:
-    """What Python 2 alone accepts: its builtins and methods, and imports of a module by its bare name, or of all of it,
-    that it takes from the folder of the importing one."""
-    doubts, head = _collect_doubts(use), use.module.partition(".")[0]
-    if name not in (BESIDE, "*"):
-        yield RejectedUse(use, name.lstrip("."), "python 2", doubts=doubts, conditions=use.conditions)
-    elif not _may_be_of_another(view, package, head if name == BESIDE else use.module):
-        kind, subject = ("beside", head) if name == BESIDE else ("itself", use.module)
-        late = (Doubt.LATE,) if name == "*" else ()
-        yield RejectedUse(use, subject, kind, doubts=(*doubts, *late), conditions=use.conditions)
-
-
-def _may_be_of_another(view: TargetView, package: Package, module: str) -> bool:
-    """Whether some package but this one may have a module, so that an import of it need not mean this one's."""
-    head = module.partition(".")[0]
-    if not head:
-        return False
-    if head != package.name and any(dependency.name == head for dependency in package.manifest.dependencies):
-        return True
-    return any(
-        provider.name != package.name for provider in (*view.find_module(module), *view.providers.find_module(module))
-    )
+            yield use, use.names[0], classify_undefined(use.module, use.names[0])
 
 
 def _find_lacking_elsewhere(view: TargetView, package: Package) -> Iterator[Diagnostic]:
@@ -156,7 +128,7 @@ def _find_lacking_elsewhere(view: TargetView, package: Package) -> Iterator[Diag
         if len(owners) != 1 or owners[0] == package.name or not view.is_sure(use.conditions):
             continue
         owner = view.workspace.packages[owners[0]]
-        if _may_be_of_another(view, owner, use.module):
+        if view.may_find_module_elsewhere(owner, use.module):
             continue
         for name in owner.linked.python_offer.list_lacking(use.module, use.names):
             kind = "module of another" if name == use.module else "imported"
@@ -169,12 +141,6 @@ def _collect_import_doubts(view: TargetView, package: Package, use: ImportUse) -
     if use.role == "aside" and not (use.module or use.lazy) and is_no_example(package, use.at.path):
         place = (Doubt.LATE,)  # whoever starts or imports the file comes by
     return (*place, *_collect_doubts(use), use.role != "test" or Doubt.TEST)
-
-
-def _is_of_python2(use: ImportUse, name: str) -> bool:
-    """Whether Python 2 alone accepts a use: a name, or an import from the folder of the importing module."""
-    of_name = not use.module and (name in PYTHON2_BUILTINS or name.startswith("."))
-    return of_name or name in (BESIDE, "*")
 
 
 def _collect_doubts(use: ImportUse) -> tuple[Doubt, ...]:

@@ -28,12 +28,9 @@ Not reported
     interfaces that the workspace itself brings.
 """
 
-import posixpath
 from collections.abc import Iterator
 
-from ...model.package import MemberUse
-from ...model.python.own_interfaces import get_own_interfaces
-from ...targets.surface.fields import load_fields
+from ...model.python.own_interfaces import get_own_interfaces, may_generate, may_have_interface
 from ...targets.symbol import Symbol
 from ..python_files import list_python_doubts
 from ..vocabulary import (
@@ -71,39 +68,30 @@ _HELP = "[[use `{replacement}`]][[perhaps `{alike}` replaces it]]"
     },
 )
 def unknown_field(view: TargetView):
-    own = {
-        member.name
-        for package in view.workspace
-        for interface in package.linked.interfaces
-        for section in interface.definition.sections
-        for member in (*section.fields, *section.constants)
-    }
+    own = get_own_interfaces(view.workspace)
     for package in view:
         for use in package.linked.own_fields:
-            if view.is_sure(use.conditions) and (type_ := get_own_interfaces(view.workspace).find_lacking(use)):
+            if view.is_sure(use.conditions) and (type_ := own.find_lacking(use)):
                 data = {"interface": type_.replace(".", "/")}
                 doubts = list_python_doubts(view, package, use.role, use.at.path)
                 same = (Together(type_),)
                 yield Diagnostic(use.at, use.steps[-1], package.name, data, "own", doubts, together=same)
-        yield from rate_upcoming(_list_members(view, package, own))
+        yield from rate_upcoming(_list_members(view, package, own.member_names))
         yield from rate_upcoming(_list_imports(view, package))
         yield from _list_of_workspace(view, package)
 
 
 def _list_members(view: TargetView, package: Package, own: set[str]) -> Iterator[Diagnostic | Upcoming]:
     for use in package.linked.members:
-        if (not use.sure and use.member in own) or _is_reviewed(view, *_list_spellings(use)):
+        if use.ros != view.target.ros or (not use.sure and use.member in own) or _is_reviewed(view, *use.spellings):
             continue
         # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
         if not view.applies(use.conditions) or not view.is_sure(c for c in use.conditions if c.language in _CODE):
             continue
-        if use.ros != view.target.ros:
-            continue
-        name = f"{use.package}/{use.interface}"
         found = find_missing(view, "field", f"{use.interface}.{use.section}.{use.member}", (use.package,))
         if found is not None:
             doubts = (*list_place_doubts(view, use.role, use.conditions), use.sure or Doubt.INCOMPLETE)
-            data = {**build_data(found), "interface": name}
+            data = {**build_data(found), "interface": f"{use.package}/{use.interface}"}
             kind = f"field {found.state}"
             subject = ".".join((*use.section.split(".")[1:], use.member))
             yield diagnose(found, use.at, subject, package.name, doubts, kind=kind, data=data)
@@ -138,42 +126,15 @@ def _list_of_workspace(view: TargetView, package: Package) -> Iterator[Diagnosti
             continue
         doubts = (*list_python_doubts(view, package, imported.role, imported.at.path), not imported.lazy or Doubt.LATE)
         if not owner.is_interface_package:
-            if kind in ("msg", "srv", "action") and not _may_generate(view, owner, kind):
+            if kind in ("msg", "srv", "action") and not may_generate(owner, kind, view.target.ros):
                 data = {"interface": name}
                 yield Diagnostic(imported.at, imported.module, package.name, data, "no interfaces", doubts)
             continue
-        interfaces = {i.name: posixpath.splitext(i.path)[1].lstrip(".") for i in owner.linked.interfaces}
+        interfaces = {one.name: one.definition.kind for one in owner.linked.interfaces}
         for one in imported.names:
             if not kind and one in interfaces and one not in owner.linked.modules:
                 data = {"interface": name, "module": f"{name}.{interfaces[one]}"}
                 yield Diagnostic(imported.at, one, package.name, data, "root", doubts)
-            elif kind in ("msg", "srv", "action") and not _may_have(owner, one, interfaces):
+            elif kind in ("msg", "srv", "action") and not may_have_interface(owner, one):
                 full = f"{imported.module}.{one}"
                 yield Diagnostic(imported.at, full, package.name, {"interface": name, "module": one}, "none", doubts)
-
-
-def _may_generate(view: TargetView, owner: Package, kind: str) -> bool:
-    """Whether a package without interfaces, as far as was read, may have some, or a module that is called so."""
-    if owner.build.unresolved or owner.build.generated or kind in owner.linked.modules:
-        return True
-    # A release of it that has some may be installed beside.
-    return load_fields().find_history(owner.name, view.target.ros) is not None
-
-
-def _may_have(owner: Package, name: str, interfaces: dict[str, str]) -> bool:
-    """Whether a package may have an interface, or something that is made of one. interfaces: the kinds of its own by
-    their names, as far as they were read."""
-    listed = [path for made in owner.build.generated for path in made.files]
-    if not name[:1].isupper() or owner.build.unresolved or not listed or "idl" in interfaces.values():
-        return True
-    if any("$" in path or posixpath.basename(path).partition(".")[0] not in interfaces for path in listed):
-        return True
-    return name in owner.linked.modules or any(name.startswith(one) for one in interfaces)
-
-
-def _list_spellings(use: MemberUse) -> tuple[str, ...]:
-    """A constant as the tables of names have it."""
-    kind, _, name = use.interface.partition("/")
-    part = "" if use.section == "message" else use.section.capitalize()
-    parts = (use.package, kind, name, *((part,) if part else ()), use.member)
-    return ("::".join(parts), ".".join(parts), f"{use.package}::{name}{part}::{use.member}")

@@ -59,6 +59,12 @@ def is_found_elsewhere(view: TargetView, package: Package) -> bool:
     return not _list_finders(view).get(package.name, set()) <= {package.name}
 
 
+def is_surely_found_elsewhere(view: TargetView, package: Package) -> bool:
+    """The same in any case, whatever the conditions are that others stand under."""
+    others = (other for other in view.list_built() if other.name != package.name)
+    return any(f.name == package.name and view.is_sure(f.conditions) for other in others for f in other.build.found)
+
+
 @cache_in_derived
 def _list_finders(view: TargetView) -> dict[str, set[str]]:
     """What CMake looks for, with the packages of the workspace that do."""

@@ -1,7 +1,7 @@
 """Folders that headers lie in, as far as whoever is not given their package misses them: now, or after an update."""
 
 from ...targets.surface.offers import Offers
-from ..vocabulary import Doubt, TargetView
+from ..vocabulary import Doubt, Need, TargetView
 
 # System libraries whose headers lie in a folder of their own that the compiler does not search by itself. Kept by
 # hand: the stored index has headers by the path that dependants write, below whichever folder.
@@ -25,6 +25,16 @@ def collect_folder_doubts(view: TargetView, name: str, header: str) -> tuple[Dou
         if _has_own_folder(view, then.offers, name, header):
             return (Doubt.FAR if ahead.far else Doubt.UPCOMING,)
     return None
+
+
+def find_include_doubt(view: TargetView, need: Need) -> Doubt | None:
+    """What speaks against a compiler that stops at an include whose package CMake does not look for at all."""
+    if not (need.targets or need.public):
+        return Doubt.UNCOMPILED
+    first, *others = need.providers
+    together = view.target.ros == 1 or view.offers.has_one_include_folder or not need.targets or others
+    apart = not together and _has_own_folder(view, view.offers, first.name, need.subject)
+    return None if apart else Doubt.LUCKY
 
 
 def _has_own_folder(view: TargetView, offers: Offers, name: str, header: str) -> bool | None:

@@ -11,10 +11,9 @@ from ..vocabulary import Package, TargetView
 
 def read_installs(view: TargetView, package: Package) -> list[Install] | None:
     """The install rules of a package that count on the target; None where they are not known."""
-    if not package.build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+    if not package.build.files or not package.is_ros_cmake:
         return None
-    packaged = package.build.ament_package or package.build.catkin_package
-    if package.build.finds_declared and packaged is None:
+    if package.build.finds_declared and package.build.packaged is None:
         return None
     return [i for i in package.build.installs if view.applies(i.conditions)]
 

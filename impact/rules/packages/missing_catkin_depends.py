@@ -94,7 +94,7 @@ def _list_of_headers(view: TargetView, package: Package) -> Iterator[Diagnostic]
     hows = {e.how for e in package.build.exports}
     if not hows >= {"include_dirs", "libraries"} or hows & {"catkin_depends", "cfg_extras"}:
         return
-    found = {f.name for f in package.build.found if f.how == "catkin"}
+    found = package.build.catkin_components
     for need in view.sort_needs(package):
         if need.how == "include" and need.public and need.certain and any(p.name in found for p in need.providers):
             at, data = package.build.catkin_package, {"header": need.subject}

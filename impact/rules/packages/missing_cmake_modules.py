@@ -38,8 +38,7 @@ def missing_cmake_modules(view: TargetView, package: Package):
         return
     if package.build_type != "catkin":
         return
-    names = view.roles.list_found_with(f.name for f in package.build.found if f.how == "catkin")
-    names |= {f.name for f in package.build.found}
+    names = view.roles.list_found_with(package.build.catkin_components) | {f.name for f in package.build.found}
     own = {p.rsplit("/", 1)[-1] for p in package.files if p.endswith(".cmake")}
     for found in package.build.found:
         if found.how != "find_package" or f"Find{found.name}.cmake" in own:

@@ -3,7 +3,7 @@
 What it does
     Reports packages whose headers compiled code includes, or whose targets are used, when no find_package (or catkin
     component, pkg_check_modules, ament_auto) of the package asks for them and none that is asked for brings them. What
-    is found for the tests alone counts for the tests alone. Also libraries that their vendor package no longer finds.
+    is found for the tests alone counts for the tests alone.
 
 Why it breaks
     The compiler misses the include path, or CMake stops at a target, unless another package happens to add them.
@@ -24,8 +24,6 @@ Not reported
     ament_lint_auto or ament_auto finds what is declared for them.
 """
 
-from collections.abc import Collection
-
 from ...model.cmake.build import is_for_tests
 from ...model.cmake.interpreter import calls_unmodelled
 from ...model.cmake.links import describe_finding, list_found_names, list_given_items, list_given_names, stops_at_names
@@ -33,8 +31,8 @@ from ...model.misspelling import SpellingIndex
 from ...model.view import find_included_interface
 from ...targets.platform import strip_to_letters
 from ...targets.providers.libraries import load_libraries
-from ...targets.version import is_at_least
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from .include_folders import find_include_doubt
 
 # Headers of platform libraries that the compiler finds without any find_package, by how their paths begin.
 _SYSTEM_BY_DEFAULT = (
@@ -62,17 +60,12 @@ _SYSTEM_BY_DEFAULT = (
         "library": Text(
             "`{header}` is included but CMakeLists.txt does not find `{subject}`", "[[add {how} and ]]link the library"
         ),
-        "placed": Text(
-            "`{header}` is included, but {vendor} {version} no longer finds `{subject}`",
-            "add find_package({subject} REQUIRED) and link it",
-        ),
     },
 )
 def missing_find_package(view: TargetView, package: Package):
     build = package.build
-    if not build.files or package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+    if not build.files or not package.is_ros_cmake:
         return
-    yield from _find_vendored_libraries(view, package)
     found = list_found_names(view, package)
     if found is None:
         return
@@ -94,7 +87,7 @@ def missing_find_package(view: TargetView, package: Package):
         if how == "made" and name not in view.workspace.packages and view.target.find_version(name) is None:
             continue  # other rules report what the target does not have
         linked = how == "linked"
-        if linked and _may_be_defined(view, package, item, built):
+        if linked and view.unknown_contents.may_define_target(package, item, built):
             continue
         known = linked or view.is_package(name)
         if not known and (name in prefixes or view.find_cmake(name) or near.find_nearest(name)):
@@ -141,7 +134,7 @@ def missing_find_package(view: TargetView, package: Package):
         seen.add(name)
         own_folder = view.target.ros == 2 or not installed
         counts = ros and not header_only and (own_folder or name in view.collect_declared(package))
-        doubts = (_find_include_doubt(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
+        doubts = (find_include_doubt(view, need) if counts else Doubt.DISPENSABLE, not tested or Doubt.TEST)
         folder = "" if ros or not shipped.intersection(need.targets) else load_libraries().find_folder(need.subject)
         if folder and not any(folder in item or "$" in item for item in list_given_items(package, need.targets)):
             doubts = (Doubt.INCOMPLETE,)
@@ -153,61 +146,3 @@ def _list_answered(view: TargetView, package: Package, testing: bool) -> set[str
     """What CMake looks for, for tests alone or not, and who answers."""
     names = {f.name for f in package.build.found if is_for_tests(f.conditions) is testing}
     return names.union(p.name for name in names for p in view.find_cmake(name))
-
-
-def _may_be_defined(view: TargetView, package: Package, item: str, found: Collection[str]) -> bool:
-    """Whether something else than find_package() of its namespace may define a target: the configuration of a library
-    that is found, a package that shares the namespace, or what cannot be read."""
-    space, _, target = item.partition("::")
-    build, providers = package.build, view.find_cmake(space)
-    if not providers or build.unresolved or view.is_met(providers, found):
-        return True
-    if view.is_package(space):
-        offer = view.offers.find_package(space)
-        if offer is None:
-            return space not in view.workspace.packages or (target != space and view.is_package(target))
-        return item not in {one.name for one in offer.build.targets}
-    if calls_unmodelled(build):
-        return True
-    letters = strip_to_letters(space)
-    sought = (n for f in build.found if not is_for_tests(f.conditions) for n in (f.name, f.prefix))
-    if any(letters in name or name in letters for name in filter(None, map(strip_to_letters, sought))):
-        return True
-    bringing = view.apt.list_bringing(frozenset(p.package for p in providers if p.package))
-    return any(not bringing.isdisjoint(view.list_debs(name)) for name in found)
-
-
-def _find_include_doubt(view: TargetView, need) -> Doubt | None:
-    """How surely a missing find_package stops the compiler: where the package has an include folder of its own."""
-    if not (need.targets or need.public):
-        return Doubt.UNCOMPILED
-    if view.target.ros == 1 or view.offers.has_one_include_folder or not need.targets or len(need.providers) > 1:
-        return Doubt.LUCKY
-    name = need.providers[0].name
-    own_folder = name in view.workspace.packages or view.offers.has_own_folder(name, need.subject)
-    return None if own_folder else Doubt.LUCKY
-
-
-# Vendor packages that only tell CMake where the library's configuration is, from which version on: package, version,
-# CMake package, how its include paths begin. Source: the vendor packages' `-extras.cmake.in`.
-_PLACING = (("yaml_cpp_vendor", "9.0.0", "yaml-cpp", "yaml-cpp/"),)
-
-
-def _find_vendored_libraries(view: TargetView, package: Package):
-    """Libraries whose vendor package is found and no longer finds them."""
-    found = {f.name: f for f in package.build.found}
-    for vendor, since, library, root in _PLACING:
-        version = view.target.find_version(vendor)
-        asked = found.get(vendor)
-        if asked is None or library in found or not version or not is_at_least(version, since):
-            continue
-        if any(strip_to_letters(link.item) == strip_to_letters(library) for link in package.build.target_links):
-            continue
-        use = next((i for i in package.linked.includes if i.path.startswith(root) and i.targets), None)
-        if use is None or not view.is_sure(use.conditions):
-            continue
-        others = view.list_transitive(name for name in found if name != vendor)
-        if vendor in others or library in others:
-            continue  # it may come along with those
-        data = {"header": use.path, "vendor": vendor, "version": version}
-        yield Diagnostic(asked.at, library, package.name, data, "placed", (asked.required or Doubt.OPTIONAL,))

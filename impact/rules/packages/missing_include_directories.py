@@ -34,7 +34,7 @@ def missing_include_directories(view: TargetView, package: Package):
     if package.build_type != "catkin":
         return
     build = package.build
-    if not any(f.how == "catkin" for f in build.found) or build.unresolved:
+    if not build.catkin_components or build.unresolved:
         return
     given = " ".join(
         [item for item, _ in build.include_dirs]
@@ -42,7 +42,7 @@ def missing_include_directories(view: TargetView, package: Package):
     )
     if "catkin_INCLUDE_DIRS" in given or "/opt/ros" in given:
         return
-    if any(f"{f.name}_INCLUDE_DIRS" in given for f in build.found if f.how == "catkin"):
+    if any(f"{name}_INCLUDE_DIRS" in given for name in build.catkin_components):
         return  # all of /opt/ros lies in one folder
     for target in build.targets:
         if target.kind not in ("executable", "library") or not view.is_sure(target.conditions):

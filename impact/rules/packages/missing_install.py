@@ -25,7 +25,6 @@ Not reported
     that install no target and were never released.
 """
 
-import posixpath
 import re
 
 from ...model.cmake.build import BuildTarget, is_for_tests
@@ -58,7 +57,7 @@ def missing_install(view: TargetView, package: Package):
     if any("$" in item for item in installed) or (any(i.kind == "export" for i in installs) and not installed):
         return
     exported = {e.item for e in package.build.exports if e.how == "libraries"}
-    plugins = {posixpath.basename(c.library).removeprefix("lib").removesuffix(".so") for _, c in package.linked.plugins}
+    plugins = {plugin.library_name for _, plugin in package.linked.plugins}
     linked = {link.item for t in package.build.targets if t.name in installed for link in t.links if link.how == "link"}
     for target in package.build.targets:
         if (

@@ -26,12 +26,9 @@ Not reported
 import posixpath
 import re
 from collections.abc import Iterable, Iterator
-from functools import cache
 
-from ....edges.reach import walk
-from ...model.cmake.catkin_links import find_linked_packages
+from ...model.cmake.catkin_order import find_generator, waits_for
 from ...model.cmake.links import is_opaque, resolve_package
-from ...model.view import find_included_interface
 from ...model.workspace import is_interface_header
 from ..vocabulary import Diagnostic, Doubt, Insert, Package, TargetView, Text, list_place_doubts, rule
 
@@ -95,35 +92,14 @@ def _lies_in_tree(package: Package, header: str) -> bool:
 
 def _list_unordered(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Targets of catkin that include what is generated, and do not wait for it."""
-    orders = _find_orders(package)
     targets = {t.name: t for t in package.build.targets if t.kind in ("executable", "library", "test")}
-    generates = any(g.how == "catkin" for g in package.build.generated)
-    configures = any(g.how == "reconfigure" for g in package.build.generated)
     wanted: dict[tuple[str, str], list] = {}
     for include in package.linked.includes:
-        head, _, rest = include.path.partition("/")
-        if not rest or not view.applies(include.conditions):
-            continue
-        if head == package.name:
-            if configures and rest.endswith("Config.h"):
-                kind = "gencfg"
-            elif generates and view.workspace.is_interface_header(head, rest):
-                kind = "generate_messages_cpp"
-            else:
-                continue
-        else:
-            if head not in view.workspace.packages:
-                if not _is_built_beside(view, package, include.path):
-                    continue
-            elif not view.workspace.is_interface_header(head, rest):
-                continue
-            kind = "generate_messages_cpp"
-        for name in include.targets:
-            target = targets.get(name)
-            if target is None or _waits(orders.get(name, ()), head, kind, package.name):
-                continue
-            if head == package.name or not _waits_elsewhere(view, package, orders[name], head):
-                wanted.setdefault((head, kind), []).append((include, target))
+        kind = find_generator(view, package, include.path) if view.applies(include.conditions) else ""
+        head = include.path.partition("/")[0]
+        for name in include.targets if kind else ():
+            if name in targets and not waits_for(view, package, name, head, kind):
+                wanted.setdefault((head, kind), []).append((include, targets[name]))
     for (head, kind), uses in wanted.items():
         include, target = min(uses, key=lambda u: (u[1].at.path, u[1].at.line, u[0].at.path, u[0].at.line))
         own = head == package.name
@@ -131,66 +107,9 @@ def _list_unordered(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         maker = "${PROJECT_NAME}" if kind == "gencfg" else head  # named by the variable everywhere
         names = tuple(sorted({t.name for _, t in uses}))
         data = {"header": include.path, "targets": names, "target": names[0], "variable": variable}
-        fix = _add_dependencies(package, [t for _, t in uses], variable) if own or _is_component(package, head) else ()
+        held = own or head in package.build.catkin_components
+        fix = _add_dependencies(package, [t for _, t in uses], variable) if held else ()
         yield Diagnostic(target.at, f"{maker}_{kind}", package.name, data, "", (Doubt.LATE,), fix=fix)
-
-
-def _find_orders(package: Package) -> dict[str, set[str]]:
-    """For every target: everything it waits for, through targets of the package."""
-    direct = _index_links(package)
-    return {name: set(walk(items, lambda item: direct.get(item, ()))) for name, items in direct.items()}
-
-
-def _index_links(package: Package) -> dict[str, set[str]]:
-    """For every target: what it waits for itself."""
-    direct: dict[str, set[str]] = {}
-    for target in package.build.targets:
-        direct.setdefault(target.name, set()).update(
-            link.item for link in target.links if link.how in ("order", "link")
-        )
-    return direct
-
-
-def _waits_elsewhere(view: TargetView, package: Package, items: Iterable[str], head: str) -> bool:
-    """Whether a library that another package of the workspace exports, and that is among what a target is linked to,
-    waits for the interfaces of a package: in one CMake run (catkin_make) such a library is a target."""
-    packages = view.workspace.packages
-    index_links = cache(lambda name: _index_links(packages[name]))
-
-    def list_next(place: tuple[str, str]) -> Iterator[tuple[str, str]]:
-        user, item = place
-        yield from ((user, link) for link in index_links(user).get(item, ()))
-        for name in walk(find_linked_packages(view, packages[user], [item]), list_handed_on):
-            if name in packages:
-                yield from ((name, library) for library in _list_exports(packages[name], "libraries"))
-
-    def list_handed_on(name: str) -> tuple[str, ...]:
-        return _list_exports(packages[name], "catkin_depends") if name in packages else ()
-
-    return any(
-        name != package.name
-        and _waits([item], head, "generate_messages_cpp", name)
-        and head in view.build_environment(packages[name])
-        for name, item in walk([(package.name, item) for item in items], list_next)
-    )
-
-
-def _list_exports(package: Package, how: str) -> tuple[str, ...]:
-    return tuple(export.item for export in package.build.exports if export.how == how)
-
-
-def _is_built_beside(view: TargetView, package: Package, header: str) -> bool:
-    """True for the header of an interface whose package is not released here, so that it is built along with this one
-    from elsewhere."""
-    head, _, rest = header.partition("/")
-    if view.is_available(head) or "/" in rest or not rest.endswith(".h") or not _is_component(package, head):
-        return False
-    return find_included_interface(view, header) is not None
-
-
-def _is_component(package: Package, name: str) -> bool:
-    """True when catkin looks for a package, so that catkin_EXPORTED_TARGETS holds what it generates."""
-    return any(f.how == "catkin" and f.name == name for f in package.build.found)
 
 
 def _add_dependencies(package: Package, targets, variable: str) -> tuple[Insert, ...]:
@@ -204,24 +123,3 @@ def _add_dependencies(package: Package, targets, variable: str) -> tuple[Insert,
     return tuple(
         Insert(at.path, at.line, f"add_dependencies({name} {variable})") for name, at in sorted(places.items())
     )
-
-
-def _waits(items: Iterable[str], head: str, kind: str, package: str) -> bool:
-    """Whether what targets of a package wait for makes the headers of `head`."""
-    for item in items:
-        text = item.strip("${}")
-        if text in ("catkin_EXPORTED_TARGETS", "catkin_TARGETS"):
-            if head != package:
-                return True
-            continue
-        if text.startswith(head + "_") and (
-            text.endswith(("_EXPORTED_TARGETS", "_generate_messages", "_genparam")) or "_gen" in text[len(head) :]
-        ):
-            if kind == "gencfg" and not text.endswith(("_gencfg", "_EXPORTED_TARGETS", "_genparam")):
-                continue
-            if kind != "gencfg" and text.endswith("_gencfg"):
-                continue
-            return True
-        if "PROJECT_NAME" in text or re.search("ROSBUILD|GENCPP", text):
-            return True
-    return False

@@ -49,7 +49,7 @@ def missing_package_call(view: TargetView, package: Package):
     build = package.build
     if package.build_type not in _CALLS or not build.files or not build.project or build.unresolved:
         return
-    if build.ament_package is not None or build.catkin_package is not None or package.manifest.metapackage:
+    if build.packaged is not None or package.manifest.metapackage:
         return
     known = view.providers.commands.get(view.target.ros, {})
     called = {use.name for use in build.uses if use.kind == "command"}

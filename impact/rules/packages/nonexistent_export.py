@@ -30,9 +30,10 @@ import re
 from collections.abc import Iterator
 
 from ...model.misspelling import SpellingIndex
-from ...targets.providers.library import list_variables
+from ...targets.providers.library import sets_variables
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, Together, rule
 from .ament_exports import read_ament_exports
+from .dependants import is_surely_found_elsewhere
 
 _TARGETS = (Together("targets as packages"),)
 _UNSET = "nothing sets `{subject}_INCLUDE_DIRS` or `{subject}_LIBRARIES`, so DEPENDS exports nothing"
@@ -72,59 +73,36 @@ def nonexistent_export(view: TargetView, package: Package):
     if package.build.catkin_package is not None:
         yield from _list_of_catkin(view, package)
     yield from _list_targets_as_packages(view, package)
-    ament = read_ament_exports(view, package)
-    if ament is not None:
+    if ament := read_ament_exports(view, package):
         yield from _list_of_ament(view, package, ament.exports)
         yield from _list_unknown_packages(view, package, ament.dependencies)
 
 
 def _list_of_catkin(view: TargetView, package: Package):
     targets = {name: t for t in package.build.targets for name in (t.output_name, t.name)}
-    found = {f.name for f in package.build.found} | {f.prefix for f in package.build.found}
+    names = {f.name for f in package.build.found}
+    found = names | {f.prefix for f in package.build.found}
     installs = (item for install in package.build.installs for item in install.items)
     made = {posixpath.basename(item) for item in (*installs, *package.build.made)}
-    for export in package.build.exports:
-        if "$" in export.item:
-            continue
-        target = targets.get(export.item)
+    for export in (export for export in package.build.exports if "$" not in export.item):
+        item, target = export.item, targets.get(export.item)
         if export.how == "libraries" and target is not None:
-            if target.kind == "executable" and target.name == export.item and view.is_sure(export.conditions):
-                yield Diagnostic(export.at, export.item, package.name, kind="program", doubts=(Doubt.DISTURBS,))
+            if target.kind == "executable" and target.name == item and view.is_sure(export.conditions):
+                yield Diagnostic(export.at, item, package.name, kind="program", doubts=(Doubt.DISTURBS,))
         elif export.how == "libraries" and not package.build.unresolved:
-            if (
-                re.search(r"/|^-|\.(?:so|a)\Z", export.item)
-                or (view.find_cmake(export.item) and export.item != package.name)
-                or not made.isdisjoint((f"lib{export.item}.so", f"lib{export.item}.a"))  # by no target
-            ):
-                continue
-            # Some export their own name by habit, and nobody asks for it.
-            asked = export.item != package.name
-            sure = asked and view.is_sure(export.conditions) and _is_own(view, package, export.item)
-            doubts = (sure or Doubt.AMBIGUOUS,)
-            yield Diagnostic(export.at, export.item, package.name, kind="no target", doubts=doubts)
-        elif export.how == "system_depends" and export.item not in found and not _sets(package, export.item):
-            near = next((f for f in found if f and f.lower().rstrip("3") == export.item.lower().rstrip("3")), "")
+            asked = item != package.name  # some export their own name by habit, and nobody asks for it
+            outside = re.search(r"/|^-|\.(?:so|a)\Z", item) or (asked and view.find_cmake(item))
+            if not outside and made.isdisjoint((f"lib{item}.so", f"lib{item}.a")):  # of which no target is known
+                # CMake finds libraries of the system by their names.
+                of_system = item.startswith("boost_") or any(map(view.providers.find_pkgconfig, (item, f"lib{item}")))
+                own = asked and not of_system and all(link.item != item for link in package.build.target_links)
+                doubts = ((own and view.is_sure(export.conditions)) or Doubt.AMBIGUOUS,)
+                yield Diagnostic(export.at, item, package.name, kind="no target", doubts=doubts)
+        elif export.how == "system_depends" and item not in found and not any(sets_variables(f, item) for f in names):
+            near = next((f for f in found if f and f.lower().rstrip("3") == item.lower().rstrip("3")), "")
             data = {"replacement": "EIGEN3" if near == "Eigen3" else near}
             kind, doubt = ("system, other name", Doubt.DISTURBS) if near else ("system", Doubt.DISPENSABLE)
-            yield Diagnostic(export.at, export.item, package.name, data, kind, (doubt,))
-
-
-def _is_own(view: TargetView, package: Package, library: str) -> bool:
-    """True for the name of a library that can only be one of the package's own: CMake finds those of the system."""
-    if library.startswith("boost_") or any(map(view.providers.find_pkgconfig, (library, f"lib{library}"))):
-        return False
-    return all(link.item != library for link in package.build.target_links)
-
-
-def _sets(package: Package, stem: str) -> bool:
-    """True when a find_package of the package sets variables that begin with the stem."""
-    for found in package.build.found:
-        names = list_variables(found.name)
-        if names is None and found.name.lower() == stem.lower():
-            return True
-        if names and any(n.startswith(f"{stem}_") and not n.endswith(("FOUND", "VERSION", "DIR")) for n in names):
-            return True
-    return False
+            yield Diagnostic(export.at, item, package.name, data, kind, (doubt,))
 
 
 def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diagnostic]:
@@ -136,12 +114,10 @@ def _list_of_ament(view: TargetView, package: Package, exports) -> Iterator[Diag
     unknown = package.build.unresolved or any("$" in name for name in (*names, *installed))
     if unknown or package.build.builds_others:  # another build system makes libraries of its own
         return
-    for export in exports:
-        item = export.item
-        wrong = export.how != "ament_export_libraries" or re.search(r"[$/.:]|^-", item)
-        if wrong or not view.is_sure(export.conditions):
+    for export in (e for e in exports if e.how == "ament_export_libraries" and view.is_sure(e.conditions)):
+        item, target = export.item, targets.get(export.item)
+        if re.search(r"[$/.:]|^-", item):
             continue
-        target = targets.get(item)
         if target is not None and target.kind == "library" and item not in installed and not target.alias_of:
             yield Diagnostic(export.at, item, package.name, kind="not installed")
         elif item not in names and (not view.find_cmake(item) or item == package.name):
@@ -152,14 +128,8 @@ def _list_targets_as_packages(view: TargetView, package: Package) -> Iterator[Di
     """Targets among the packages that dependants are to find."""
     for export in package.build.exports:
         if export.how == "ament_export_dependencies" and "::" in export.item and view.is_sure(export.conditions):
-            doubts = (_is_surely_found(view, package) or Doubt.DISTURBS,)
+            doubts = (is_surely_found_elsewhere(view, package) or Doubt.DISTURBS,)
             yield Diagnostic(export.at, export.item, package.name, {}, "target", doubts, together=_TARGETS)
-
-
-def _is_surely_found(view: TargetView, package: Package) -> bool:
-    """Whether another package of the workspace looks for this one in any case."""
-    others = (other for other in view.list_built() if other.name != package.name)
-    return any(f.name == package.name and view.is_sure(f.conditions) for other in others for f in other.build.found)
 
 
 def _list_unknown_packages(view: TargetView, package: Package, dependencies: frozenset[str]) -> Iterator[Diagnostic]:

@@ -101,12 +101,9 @@ def _find_fault(view: TargetView, package: Package, use: WrittenPath) -> tuple[s
         return "machine", path
     if use.how == "link" and _LIBRARY.match(path):
         return "library", path
-    if re.search(r"[$*?<>\[\]]", path) or path.startswith("/"):
-        return "", ""
-    above = _find_above(package, path)
-    if above:
-        return "above", above
-    if use.how in ("link", "include"):
+    if inside := package.find_doubled(path):
+        return "above", inside
+    if use.how in ("link", "include") or re.search(r"[$*?<>\[\]]", path) or path.startswith("/"):
         return "", ""
     if path.startswith("../") or (package.path and not f"{path}/".startswith(f"{package.path}/")):
         # What lies in another package has to be there; of what lies in none, the packages cannot tell.
@@ -115,25 +112,15 @@ def _find_fault(view: TargetView, package: Package, use: WrittenPath) -> tuple[s
             return "", ""
         return "outside", posixpath.relpath(path, package.path or ".")
     file = posixpath.join(path, "CMakeLists.txt") if use.by in ("add_subdirectory", "subdirs") else path
-    if use.how == "install" or (use.how == "read" and not file.endswith(_READ)):
-        return "", ""
+    if use.how == "install" or (use.how == "read" and not file.endswith(_READ)) or posixpath.basename(file).isupper():
+        return "", ""  # what is all capitals is a keyword
     if file != path and path in package.folders and find_policy_version(package) < (2, 8):
         return "", ""  # a folder without CMakeLists.txt, which was ignored (CMP0014)
     folder = posixpath.dirname(path)
     apart = folder != package.path and folder not in package.folders
     if use.how == "source" and apart and (package.build.unresolved or may_be_made(package, posixpath.basename(path))):
         return "", ""  # generators make folders of their own
-    if posixpath.basename(file).isupper():
-        return "", ""  # a keyword
     return (use.how, package.strip_path(path)) if is_absent(view, package, file) else ("", "")
-
-
-def _find_above(package: Package, path: str) -> str:
-    """The file of the package that a path means where its folder's name stands twice: below the package's folder as
-    CMAKE_SOURCE_DIR, and in the path itself. Relative to the package; empty for other paths."""
-    doubled = f"{package.path}/{posixpath.basename(package.path)}/" if package.path else f"{package.name}/"
-    inside = path[len(doubled) :] if path.startswith(doubled) and path not in package.files else ""
-    return inside if inside and posixpath.join(package.path, inside) in package.files else ""
 
 
 _OPENED = re.compile(r"\.(?:launch|launch\.(?:py|xml|yaml)|ya?ml|urdf|xacro|srdf|rviz)\Z")
@@ -147,9 +134,8 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         if r.kind != "file" or use.role != "run" or r.conditional or owner is None or "launch" not in use.at.path:
             continue
         name = posixpath.normpath(r.name)
-        if use.at.path.endswith(".sh"):
-            continue  # the command roslaunch looks for a name in all folders
-        if not _OPENED.search(name) or "$" in name or name.startswith(".."):
+        # In shell scripts the command roslaunch looks for a name in all folders.
+        if use.at.path.endswith(".sh") or not _OPENED.search(name) or "$" in name or name.startswith(".."):
             continue
         path = posixpath.join(owner.path, name)
         installs = owner.build.installs if owner.build.files else list_copied(owner)
@@ -160,6 +146,5 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             continue  # it may be made, as calibrations are
         places = list_places(owner, installs)
         if places is not None and f"share/{owner.name}/{name}" not in places:  # as which another file is installed
-            together = (Together(f"no {name} in {owner.name}", everywhere=True),)
-            data = {"by": owner.name}
-            yield Diagnostic(use.at, name, package.name, data, "opened", (Doubt.DISTURBS,), together=together)
+            same, data = (Together(f"no {name} in {owner.name}", everywhere=True),), {"by": owner.name}
+            yield Diagnostic(use.at, name, package.name, data, "opened", (Doubt.DISTURBS,), together=same)

@@ -31,7 +31,7 @@ from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
     ),
 )
 def system_library_component(view: TargetView, package: Package):
-    if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto"):
+    if not package.is_ros_cmake:
         return
     before: set[str] = set()  # what is found again, since CMake remembers where it is
     for found in package.build.found:

@@ -78,7 +78,7 @@ def unexported_header(view: TargetView, package: Package) -> Iterator[Diagnostic
             folder = package.strip_path(path).removesuffix(f"/{include.path}")
             data = {"by": name, "owner": package.name, "folder": folder, "library": libraries.get(path, "")}
             build = package.build
-            at = build.catkin_package or build.ament_package or At(build.files[0], 1)
+            at = build.packaged or At(build.files[0], 1)
             doubts = list_place_doubts(view, include.role, include.conditions)
             lasting = {"include dirs": Doubt.DISTURBS, "library": Doubt.INCOMPLETE}.get(kind)
             yield Diagnostic(at, include.path, package.name, data, kind, (*doubts, lasting))

@@ -96,20 +96,15 @@ def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagn
         inside = posixpath.relpath(path, package.path or ".")
         if not files or inside == "." or _lies_in(places, package.name, inside):
             continue
-        kind = "opened"
-        if any(is_installed(installs, file) for file in files):
-            if places is None:
-                continue
-            kind = "elsewhere"
-        missing.setdefault(inside.split("/")[0], (inside, kind))
+        taken = any(is_installed(installs, file) for file in files)
+        if not taken or places is not None:
+            missing.setdefault(inside.split("/")[0], (inside, "elsewhere" if taken else "opened"))
     missing.pop("package.xml", None)  # every build type installs it
-    for folder, name in _list_launch_folders(package, installs):
-        missing.setdefault(folder, (name, "launch"))
+    if name := _find_launch_file(package, installs):
+        missing.setdefault("launch", (name, "launch"))
     for folder, (name, kind) in missing.items():
         build = package.build
-        at = (
-            build.catkin_package or build.ament_package or At(build.files[0] if build.files else installs[0].at.path, 1)
-        )
+        at = build.packaged or At(build.files[0] if build.files else installs[0].at.path, 1)
         share = "${CATKIN_PACKAGE_SHARE_DESTINATION}" if catkin else "share/${PROJECT_NAME}"
         if package.build_type == "ament_python":
             share, kind = f"share/{package.name}", f"{kind}, data_files" if kind != "elsewhere" else kind
@@ -133,16 +128,15 @@ def _lies_in(places: frozenset[str] | None, package: str, inside: str) -> bool:
 _LAUNCH = re.compile(r"[._]launch\.(?:py|xml|ya?ml)\Z")
 
 
-def _list_launch_folders(package: Package, installs) -> Iterator[tuple[str, str]]:
-    """The folder of launch files where no rule installs any file of it, with a launch file in it that starts or opens
-    something: in ROS 1, which finds them in the source space too, an installed program of the package, or anything
-    where other folders of it are installed."""
+def _find_launch_file(package: Package, installs) -> str:
+    """Where no rule installs any file of the folder of launch files, one in it that starts or opens something: in
+    ROS 1, which finds them in the source space too, an installed program of the package, or anything where other
+    folders of it are installed. Empty where there is none."""
     files = _list_below(package, posixpath.join(package.path, "launch"))
-    built = package.build.catkin_package or package.build.ament_package
-    if built is None and package.build_type != "ament_python":
-        return  # what comes after a command that cannot be followed is not known
+    if package.build.packaged is None and package.build_type != "ament_python":
+        return ""  # what comes after a command that cannot be followed is not known
     if any(is_installed(installs, path) for path in files):
-        return
+        return ""
     programs = package.build.installed_targets
     catkin = package.build_type == "catkin"
     siblings = catkin and any(i.kind == "directory" and i.destination.split("/")[0] == "share" for i in installs)
@@ -150,5 +144,5 @@ def _list_launch_folders(package: Package, installs) -> Iterator[tuple[str, str]
         path, r = use.at.path, use.reference
         own = siblings or ((r.kind, r.package) == ("executable", package.name) and r.name in programs)
         if use.role == "run" and path in files and (own or (not catkin and _LAUNCH.search(path))):
-            yield "launch", package.strip_path(path)
-            return
+            return package.strip_path(path)
+    return ""

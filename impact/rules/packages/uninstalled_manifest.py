@@ -59,5 +59,5 @@ def _check_plain(package: Package):
     build, own = package.build, posixpath.join(package.path, "package.xml")
     if not build.installs or build.unresolved or build.builds_others or is_installed(build.installs, own):
         return
-    if build.catkin_package is None and build.ament_package is None and not calls_unmodelled(build):
+    if build.packaged is None and not calls_unmodelled(build):
         yield Diagnostic(At(build.files[0], 1), "package.xml", package.name, kind="plain")

@@ -26,7 +26,6 @@ Not reported
 import posixpath
 from collections.abc import Iterator
 
-from ....edges.memory import cache_in_derived
 from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Doubt, Package, TargetView, Text, rule
 from .install_rules import is_installed, read_installs
@@ -94,7 +93,7 @@ def _is_left_out(package: Package, installs, path: str) -> bool:
 
 def _list_not_built(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     """Exported descriptions of a library that no package of the workspace builds, of packages that build others."""
-    build, built = package.build, _list_built_libraries(view)
+    build, built = package.build, view.workspace.library_names
     own = sorted(t.name for t in build.targets if t.kind in ("library", "module") and not t.static)
     if not own or build.unresolved or build.builds_others or any("$" in name for name in built):
         return
@@ -104,7 +103,7 @@ def _list_not_built(view: TargetView, package: Package) -> Iterator[Diagnostic]:
         described = {posixpath.join(package.path, value.removeprefix("${prefix}/")) for value in values}
     seen = set()
     for path, plugin in package.linked.plugins:
-        name = _strip_library(posixpath.basename(plugin.library))
+        name = plugin.library_name
         if path not in described or name in built or name in seen or "::" not in plugin.type or not name:
             continue
         seen.add(name)
@@ -113,27 +112,11 @@ def _list_not_built(view: TargetView, package: Package) -> Iterator[Diagnostic]:
             yield Diagnostic(At(path, plugin.line), name, package.name, data, "no library", (Doubt.DISTURBS,))
 
 
-@cache_in_derived
-def _list_built_libraries(view: TargetView) -> frozenset[str]:
-    """What may be the name of a library that a package of the workspace builds."""
-    others = ("custom", "executable", "test")
-    targets = [t for package in view.workspace for t in package.build.targets if t.kind not in others]
-    return frozenset(_strip_library(name) for t in targets for name in (t.name, t.output_name) if name)
-
-
-def _strip_library(name: str) -> str:
-    return name.removeprefix("lib").removesuffix(".so")
-
-
 def _is_shipped(view: TargetView, package: Package, installs, description: str) -> bool:
     """True when a library that the description names is installed, so that the plugins are there for others."""
-    if package.build.unresolved:
-        return False
-    libraries = (posixpath.basename(c.library) for path, c in package.linked.plugins if path == description)
-    names = set(map(_strip_library, libraries))
-    return any(
-        item in names and view.is_sure(i.conditions) for i in installs if i.kind == "targets" for item in i.items
-    )
+    names = {plugin.library_name for path, plugin in package.linked.plugins if path == description}
+    targets = [i for i in installs if i.kind == "targets" and not names.isdisjoint(i.items)]
+    return not package.build.unresolved and any(view.is_sure(i.conditions) for i in targets)
 
 
 def _list_not_exported(view: TargetView, package: Package, installs) -> Iterator[Diagnostic]:
@@ -143,8 +126,7 @@ def _list_not_exported(view: TargetView, package: Package, installs) -> Iterator
     exports |= {posixpath.basename(e.item) for e in package.build.exports if e.how == "plugin_description"}
     seen = {p.type for path, p in package.linked.plugins if posixpath.basename(path) in exports}
     for path, plugin in package.linked.plugins:
-        name = _strip_library(posixpath.basename(plugin.library))
-        target = libraries.get(name)
+        target = libraries.get(plugin.library_name)
         if plugin.type in seen or path in seen or target is None or is_installed(installs, path):
             continue
         aside = find_folder_role(package.strip_path(path))
@@ -153,5 +135,5 @@ def _list_not_exported(view: TargetView, package: Package, installs) -> Iterator
         seen.add(path)
         base = plugin.base.partition("::")[0] or "BASE_PACKAGE"
         kind = "not exported, catkin" if package.build_type == "catkin" else "not exported"
-        data = {"library": name, "base": base, "file": package.strip_path(path)}
+        data = {"library": plugin.library_name, "base": base, "file": package.strip_path(path)}
         yield Diagnostic(At(path, 1), posixpath.basename(path), package.name, data, kind, (Doubt.DISTURBS,))

@@ -56,7 +56,7 @@ _SET_ALONG = re.compile(
     },
 )
 def unset_library_variable(view: TargetView, package: Package):
-    if package.build_type in ("catkin", "ament_cmake", "ament_cmake_auto"):
+    if package.is_ros_cmake:
         yield from _list_unset(view, package)
         yield from _list_prefixes(package)
 

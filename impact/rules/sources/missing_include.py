@@ -141,14 +141,7 @@ class _Places:
 def _include(view: TargetView, package: Package, need: NeededHeader, header: str) -> tuple[Insert, ...]:
     """The fix that includes a header behind the standard C++ headers of the file that sort before it; nothing where it
     includes none outside of conditions."""
-    standard = [
-        i
-        for i in package.linked.includes
-        if i.at.path == need.at.path
-        and i.at.line < need.at.line
-        and not i.conditions
-        and "." not in i.path
-        and view.is_standard(i.path)
-    ]
+    above = (i for i in package.linked.includes if i.at.path == need.at.path and i.at.line < need.at.line)
+    standard = [i for i in above if not i.conditions and "." not in i.path and view.is_standard(i.path)]
     before = [i for i in standard if i.path < header] or standard
     return (Insert(need.at.path, max(i.at.line for i in before), f"#include <{header}>"),) if before else ()

@@ -48,7 +48,7 @@ _NEEDS = "`{header}`[[ of {upstream}]][[ {version}]][[ ({horizon})]] needs C++{n
 def language_standard(view: TargetView):
     default = find_default_standard(view.target)
     for package in view:
-        if package.build_type not in ("catkin", "ament_cmake", "ament_cmake_auto") or not package.linked.includes:
+        if not package.is_ros_cmake or not package.linked.includes:
             continue
         if view.target.ros == 1:
             yield from _check_ros1(view, package, default)

@@ -236,6 +236,14 @@ def list_variables(package: str) -> frozenset[str] | None:
     return frozenset(f"{stem}_{end}" for stem, ends in known.items() for end in ends.split()) if known else None
 
 
+def sets_variables(package: str, stem: str) -> bool:
+    """Whether find_package(package) sets variables that begin with a stem, as far as they are known."""
+    names = list_variables(package)
+    if names is None:
+        return package.lower() == stem.lower()
+    return any(n.startswith(f"{stem}_") and not n.endswith(("FOUND", "VERSION", "DIR")) for n in names)
+
+
 # Folders in which Debian and Ubuntu put the headers of one version of a library beside those of others: the library and
 # its version. Source: lists of files of Debian's packages libopencv-core-dev, libpcl-dev and libompl-dev.
 # `opencv2/` is how all versions from 2 on are included.
