@@ -129,9 +129,9 @@ def recheck(clones: Path, systems: list[dict], records: list[dict]) -> None:
         found = read_graph(clone.folder, system["commit"])
         names = {node["id"]: node["name"] for node in found["nodes"]}
         have = {
-            (role, one["path"], one["line"], names.get(one["node"], one["node"]), one.get("topic"), one.get("type"))
+            (role, one["path"], one["line"], names.get(one["node"], one["node"]), one.get("topic"), type_)
             for listed, role in ROLES.items() if role not in ("timer", "parameter")
-            for one in found[listed] if is_certain(one, names)
+            for one in found[listed] if is_certain(one, names) for type_ in (one.get("type"), "")
         }  # fmt: skip
         for one in records:
             if one["repo"] == system["repo"] and one["kind"] == "endpoint" and one.get("verdict"):

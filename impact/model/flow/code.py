@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+import posixpath
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from operator import itemgetter
@@ -25,6 +26,9 @@ from .types import UNKNOWN, Cls, FlowType, parse_flow_type, split_name
 _Row = TypeVar("_Row", bound=tuple)
 
 
+_HEADERS = (".h", ".hpp", ".hh", ".hxx")
+# Bases that call no method of what derives from them by a name of their own.
+_CALL_NOTHING = frozenset(("Node", "object", "Object"))
 # Endings of C++ files that hold no declarations for others.
 _SOURCES = (".cpp", ".cc", ".cxx", ".c++", ".c", ".cu")
 
@@ -690,6 +694,51 @@ class FlowCode:
     def is_class(self, name: str, fn: Fn) -> bool:
         """Whether a name in a function is that of a class of the code."""
         return get_tail(name) in self.classes and self.find_class(name, fn.source, fn.scope) is not None
+
+    def may_be_called(self, fn: Fn) -> bool:
+        """False for a method that nothing in the code calls or mentions by its name, of a class that nobody else calls
+        methods of."""
+        name = get_tail(fn.facts.name)
+        owner = self.find_owner(fn)
+        if owner is None or fn.is_lambda or not name.isidentifier() or name[:2] == "__" or name == get_tail(owner.name):
+            return True
+        bases = {get_tail(base) for cls in self.list_bases(owner) for base in cls.facts.bases}
+        others = {base for base in bases if base not in self.classes and base not in _CALL_NOTHING}
+        return bool(others) or name in self.mentioned
+
+    @cached_property
+    def mentioned(self) -> frozenset[str]:
+        """The last parts of all names that the code calls, or hands on."""
+        found: set[str] = set()
+
+        def add(value: FlowExpr) -> None:
+            if value.text:
+                found.add(get_tail(value.text))
+            for part in value.parts:
+                add(part)
+
+        for fn in self.functions:
+            for call in fn.facts.calls:
+                found.add(get_tail(call.callee))
+                for argument in call.arguments:
+                    add(argument)
+            for each in fn.facts.assignments:
+                add(each.value)
+        return frozenset(found)
+
+    @cached_property
+    def unused_headers(self) -> frozenset[str]:
+        """The headers that no file includes, by no path that they may be included by, and whose name another has too:
+        old ones that were put aside."""
+        included = {posixpath.normpath(path).lstrip("./") for one in self.sources for path in one.facts.includes}
+        headers = [one.path for one in self.sources if one.path.endswith(_HEADERS)]
+        count = Counter(map(posixpath.basename, headers))
+        return frozenset(
+            path
+            for path in headers
+            if count[posixpath.basename(path)] > 1
+            and included.isdisjoint("/".join(path.split("/")[start:]) for start in range(path.count("/") + 1))
+        )
 
     def list_kept(self, variable: Variable) -> Iterator[tuple[Fn, FlowCall | FlowExpr]]:
         """The calls whose result a variable keeps, and what is assigned to it, with the function they stand in; by the

@@ -71,8 +71,8 @@ class Endpoint(msgspec.Struct, frozen=True):
     empty when it is not known. written: the name as the source has it. type: `package/Name`, empty when not known, `*`
     for any. function: in which it is made. variable: what it is kept in. implied: made by the framework or a helper of
     it (a transform listener, a diagnostic updater), not by a call that names the topic. only_if: on what it depends
-    whether the node makes it: the condition of the preprocessor under which the code is compiled, or that something
-    calls a function of its program which nothing is seen to call; empty where it does.
+    whether the node makes it: the condition of the preprocessor under which the code is compiled, a flag that is down
+    as far as is known, or that something calls a function which nothing is seen to call; empty for nothing of these.
     """
 
     role: Role

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
@@ -11,7 +12,7 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...facts.flow import FlowFile, Guard
+from ...facts.flow import FlowExpr, FlowFile, Guard
 from ..launch.result import Launched, Started
 from . import nodes as programs_of
 from .calls import Calls, FrameworkCall
@@ -43,6 +44,8 @@ from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
 from .values import FlowValue, FlowValues
 
+_FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
+_TRUTH = {"true": True, "True": True, "1": True, "false": False, "False": False, "0": False}
 _MOST_WAYS = 16
 _DEEPEST = 10
 _TRIGGERS = {
@@ -93,7 +96,7 @@ class Join:
         self.reach = CodeReach(self.sites)
         self.triggers = group_pairs(self._list_triggers())
         # Of a use it is the same in every node that runs it.
-        self._qos: dict[int, tuple[Qos | None, str]] = {}
+        self._qos: dict[int, Qos | None] = {}
         self._asked: dict[int, list[FlowValue]] = {}
         # Of the last launch, which is asked for more than once.
         self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
@@ -113,7 +116,7 @@ class Join:
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             if program.kind in ("executable", "script"):
                 others = programs_of.collect_sources_of_others(program, self.built)
-                functions, classes = self.reach.find_reached(program.roots, without=others)
+                functions, classes = self.reach.find_reached(program.roots, without=others | self.code.unused_headers)
                 if not program.roots:
                     functions = {fn for fn in self.code.functions if fn.source.path in program.files}
             else:
@@ -248,8 +251,8 @@ class Join:
             if name and "{" not in name:
                 break
         default = program.executable or _convert_to_snake(get_tail(parse_flow_type(program.plugin).name))
-        # What loads a plugin is another program, which gives it a node.
-        full = "" if program.kind == "plugin" else normalise("/" + (name or default).lstrip("/"))
+        # What loads a plugin is another program, which gives it a node, or a nodelet its name.
+        full = "" if program.kind in ("plugin", "nodelet") else normalise("/" + (name or default).lstrip("/"))
         language = "python" if program.kind == "script" else "cpp"
         return Node(
             f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,
@@ -435,17 +438,34 @@ class Join:
         node = _get_node(owner)
         topic, how, reason = self.resolve_name(site, value, owner)
         if id(use) not in self._qos:
-            guards = self.list_guards(use.fn, use.call.guard)
-            switches = " && ".join(guard.text for guard in guards if guard.kind == "cpp")
-            self._qos[id(use)] = find_qos(self.calls, self.values, use), switches
-        qos, only_if = self._qos[id(use)]
-        if isinstance(owner, Running) and use.fn not in owner.functions:
-            only_if = only_if or f"something calls `{use.fn.name or 'it'}`"
+            self._qos[id(use)] = find_qos(self.calls, self.values, use)
+        qos = self._qos[id(use)]
+        only_if = "" if site.implied else self._describe_condition(use, owner)
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
             use.row.framework, only_if,
         )  # fmt: skip
+
+    def _describe_condition(self, use: FrameworkCall, owner: Owner) -> str:
+        """On what it depends that a node comes to a call, as Endpoint.only_if has it."""
+        if isinstance(owner, Running) and (use.fn not in owner.functions or not self.code.may_be_called(use.fn)):
+            return f"something calls `{use.fn.name or 'it'}`"
+        texts = [guard.text for guard in self.list_guards(use.fn, use.call.guard) if guard.kind == "cpp"]
+        return " && ".join((*texts, *self._list_flags(use, owner)))
+
+    def _list_flags(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
+        """The flags around a call that are known to be down in a node, as a condition of it."""
+        for guard in self.list_guards(use.fn, use.call.guard):
+            found = _FLAG.fullmatch(guard.text) if guard.kind in ("if", "unless") else None
+            if found is None:
+                continue
+            path = found[2].replace("->", ".").replace("self.", "this.")
+            values = owner.values.run(owner.functions) if isinstance(owner, Running) else self.values
+            known = {_TRUTH.get(one.text or "") for one in values.list_values(FlowExpr("name", path), use.fn)}
+            wanted = (guard.kind == "if") != bool(found[1])
+            if known == {not wanted}:
+                yield path if wanted else f"!{path}"
 
     def resolve_name(self, site: Site, value: FlowValue, owner: Owner) -> tuple[str, How, str]:
         """The full name that a site has in a node, how it is known, and why not."""

@@ -92,13 +92,19 @@ class FlowValues:
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
-        """What an expression may be worth, each once; unknown ones last. line: of the statement it stands in."""
+        """What an expression may be worth, each once; where nothing of it is known, one value that says why. line: of
+        the statement it stands in."""
+        found = self.list_values(value, fn, line)
+        known = [one for one in found if one.text is not None]
+        return known or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
+
+    def list_values(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
+        """The same with all that is not known."""
         most = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
         self._left = most
         found = list(dict.fromkeys(self._evaluate(value, fn, line, ())))
         self._budget[0] -= most - max(self._left, 0)
-        known = [one for one in found if one.text is not None]
-        return known or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
+        return found
 
     def _evaluate(self, value: FlowExpr | None, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         if value is None:
@@ -274,9 +280,7 @@ class FlowValues:
             for one in self.code.list_enclosing_chain(fn):
                 place = find_parameter(one, variable.name)
                 if place is not None:
-                    yield from self._evaluate_passed(one, place[0], place[1].name, seen)
-                    if place[1].default is not None:
-                        yield from self._evaluate(place[1].default, one, one.facts.line, seen)
+                    yield from self._evaluate_passed(one, *place, seen)
                     break
 
     def _evaluate_references(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
@@ -314,18 +318,21 @@ class FlowValues:
             if found_class is not None:
                 yield from self.evaluate_variable(Variable("member", found_class.key, member), fn, seen)
 
-    def _evaluate_passed(self, fn: Fn, place: int, name: str, seen: tuple) -> Iterator[FlowValue]:
-        """What callers pass for a parameter."""
-        number = 0
+    def _evaluate_passed(self, fn: Fn, place: int, parameter: FlowParameter, seen: tuple) -> Iterator[FlowValue]:
+        """What callers pass for a parameter, and its default where one of them, or nobody that is known, passes it."""
+        given, lacking = False, False
         only = self.way.get(fn)
         calls = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
                  if only is None or call is only)  # fmt: skip
         for caller, arguments, line in (*calls, *self.code.list_constructed(fn)):
-            argument = find_argument(arguments, place, name)
-            if argument is not None and self._runs(caller):
-                number += 1
-                yield from self._evaluate(argument, caller, line, seen)
-        if not number:
+            if self._runs(caller):
+                argument = find_argument(arguments, place, parameter.name)
+                given, lacking = given or argument is not None, lacking or argument is None
+                if argument is not None:
+                    yield from self._evaluate(argument, caller, line, seen)
+        if parameter.default is not None and (lacking or not given):
+            yield from self._evaluate(parameter.default, fn, fn.facts.line, seen)
+        elif not given:
             yield FlowValue(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:

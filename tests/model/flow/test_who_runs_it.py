@@ -238,3 +238,53 @@ def test_parameters_that_are_declared_together_are_each_declared():
     found = graph({"car/ear.py": code})
     assert ends(found, "subscriber") == {("car/ear.py", "/words", "std_msgs/String")}
     assert {(one.name, one.kind) for one in found.parameters} >= {("topic", "declared"), ("rate", "declared")}
+
+
+CAMERA = """
+    import rospy
+    from sensor_msgs.msg import Image
+    class Camera:
+        def __init__(self, ns="/camera", packed=False):
+            if packed:
+                rospy.Subscriber(ns + "/packed", Image, callback=print)
+            else:
+                rospy.Subscriber(ns + "/raw", Image, callback=print)
+        def stop(self):
+            rospy.Subscriber("/stop", Image, callback=print)
+    if __name__ == '__main__':
+        rospy.init_node('eye')
+        Camera("front")
+"""
+
+
+def test_a_default_is_no_value_where_every_caller_gives_another_and_a_flag_that_is_down_is_told():
+    found = graph({"car/eye.py": CAMERA}, 1)
+    told = {one.topic: one.only_if for one in found.endpoints if not one.implied}
+    assert told == {"/front/raw": "", "/front/packed": "packed", "/stop": "something calls `Camera.stop`"}
+    # Who leaves it out has the default.
+    both = graph({"car/eye.py": CAMERA + "        Camera()\n"}, 1)
+    assert {one.topic for one in both.endpoints if one.topic.endswith("/raw")} == {"/front/raw", "/camera/raw"}
+
+
+def test_a_method_that_is_called_or_handed_on_runs():
+    for use in ("camera.stop()", "rospy.on_shutdown(camera.stop)"):
+        code = CAMERA.replace('Camera("front")', f'camera = Camera("front"); {use}')
+        found = graph({"car/eye.py": code}, 1)
+        assert [one.only_if for one in found.endpoints if one.topic == "/stop"] == [""]
+
+
+def test_a_header_that_was_put_aside_is_not_the_one_that_is_included():
+    header = """
+        #include <ros/ros.h>
+        #include <std_msgs/String.h>
+        class Lamp { public: Lamp() { ros::NodeHandle n; n.advertise<std_msgs::String>("%s", 1); } };
+    """
+    main = """
+        #include "car/lamp.h"
+        int main(int argc, char ** argv) { ros::init(argc, argv, "light"); Lamp lamp; }
+    """
+    files = {"car/include/car/lamp.h": header % "new", "car/include/car/old/lamp.h": header % "old"}
+    found = graph({**files, "car/main.cpp": main}, 1)
+    assert {(node, topic) for node, topic, _ in ends(found, "publisher") if node == "car/main"} == {
+        ("car/main", "/new")
+    }
