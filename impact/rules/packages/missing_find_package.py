@@ -11,7 +11,8 @@ Why it breaks
 Severity
     error where a target is linked or given under a name that only the missing find_package defines, and for includes of
     compiled code where the package has an include folder of its own; warning for other includes, since an include path
-    may come along by accident, and for those of tests; note for libraries, and for headers of messages in ROS 1.
+    may come along by accident, and for those of tests; note for libraries, for headers of messages in ROS 1, and in files
+    that the package itself does not compile.
 
 Example
     ament_target_dependencies(node angles)      # and no find_package(angles REQUIRED)
@@ -179,9 +180,9 @@ def _may_be_defined(view: TargetView, package: Package, item: str, found: Collec
 
 def _find_include_doubt(view: TargetView, need) -> Doubt | None:
     """How surely a missing find_package stops the compiler: where the package has an include folder of its own."""
-    if not (need.targets or need.public):
+    if not need.targets:
         return Doubt.UNCOMPILED
-    if view.target.ros == 1 or view.offers.has_one_include_folder or not need.targets or len(need.providers) > 1:
+    if view.target.ros == 1 or view.offers.has_one_include_folder or len(need.providers) > 1:
         return Doubt.LUCKY
     name = need.providers[0].name
     own_folder = name in view.workspace.packages or view.offers.has_own_folder(name, need.subject)
