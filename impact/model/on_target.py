@@ -92,7 +92,7 @@ class WorkspaceOnTarget:
         self._whole = TransitiveNames(self.list_installed_with)
         self._widest = TransitiveNames(self._list_possibly_with)
         self._answered: dict[tuple[int, int], tuple[object, object, bool]] = {}
-        self._reached: dict[int, tuple[object, frozenset[str], frozenset[str]]] = {}
+        self._reached: dict[int, tuple[object, frozenset[str], frozenset[str], frozenset[str]]] = {}
         self._outward_sets: dict[tuple[int, int], tuple[frozenset[str], frozenset[str]]] = {}
         self._reach_of_headers = Reach(self._look_at_header)
         # Of what was reached: headers of the workspace, and with them those that it generates.
@@ -674,8 +674,8 @@ class WorkspaceOnTarget:
         return frozenset(resolution.packages if resolution else ())
 
     def is_met(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
-        """True when one of the providers is among the names, as itself, as a key that installs the same package, or as
-        the package that vendors it."""
+        """True when one of the providers is among the names, as itself, as a key that installs the same package, or
+        another version of it that no list of files tells of, or as the package that vendors it."""
         if not isinstance(names, _LASTING) or type(providers) is not tuple:
             return self._is_answered(providers, names)  # they may change until they are asked again
         # Asked of the same two again and again; both are kept, so that no other object gets their ids.
@@ -689,16 +689,19 @@ class WorkspaceOnTarget:
         for provider in providers:
             if not provider.name or provider.name in names or provider.name in self.installed:
                 return True
-        vendored, installed = self._reach(names)
+        vendored, installed, unlisted = self._reach(names)
         for provider in providers:
+            if unlisted and _strip_version(provider.package) in unlisted:
+                return True
             if vendored and not vendored.isdisjoint(_list_stems(provider.name)):
                 return True
             if provider.package in installed or not installed.isdisjoint(self.list_debs(provider.name)):
                 return True
         return False
 
-    def _reach(self, names) -> tuple[frozenset[str], frozenset[str]]:
-        """What a set of names vendors, and the system packages that its keys install."""
+    def _reach(self, names) -> tuple[frozenset[str], frozenset[str], frozenset[str]]:
+        """What a set of names vendors, the system packages that its keys install, and what those of them are called
+        without a version whose contents are not known, such as those of another archive than the platform's."""
         known = self._reached.get(id(names))
         if known is None:
             vendored = frozenset(
@@ -708,10 +711,13 @@ class WorkspaceOnTarget:
                 *(self.apt.list_added(d) for n in names if n not in self.workspace.packages for d in self.list_debs(n)),
                 *(self.apt.list_added(d) for n in self.installed for d in self.list_debs(n) or {n}),
             )
-            known = (names, vendored, installed)
+            given = (d for n in names if n not in self.workspace.packages for d in self.list_debs(n))
+            versioned = ((d, plain) for d in given if (plain := _strip_version(d)) != d)
+            unlisted = frozenset(plain for d, plain in versioned if not self.providers.knows_system((d,)))
+            known = (names, vendored, installed, unlisted)
             if isinstance(names, _LASTING):
                 self._reached[id(names)] = known
-        return known[1], known[2]
+        return known[1:]
 
     @cache_method
     def find_header(self, path: str) -> tuple[Provider, ...]:
@@ -865,6 +871,12 @@ def _list_installed_with(dependencies: Iterable[ReleasedDependency] | None) -> t
 def _drop_broad(found: list[Provider]) -> list[Provider]:
     """Without packages so broad that they bring half of ROS along, unless nobody else answers."""
     return [p for p in found if p.name not in _BROAD] or found
+
+
+@lru_cache(maxsize=10_000)
+def _strip_version(package: str) -> str:
+    """The name of a system package without the version in it: `libgazebo5-dev` gives `libgazebo-dev`."""
+    return re.sub(r"-?\d[\d.]*(?=-dev\Z|\Z)", "", package)
 
 
 @lru_cache(maxsize=10000)

@@ -1568,7 +1568,7 @@ class PackageJoin:
 
 # Commands that may run tests, besides those that the interpreter knows and those of linters.
 _MAY_TEST = re.compile(r"\A(?!ament_|catkin_add|roslaunch_add|add_(?:launch|ros)).*test")
-_BUILT = re.compile(r"\$\{\w*BINARY_DIR\}")
+_BUILT = re.compile(r"\$\{(?:\w*BINARY_DIR|CATKIN_DEVEL_PREFIX)\}")
 
 
 def _make_member_use(

@@ -34,8 +34,7 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     whose package is only known when the file runs (`$(find-pkg-share $(var robot))`), as written. words: of launch
     files, YAML and robot descriptions, see list_words().
 
-    Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path),
-    and a `file` mentioned on a command line (`roslaunch p f`) is a bare file name, to be found anywhere in the package.
+    Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path).
     generation: of a launch file, as LaunchFile has it; of a script, the one whose commands alone it calls, else 0.
     """
 
@@ -511,7 +510,7 @@ def _add_shell_command(found: _Found, match: re.Match[str], start: int, conditio
         found.add("executable", package, name, offset, conditional)
     elif command in ("roslaunch", "ros2 launch", "rostest"):
         if rest and name and re.search(r"\.(?:launch|test|xml|py|ya?ml)\Z", name):
-            found.add("file", package, name, offset, conditional)
+            found.add("sought", package, name, offset, conditional)
         elif rest and "$" in rest[0][0]:
             found.add("package", package, "", offset, conditional)
     elif command == "ros2 component standalone" and CLASS.match(name):

@@ -840,7 +840,7 @@ class PythonReader(ObjectUses, SourceText):
         elif function == "find_node" or function == "find_resource":
             texts = [self.find_text(argument) for argument in node.args[:2]]
             if len(texts) == 2 and all(isinstance(text, str) for text in texts):
-                self.refer_to("executable" if function == "find_node" else "file", str(texts[0]), str(texts[1]), node)
+                self.refer_to("executable" if function == "find_node" else "sought", str(texts[0]), str(texts[1]), node)
         elif function == "MoveItConfigsBuilder":
             # moveit_configs_utils looks for <robot>_moveit_config unless told the package.
             named = keywords.get("package_name")
@@ -932,9 +932,9 @@ class PythonReader(ObjectUses, SourceText):
         if program is None or not _PROGRAM.fullmatch(program):
             return
         if program == "ros2" and len(words) > 3 and words[1] in ("run", "launch"):
-            kind, words = ("executable" if words[1] == "run" else "file"), words[2:]
+            kind, words = ("executable" if words[1] == "run" else "sought"), words[2:]
         elif program in ("rosrun", "roslaunch"):
-            kind, words = ("executable" if program == "rosrun" else "file"), [*words[1:], None, None]
+            kind, words = ("executable" if program == "rosrun" else "sought"), [*words[1:], None, None]
         else:
             known = self.find_imported(format_dotted(node.func).partition(".")[0])
             if function[0].isupper() or any(dotted.partition(".")[0] in _STARTING for dotted, _ in known):

@@ -27,6 +27,8 @@ def list_own_calls(
         path: min((h for h in included(path) if _get_stem(h) == _get_stem(path)), default="") for path in sources
     }
     beside = group_pairs((header, path) for path, header in own_header.items() if header)
+    # Of several, those that nothing compiles are for other platforms.
+    beside = {header: [o for o in others if sources[o]] or others for header, others in beside.items()}
     reach = Reach(lambda path: (included(path), ()))
     with_source, stems = reach.combine_bits(beside), {header: _normalise(_get_stem(header)) for header in beside}
     pairs = []

@@ -60,7 +60,7 @@ def removed_executable(view: TargetView, package: Package):
             if reference.kind == "executable":
                 yield from find_gone_package(view, package, use, reference.package, reference.name)
                 yield from _report(view, package.name, use, "executable", reference.name)
-            elif reference.kind == "file":
+            elif reference.kind in ("file", "sought"):
                 path = _launch_file(view, reference.package, reference.name)
                 yield from _report(view, package.name, use, "launch file", path)
                 yield from _check_arguments(view, package.name, use, path)

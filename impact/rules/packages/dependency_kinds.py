@@ -63,7 +63,8 @@ def list_wrong_kinds(view: TargetView, package: Package) -> Iterable[WrongKind]:
 def _find_lacking(need: Need, kinds: Set[str]) -> tuple[str, Set[str]]:
     """What a need is not declared for, empty where the kinds will do, and the kinds that would."""
     if need.role == "build" and need.how in ("find_package", "component", "include"):
-        if not kinds & _FOR_BUILD:
+        compiled = need.how != "include" or bool(need.targets)  # else it is for dependants alone
+        if compiled and not kinds & _FOR_BUILD:
             return "build", _FOR_BUILD
         tests = need.subject.startswith(TEST_HEADERS)  # whoever includes what helps in tests makes tests
         if need.public and need.how == "include" and not tests and not kinds & {"build_export", "exec"}:

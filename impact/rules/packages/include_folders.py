@@ -29,10 +29,10 @@ def collect_folder_doubts(view: TargetView, name: str, header: str) -> tuple[Dou
 
 def find_include_doubt(view: TargetView, need: Need) -> Doubt | None:
     """What speaks against a compiler that stops at an include whose package CMake does not look for at all."""
-    if not (need.targets or need.public):
+    if not need.targets:
         return Doubt.UNCOMPILED
     first, *others = need.providers
-    together = view.target.ros == 1 or view.offers.has_one_include_folder or not need.targets or others
+    together = view.target.ros == 1 or view.offers.has_one_include_folder or others
     apart = not together and _has_own_folder(view, view.offers, first.name, need.subject)
     return None if apart else Doubt.LUCKY
 

@@ -131,11 +131,12 @@ def _list_opened(view: TargetView, package: Package) -> Iterator[Diagnostic]:
     for use in package.linked.references:
         r = use.reference
         owner = view.workspace.packages.get(r.package)
-        if r.kind != "file" or use.role != "run" or r.conditional or owner is None or "launch" not in use.at.path:
+        opens = r.kind in ("file", "sought") and use.role == "run" and not r.conditional
+        if not opens or owner is None or "launch" not in use.at.path:
             continue
         name = posixpath.normpath(r.name)
-        # In shell scripts the command roslaunch looks for a name in all folders.
-        if use.at.path.endswith(".sh") or not _OPENED.search(name) or "$" in name or name.startswith(".."):
+        known = r.kind == "sought" and any(posixpath.basename(file) == name for file in owner.files)
+        if known or not _OPENED.search(name) or "$" in name or name.startswith(".."):
             continue
         path = posixpath.join(owner.path, name)
         installs = owner.build.installs if owner.build.files else list_copied(owner)

@@ -1,9 +1,11 @@
 """What packages use and do not declare, as the rules on it ask for it."""
 
+import re
 from typing import NamedTuple
 
 from ....edges.memory import cache_in_derived
 from ...model.misspelling import fold_name, is_one_edit
+from ...targets.platform import strip_to_letters
 from ..vocabulary import Declare, Need, Package, TargetView, Text, translate_tag
 from .clean_machine import TEST_HEADERS
 
@@ -79,17 +81,25 @@ def list_sources(view: TargetView, package: Package, need: Need) -> tuple[str, .
 
 def _choose_name(view: TargetView, need: Need) -> str | None:
     """The name a person would put into the manifest for a need: the first provider that can be had on the target, or
-    the package that is named by its form, wherever it comes from."""
+    the package that is named by its form, wherever it comes from. Of those that bring a module, what is called as the
+    first is, for some version of it or of Python: the others are packages that use it."""
     other = "python3-" if view.target.python_major == 2 else "python-"
+    first = need.providers[0]
+    own = _strip_python(first.package) if need.how == "import" and first.kind == "system" else ""
     for provider in sorted(need.providers, key=lambda p: p.name.startswith(other)):
+        if own and provider.kind == "system" and _strip_python(provider.package) != own:
+            continue
         if provider.name and view.is_available(provider.name):
             return provider.name
-    first = need.providers[0]
     by_form = need.how in ("launch", "setting", "find_package", "component", "import")
     if not by_form or first.kind != "ros" or not first.sure:
         return None
     meant = first.name == need.subject.partition(".")[0] and not view.target.is_other_generation(first.name)
     return first.name if meant else None
+
+
+def _strip_python(package: str) -> str:
+    return strip_to_letters(re.sub(r"\Apython3?-|-pip\Z", "", package))
 
 
 def describe_need(package: Package, need: Need) -> dict[str, str]:

@@ -59,7 +59,7 @@ def uninstalled_header(view: TargetView, package: Package):
             include = _find_include(view, written.get(path, ()), to)
             if include is None or not is_header(to) or to in made:
                 continue
-            if _is_answered(installed.headers, place, include.path):
+            if view.is_standard(include.path) or _is_answered(installed.headers, place, include.path):
                 continue
             reported.add(to)
             data = {"header": posixpath.basename(path), "file": package.strip_path(to)}

@@ -34,6 +34,7 @@ _HELP = "bring its source into the workspace, or put a condition on the dependen
     texts={
         "never": Text("`{subject}` is not released in {distro}[[ (last released in {last})]]", _HELP),
         "later": Text("`{subject}` was not released in {distro} on that date", _HELP),
+        "dropped": Text("`{subject}` is no longer released in {distro} (since {day})", _HELP),
         "waiting": Text("`{subject}` waits for the next sync of {distro}", "use ros-testing, or " + _HELP),
     },
 )
@@ -58,11 +59,13 @@ def unreleased_package(view: TargetView, package: Package):
         )
         last = target.find_last_distro(name)
         waits = (testing := target.find_testing()) is not None and testing.find_version(name) is not None
+        before = [day for day, version in target.list_releases(name) if day <= target.date and version is None]
+        kind = "waiting" if waits else "dropped" if before else "later" if last == target.distro else "never"
         yield Diagnostic(
             view.find_place(package, dependency),
             name,
             package.name,
-            {"distro": target.distro, "last": last},
-            kind="waiting" if waits else "later" if last == target.distro else "never",
+            {"distro": target.distro, "last": last, "day": before[-1] if before else ""},
+            kind=kind,
             doubts=(used or Doubt.INCOMPLETE, not (beside or (waits and target.moving)) or Doubt.INCOMPLETE),
         )

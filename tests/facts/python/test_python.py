@@ -145,7 +145,7 @@ SHARE = "from ament_index_python.packages import get_package_share_directory as 
         ("Command([FindExecutable(name='xacro'), ' ', path])", [("command", "", "xacro")]),
         ("ExecuteProcess(cmd=['ros2', 'run', 'p', 'e'])", [("executable", "p", "e")]),
         ("subprocess.Popen(['rosrun', 'p', 'e', arg])", [("executable", "p", "e")]),
-        ("os.system('roslaunch p x.launch a:=b')", [("file", "p", "x.launch")]),
+        ("os.system('roslaunch p x.launch a:=b')", [("sought", "p", "x.launch")]),
         ("subprocess.run(command)", []),
         ("import subprocess\nsubprocess.run(['ffmpeg', path])", [("command", "", "ffmpeg")]),
         ("from os import system as do\ndo('sudo ffmpeg -i ' + path)", [("command", "", "ffmpeg")]),
