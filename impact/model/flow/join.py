@@ -332,7 +332,7 @@ class Join:
         endpoints = dict.fromkeys(self._list_endpoints(owners, count))
         publishes = dict.fromkeys(self._list_publishes(owners, count))
         timers = dict.fromkeys(self._list_timers(owners))
-        parameters = dict.fromkeys(self._list_parameters(owners))
+        parameters = dict.fromkeys(self._list_parameters(owners, count))
         coverage = Coverage(
             count.calls, count.resolved, count.by_default, len(self.code.sources), tuple(sorted(unread)),
             tuple(sorted(count.unresolved, key=lambda one: (one.path, one.line, one.what))),
@@ -384,9 +384,18 @@ class Join:
                     node.id if node else "", timer.period, _make_callback(timer.callbacks), *_get_place(timer.use)
                 )
 
-    def _list_parameters(self, owners: _Owners) -> Iterator[ParameterUse]:
+    def _list_parameters(self, owners: _Owners, count: _Count) -> Iterator[ParameterUse]:
         for use in self._uses_of_parameters:
-            yield from self._make_parameters(use, owners.list_owners(use))
+            those = owners.list_owners(use)
+            made = list(self._make_parameters(use, those))
+            for owner in those if made else ():
+                owners.use(owner)
+            if those and not made:
+                reasons = [value.reason for value in self.list_parameter_names(use)]
+                reason = reasons[0] if reasons else "no name is given"
+                written = unparse(self.calls.find_argument(use, use.row.topic))
+                count.unresolved.append(Unresolved("parameter name", reason, *_get_place(use), written))
+            yield from made
 
     @cached_property
     def _uses_of_parameters(self) -> list[FrameworkCall]:

@@ -24,16 +24,14 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     if not launches:
         return code
     started = {start.program for launch in launches for start in launch.starts}
-    # What no program of the workspace runs talks in nobody's name.
-    alone = {node.id for node in code.nodes if node.id not in started}
     graphs = [launch.graph for launch in launches]
 
     def merge(field: str) -> tuple[Any, ...]:
-        own = (row for row in getattr(code, field) if not row.node or row.node in alone)
+        own = (row for row in getattr(code, field) if row.node not in started)
         return _drop_repeats(chain(own, *(getattr(graph, field) for graph in graphs)))
 
     nodes = {node.id: node for graph in reversed(graphs) for node in graph.nodes}
-    nodes |= {node.id: node for node in code.nodes if node.id in alone}
+    nodes |= {node.id: node for node in code.nodes if node.id not in started}
     return msgspec.structs.replace(
         code,
         nodes=tuple(sorted(nodes.values(), key=lambda node: node.id)),
