@@ -700,11 +700,11 @@ class FlowCode:
         methods of."""
         name = get_tail(fn.facts.name)
         owner = self.find_owner(fn)
-        if owner is None or fn.is_lambda or not name.isidentifier() or name[:2] == "__" or name == get_tail(owner.name):
+        if owner is None or fn.is_lambda or not name.isidentifier() or name[:2] == name[-2:] == "__":
             return True
         bases = {get_tail(base) for cls in self.list_bases(owner) for base in cls.facts.bases}
         others = {base for base in bases if base not in self.classes and base not in _CALL_NOTHING}
-        return bool(others) or name in self.mentioned
+        return bool(others) or name in self.mentioned or name == get_tail(owner.name)
 
     @cached_property
     def mentioned(self) -> frozenset[str]:

@@ -178,7 +178,8 @@ class Join:
                     missing.append(Unresolved("started node", reason, *at, what))
                 continue
             one = next((each for each in fitting if each.program.roots), fitting[0])
-            instance = make_instance(launch, one.node.name.rpartition("/")[2], start)
+            own = one.node.name.rpartition("/")[2] or f"<{one.program.executable or get_tail(one.program.plugin)}>"
+            instance = make_instance(launch, own, start)
             node = structs.replace(
                 one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
                 uncertain=instance.uncertain,
@@ -251,8 +252,10 @@ class Join:
             if name and "{" not in name:
                 break
         default = program.executable or _convert_to_snake(get_tail(parse_flow_type(program.plugin).name))
-        # What loads a plugin is another program, which gives it a node, or a nodelet its name.
-        full = "" if program.kind in ("plugin", "nodelet") else normalise("/" + (name or default).lstrip("/"))
+        # What loads a plugin is another program, which gives it a node, or a nodelet its name; who makes the node of a
+        # program that makes none is not known either.
+        unknown = program.kind in ("plugin", "nodelet") or not (named or self.ros == 2)
+        full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
         language = "python" if program.kind == "script" else "cpp"
         return Node(
             f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from ....edges import processes
+from ...facts.kinds import find_kind
 from ...facts.store import recall
 from ..launch.fill import ChangedFiles
 from ..launch.follow import MOST_ACTIONS, follow
@@ -161,13 +162,19 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
 
 
 def _list_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
-    """(package, path, path within the package) of launch files; those of tests are left out."""
+    """(package, path, path within the package) of launch files; last those in XML and YAML outside of all packages.
+    Those of tests are left out."""
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in sorted(package.linked.files):
             inner = path[start:]
             if is_launch(inner) and find_folder_role(inner) != "test":
                 yield package.name, path, inner
+    for entry in workspace.extraction.tree.list_entries():
+        path = entry.path
+        launches = find_kind(path) in ("launch_xml", "launch_yaml") and is_launch(path)
+        if launches and find_folder_role(path) != "test" and workspace.discovered.find_owner(path) is None:
+            yield "", path, path
 
 
 def is_launch(path: str) -> bool:

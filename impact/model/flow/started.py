@@ -25,8 +25,10 @@ class InWorkspace:
         self.workspace = workspace
 
     def find_workspace_path(self, package: str, path: str) -> str:
-        """The workspace path of an installed file, empty for what is not there."""
+        """The workspace path of an installed file, or of one outside of all packages; empty for what is not there."""
         owner = self.workspace.packages.get(package)
+        if not package:
+            return path if self.workspace.extraction.tree.exists(path) else ""
         if owner is None:
             return ""
         base = f"{owner.path}/" if owner.path else ""

@@ -288,3 +288,22 @@ def test_a_header_that_was_put_aside_is_not_the_one_that_is_included():
     assert {(node, topic) for node, topic, _ in ends(found, "publisher") if node == "car/main"} == {
         ("car/main", "/new")
     }
+
+
+def test_launch_files_outside_of_packages_start_nodes_too(tmp_path):
+    files = {"car/package.xml": manifest("car", "catkin"), "car/CMakeLists.txt": CMAKE, "car/talker.cpp": PARAMETER}
+    files["launch/all.launch"] = """
+        <launch><group ns="left"><node pkg="car" type="talker" name="t"/></group></launch>
+    """
+    assert {node.id for node in graph_on_disk(tmp_path, files).nodes} == {"/left/t"}
+
+
+def test_a_program_that_makes_no_node_has_no_name():
+    code = """
+        import rospy
+        from std_srvs.srv import Empty
+        if __name__ == '__main__':
+            rospy.ServiceProxy('/reset', Empty)()
+    """
+    found = graph({"car/ask.py": code}, 1)
+    assert [(node.kind, node.name) for node in found.nodes] == [("script", "")]
