@@ -7,7 +7,7 @@ sources judged it benchmarks/systems/NAME.drawn.jsonl. A record is a fact, never
                there), `open` (the sources do not tell); why: one clause
     site       a place in C++ or Python code that a search of the text takes for an API call: repo, path, line, role;
                found: the graph has an endpoint, parameter or timer there, or names the place as not resolved (`named`);
-               verdict: `call` or `none` (the text is no such call)
+               verdict, of those that are not found: `call` or `none` (the text is no such call)
 
 usage: flow_sight.py draw --set NAME --clones FOLDER [--number 20] [--seed 18]
        flow_sight.py score --set NAME
@@ -152,7 +152,10 @@ def score(records: list[dict]) -> None:
         verdicts = Counter(one["verdict"] for one in chosen)
         told = sum(verdicts.values()) - verdicts["open"]
         print(f"{title}: {verdicts['right']} of {told} right; {dict(verdicts)}")
-    sites_of_calls = [one for one in records if one["kind"] == "site" and one.get("verdict") == "call"]
+    # What the graph has and a search of the text finds is a call; readers judged the others.
+    sites_of_calls = [
+        one for one in records if one["kind"] == "site" and one.get("verdict", "call" if one["found"] else "") == "call"
+    ]
     for role in sorted({one["role"] for one in sites_of_calls}):
         calls = [one for one in sites_of_calls if one["role"] == role]
         found, named = sum(one["found"] for one in calls), sum(one["named"] and not one["found"] for one in calls)
