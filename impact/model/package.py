@@ -397,10 +397,11 @@ def is_called_example(path: str) -> bool:
     return _ASIDE_NAME.search(path.rsplit("/", 1)[-1].lower()) is not None
 
 
-def find_folder_role(path: str) -> str | None:
+def find_folder_role(path: str, module: str = "") -> str | None:
     """`test` or `aside` when a folder of the path says so, else None. Hidden folders hold what development needs. path
-    is relative to the package."""
-    parts = path.lower().split("/")[:-1]
+    is relative to the package. module: the folder of the package's own module, which may be called like one of tests.
+    """
+    parts = path.lower().removeprefix(f"{module.lower()}/").split("/")[:-1]
     if any(part in TESTS or part.startswith("test_") or part.endswith("_test") for part in parts):
         return "test"
     name = path.rsplit("/", 1)[-1].lower()

@@ -43,9 +43,16 @@ def make_code_selector(tree: Tree) -> Callable[[str], str | None]:
         if kind is None:
             return None
         inside = list_starts(path.rpartition("/")[0])
-        return kind if any(find_folder_role(path[start:]) != "test" for start in inside) else None
+        return kind if any(is_code(path, start) for start in inside) else None
 
     return select_kind
+
+
+def is_code(path: str, start: int) -> bool:
+    """Whether a file is part of what a package runs: neither a test nor in a hidden folder. start: where its path
+    within the package begins."""
+    module = path[: max(0, start - 1)].rpartition("/")[2]
+    return "/." not in f"/{path[start:]}" and find_folder_role(path[start:], module) != "test"
 
 
 def compute_stamp(workspace: Workspace, second: ExtractedFacts | None = None) -> bytes:

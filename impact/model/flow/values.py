@@ -432,8 +432,13 @@ class FlowValues:
             return
         yielded = False
         mark = ("parameter", name)
-        for other in self.declared.get(name, ()) if name and mark not in seen else ():
-            if other.call is use.call or other.fn.source.package != use.fn.source.package:
+        declared = self.declared.get(name, ()) if name and mark not in seen else ()
+        others = [other for other in declared if other.call is not use.call]
+        # Of a program by its own code: programs of one package may declare a parameter each for itself.
+        near = [other for other in others if other.fn.source is use.fn.source]
+        running = [other for other in others if self.within is not None and other.fn in self.within]
+        for other in near or running or others:
+            if other.fn.source.package != use.fn.source.package:
                 continue
             for one in self._evaluate_parameter(other, (*seen, mark)):
                 if one.text is not None:

@@ -14,11 +14,11 @@ from ...facts.flow import FlowFile
 from ...facts.kinds import find_kind
 from ...facts.store import Store, recall
 from ...tree.paths import Tree
-from ..package import Watched, find_folder_role
+from ..package import Watched
 from ..workspace import Package, Workspace, link
 from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
-from .file_selection import compute_stamp, make_code_selector
+from .file_selection import compute_stamp, is_code, make_code_selector
 from .graph import Graph
 from .join import Join
 from .launches import Launch
@@ -113,7 +113,7 @@ def list_code(workspace: Workspace) -> dict[str, str]:
     for package in workspace:
         start = len(package.path) + 1 if package.path else 0
         for path in package.linked.files:
-            if path in extraction.kinds and find_folder_role(path[start:]) != "test":
+            if path in extraction.kinds and is_code(path, start):
                 found[path] = package.name
     return found
 

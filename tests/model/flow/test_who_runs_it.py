@@ -307,3 +307,32 @@ def test_a_program_that_makes_no_node_has_no_name():
     """
     found = graph({"car/ask.py": code}, 1)
     assert [(node.kind, node.name) for node in found.nodes] == [("script", "")]
+
+
+def test_a_module_that_is_called_like_a_test_is_code_and_a_backup_is_not(tmp_path):
+    node = """
+        import rclpy
+        from rclpy.node import Node
+        from std_msgs.msg import String
+        class Ear(Node):
+            def __init__(self):
+                super().__init__('ear')
+                self.declare_parameter('topic', '%s')
+                self.create_subscription(String, self.get_parameter('topic').value, print, 1)
+        def main():
+            rclpy.init()
+            Ear()
+    """
+    setup = """
+        from setuptools import setup
+        setup(name="car_test", entry_points={"console_scripts": ["a = car_test.a:main", "b = car_test.b:main"]})
+    """
+    files = {
+        "car_test/package.xml": manifest("car_test", "ament_python"), "car_test/setup.py": setup,
+        "car_test/car_test/a.py": node % "/a", "car_test/car_test/b.py": node % "/b",
+        "car_test/car_test/.ipynb_checkpoints/a.py": node % "/old", "car_test/test/test_a.py": node % "/tested",
+    }  # fmt: skip
+    # Each program has the default of its own code.
+    assert {(node, topic) for node, topic, _ in ends(graph_on_disk(tmp_path, files), "subscriber")} == {
+        ("car_test/a", "/a"), ("car_test/b", "/b")
+    }  # fmt: skip
