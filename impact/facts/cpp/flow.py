@@ -53,6 +53,7 @@ def extract(data: bytes) -> FlowFile:
     return FlowFile(
         "cpp", tuple(reader.aliases), tuple(reader.classes), tuple(reader.functions), tuple(reader.constants), exports,
         tuple(sorted(wrong.union(source.hidden))), tuple(reader.problems), tuple(dict.fromkeys(included)),
+        tuple(reader.defaults),
     )  # fmt: skip
 
 
@@ -74,6 +75,7 @@ class _File(CppStatements):
         self.aliases: list[Alias] = []
         self.classes: list[FlowClass] = []
         self.constants: list[DataMember] = []
+        self.defaults: list[tuple[str, tuple[FlowExpr | None, ...]]] = []
         # Of the class that is read.
         self.members: list[DataMember] = []
         self.problems: list[Problem] = []
@@ -225,8 +227,12 @@ class _File(CppStatements):
     enter_field_declaration = enter_declaration
 
     def add_variable(self, node: Node, child: Node, index: int, type_: str, name: str, owner: str, base: int) -> None:
+        function = self.find_function_declarator(child)
+        if function is not None:
+            self.add_defaults(function, name)
+            return
         said, marks = self.split_declarator(child)
-        if said is None or self.declares_function(child):
+        if said is None:
             return
         if child.kind_id == KIND.parenthesized_declarator and node.children[-1].is_missing:
             return
@@ -255,21 +261,28 @@ class _File(CppStatements):
         member = DataMember(variable if owner else target, type_ + marks, self.find_line(said), value)
         (self.members if owner else self.constants).append(member)
 
-    def declares_function(self, node: Node) -> bool:
-        """Whether a declarator is that of a function, rather than of a pointer to one."""
+    def find_function_declarator(self, node: Node) -> Node | None:
+        """The declarator of a function, rather than of a pointer to one, that a declarator is or holds."""
         for _ in range(64):
             number = node.kind_id
             if number == KIND.function_declarator:
-                return node.children[0].kind_id in NAMES
+                return node if node.children[0].kind_id in NAMES else None
             if number == KIND.operator_cast:
-                return True
+                return node
             if number not in (KIND.pointer_declarator, KIND.reference_declarator, KIND.init_declarator):
-                return False
+                return None
             inner = next((child for child in node.children if child.kind_id in DECLARATORS), None)
             if inner is None:
-                return False
+                return None
             node = inner
-        return False
+        return None
+
+    def add_defaults(self, node: Node, name: str) -> None:
+        """The defaults of a function's parameters, where it has any."""
+        listed = next((child for child in node.children if child.kind_id == KIND.parameter_list), None)
+        if listed is not None and any(one.kind_id == KIND.optional_parameter_declaration for one in listed.children):
+            defaults = tuple(parameter.default for parameter in self.add_parameters(listed))
+            self.defaults.append((join_scope(name, self.spell_node(node.children[0])), defaults))
 
     def add_guards(self, conditions) -> int:
         """The guards of the preprocessor around what stands outside of functions."""

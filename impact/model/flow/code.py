@@ -695,6 +695,18 @@ class FlowCode:
         """Whether a name in a function is that of a class of the code."""
         return get_tail(name) in self.classes and self.find_class(name, fn.source, fn.scope) is not None
 
+    def find_default(self, fn: Fn, place: int, parameter: FlowParameter) -> FlowExpr | None:
+        """The default of a parameter, which C++ writes where the function is declared."""
+        if parameter.default is not None or fn.source.facts.language != "cpp":
+            return parameter.default
+        count = len(fn.facts.parameters)
+        found = (defaults for name, defaults in self._defaults.get(get_tail(fn.name), ()) if name == fn.name)
+        return next((defaults[place] for defaults in found if len(defaults) == count), None)
+
+    @cached_property
+    def _defaults(self) -> dict[str, list[tuple[str, tuple[FlowExpr | None, ...]]]]:
+        return group_pairs((get_tail(row[0]), row) for source in self.sources for row in source.facts.defaults)
+
     def may_be_called(self, fn: Fn) -> bool:
         """False for a method that nothing in the code calls or mentions by its name, of a class that nobody else calls
         methods of."""

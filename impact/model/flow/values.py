@@ -330,8 +330,9 @@ class FlowValues:
                 given, lacking = given or argument is not None, lacking or argument is None
                 if argument is not None:
                     yield from self._evaluate(argument, caller, line, seen)
-        if parameter.default is not None and (lacking or not given):
-            yield from self._evaluate(parameter.default, fn, fn.facts.line, seen)
+        default = self.code.find_default(fn, place, parameter)
+        if default is not None and (lacking or not given):
+            yield from self._evaluate(default, fn, fn.facts.line, seen)
         elif not given:
             yield FlowValue(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
 
@@ -347,7 +348,7 @@ class FlowValues:
         place, facts = parameter
         for maker, arguments, line in self.code.constructions.get(owner.key, ()) if owner is not None else ():
             if (maker.place, arguments) in origins.made and self._runs(maker):
-                argument = find_argument(arguments, place, facts.name) or facts.default
+                argument = find_argument(arguments, place, facts.name) or self.code.find_default(fn, place, facts)
                 if argument is not None:
                     yield from self._evaluate(argument, maker, line, seen)
 

@@ -336,3 +336,25 @@ def test_a_module_that_is_called_like_a_test_is_code_and_a_backup_is_not(tmp_pat
     assert {(node, topic) for node, topic, _ in ends(graph_on_disk(tmp_path, files), "subscriber")} == {
         ("car_test/a", "/a"), ("car_test/b", "/b")
     }  # fmt: skip
+
+
+def test_defaults_stand_where_a_function_is_declared():
+    files = {
+        "car/servo.hpp": """
+            #include <ros/ros.h>
+            struct Servo { static void begin(ros::NodeHandle & n, const std::string & ns = "arm"); };
+        """,
+        "car/servo.cpp": """
+            #include "servo.hpp"
+            #include <std_msgs/String.h>
+            void Servo::begin(ros::NodeHandle & n, const std::string & ns) {
+              n.advertise<std_msgs::String>(ns + "/out", 1);
+            }
+            int main(int argc, char ** argv) {
+              ros::init(argc, argv, "servo");
+              ros::NodeHandle n;
+              Servo::begin(n);
+            }
+        """,
+    }
+    assert ends(graph(files, 1), "publisher") == {("car/servo", "/arm/out", "std_msgs/String")}
