@@ -17,6 +17,7 @@ from .surface_file import pack, shorten_message
 # What other tables tell (messages), and what a package has for itself.
 _UNTOLD = frozenset(("dependency", "system dependency", "package", "standard"))
 _CALLED = FUNCTIONS | {"macro"}
+_OF_HEADERS = ("c++", "header")
 
 
 class Lines:
@@ -24,6 +25,8 @@ class Lines:
 
     def __init__(self) -> None:
         self._before: dict[tuple[str, int], RepositorySurfaces] = {}
+        # The last that was read whole, which names of C++ and headers are compared with.
+        self._whole: dict[tuple[str, int], RepositorySurfaces] = {}
         self._versions: dict[tuple[str, int], list[str]] = {}
         self._approximate: dict[tuple[str, int], list[str]] = {}
         self._events: dict[tuple[str, int], dict[tuple[str, str], list[ChangeEvent]]] = {}
@@ -38,17 +41,18 @@ class Lines:
     ) -> None:
         """The next version of a package, and the state that it belongs to. generations: 1, 2 or both. approximate: a
         branch stands for it."""
-        compared: dict[int, tuple[tuple[tuple[str, str], ChangeEvent], ...]] = {}
+        compared: dict[tuple[int, int], tuple[tuple[tuple[str, str], ChangeEvent], ...]] = {}
         for generation in generations:
             key = package, generation
             versions = self._versions.setdefault(key, [])
             if version in versions:
                 continue
-            before = self._before.get(key)
-            if before is not None:
-                if id(before) not in compared:
-                    compared[id(before)] = tuple(_list_events(package, before, state))
-                for thing, event in compared[id(before)]:
+            before, whole = self._before.get(key), self._whole.get(key)
+            if before is not None and whole is not None:
+                both = id(before), id(whole)
+                if both not in compared:
+                    compared[both] = tuple(_list_events(package, before, whole, state))
+                for thing, event in compared[both]:
                     if thing not in self._events.get(key, {}) and _may_have_been(thing, event):
                         continue
                     placed = msgspec.structs.replace(event, place=len(versions))
@@ -57,6 +61,8 @@ class Lines:
             if approximate:
                 self._approximate.setdefault(key, []).append(version)
             self._before[key] = state
+            if whole is None or not is_read_in_part(*(one.surfaces[package].build for one in (whole, state))):
+                self._whole[key] = state
 
     def pack_lines(self) -> dict[tuple[str, int], bytes]:
         """Package and ROS generation to its line as it is stored."""
@@ -80,7 +86,7 @@ def is_read_in_part(before: BuildSurface, after: BuildSurface) -> bool:
 def is_out_of_sight(side: str, event: ChangeEvent) -> bool:
     """Whether a name of C++, or a header, was merely not read, if it goes at a version that was read in part. What is
     found elsewhere has moved."""
-    return side in ("c++", "header") and all(reported.kind == "removed" for reported in event.reported)
+    return side in _OF_HEADERS and all(reported.kind == "removed" for reported in event.reported)
 
 
 def _may_have_been(thing: tuple[str, str], event: ChangeEvent) -> bool:
@@ -95,9 +101,20 @@ def _find_side(change: VersionChange) -> str:
 
 
 def _list_events(
+    package: str, before: RepositorySurfaces, whole: RepositorySurfaces, after: RepositorySurfaces
+) -> Iterator[tuple[tuple[str, str], ChangeEvent]]:
+    """What changed of a package, by side and name. whole: the last version before that was read whole, mostly `before`
+    itself. The places are filled in later."""
+    for thing, event in _compare_versions(package, before, after):
+        if whole is before or thing[0] not in _OF_HEADERS:
+            yield thing, event
+    if whole is not before:
+        yield from (row for row in _compare_versions(package, whole, after) if row[0][0] in _OF_HEADERS)
+
+
+def _compare_versions(
     package: str, before: RepositorySurfaces, after: RepositorySurfaces
 ) -> Iterator[tuple[tuple[str, str], ChangeEvent]]:
-    """What changed of a package, by side and name. The places are filled in later."""
     found: dict[tuple[str, str], list[ComparedThing]] = {}
     in_part = is_read_in_part(before.surfaces[package].build, after.surfaces[package].build)
     for change in compare(before.surfaces[package], after.surfaces[package], before, after):

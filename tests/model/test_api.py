@@ -583,3 +583,20 @@ def test_names_of_a_version_that_was_read_without_its_headers_are_not_gone(has_h
     events = read_packed(lines.pack_lines()["away", 2], Line).events
     assert {name for name, found in events.get("c++", {}).items() if any(e.has is None for e in found)} == gone
     assert ("header" in events) == (not has_headers and bool(gone))
+
+
+def test_names_that_are_back_after_a_version_without_its_headers_are_not_new():
+    lines = Lines()
+    once = "namespace away { struct Sled {}; struct Rope {}; }"
+    later = "namespace away { struct Sled {}; struct Bell {}; }"
+    for version, code in (("1.0.0", once), ("2.0.0", ""), ("3.0.0", later)):
+        there = (Header("a.hpp", "include/a.hpp", "a.hpp"),) if code else ()
+        read = tuple(("a.hpp", header(code.encode())) for _ in there)
+        build = BuildSurface("away", version, headers=there, programs=(InstalledProgram("sled", "bin", "binary"),))
+        lines.add("away", version, (2,), RepositorySurfaces(
+            {"away": Surface("away", version, build, PythonSurface("away"), read)}
+        ))  # fmt: skip
+    events = read_packed(lines.pack_lines()["away", 2], Line).events
+    told = {name: [each.kind for event in found for each in event.reported] for name, found in events["c++"].items()}
+    assert told == {"away::Rope": ["removed"], "away::Bell": ["added"]}
+    assert "header" not in events
