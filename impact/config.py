@@ -28,7 +28,7 @@ class PathSetting(NamedTuple):
 
 class Config(NamedTuple):
     """What a rosimpact.toml says. path is None when there is none. trusted: the user named the file, and so it may name
-    files outside of the workspace whose content is shown."""
+    files outside of the workspace whose content is shown. talks: targets whose nodes talk to each other."""
 
     path: Path | None = None
     targets: dict[str, dict[str, Any]] = {}  # noqa: RUF012
@@ -44,10 +44,11 @@ class Config(NamedTuple):
     index: str = ""  # pyright: ignore[reportIncompatibleMethodOverride]
     private: tuple[str, ...] = ()
     installed: tuple[str, ...] = ()
+    talks: tuple[str, ...] = ()
     trusted: bool = False
 
 
-_TABLES = {"targets", "workspace", "check", "paths"}
+_TABLES = {"targets", "workspace", "check", "paths", "system"}
 _FAIL_ON = ("error", "warning", "note", "never")
 
 
@@ -107,12 +108,13 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
                 f"{path}: unknown table `{key}`{_hint(key, _TABLES)}; known are {', '.join(sorted(_TABLES))}"
             )
     workspace, check = _read_table(path, tables, "workspace"), _read_table(path, tables, "check")
-    targets = _read_table(path, tables, "targets")
+    targets, system = _read_table(path, tables, "targets"), _read_table(path, tables, "system")
     for name, target in targets.items():
         if not isinstance(target, dict) or not isinstance(target.get("distro", target.get("file")), str):
             raise ConfigError(f'{path}: [targets.{name}] needs a `distro` (such as "humble") or a `file`')
     _check_keys(path, "workspace", workspace, {"underlays", "repos", "rosdep_sources", "index", "private", "installed"})
     _check_keys(path, "check", check, {"targets", "select", "ignore", "severity", "fail_on"})
+    _check_keys(path, "system", system, {"talks"})
     fail_on = _parse_string(path, check, "fail_on")
     if fail_on not in ("", *_FAIL_ON):
         raise ConfigError(
@@ -133,6 +135,7 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
         index=_parse_string(path, workspace, "index"),
         private=_read_list(path, workspace, "private"),
         installed=_read_list(path, workspace, "installed"),
+        talks=_read_list(path, system, "talks"),
         trusted=trusted,
     )
 

@@ -135,3 +135,54 @@ def test_json_is_what_the_schema_says(say, beside):
 def test_it_is_written_to_a_file(say, tmp_path):
     assert say("env", "diff", "humble", "jazzy", "-o", tmp_path / "diff.txt").out == ""
     assert "differences" in (tmp_path / "diff.txt").read_text().splitlines()[-1]
+
+
+PILOT = """import rclpy
+from nav2_msgs.action import NavigateToPose
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from std_msgs.msg import String
+from yard_msgs.msg import Shed
+
+
+class Pilot(Node):
+    def __init__(self):
+        super().__init__("pilot")
+        self.goals = ActionClient(self, NavigateToPose, "navigate_to_pose")
+        self.words = self.create_publisher(String, "words", 1)
+        self.sheds = self.create_publisher(Shed, "sheds", 1)
+
+
+if __name__ == "__main__":
+    rclpy.init()
+    Pilot()
+"""
+
+
+def test_what_nodes_on_both_cannot_talk_about_comes_first(say, ws):
+    files = {
+        "pilot/pilot.py": PILOT,
+        "pilot/package.xml": FILES["package.xml"].replace("eye", "pilot"),
+        "pilot/CMakeLists.txt": "project(pilot)\nfind_package(ament_cmake REQUIRED)\n"
+        "install(PROGRAMS pilot.py DESTINATION lib/pilot)\nament_package()\n",
+        "yard_msgs/package.xml": FILES["package.xml"].replace("eye", "yard_msgs"),
+        # A marker has another field since humble; a message of the workspace holds one.
+        "yard_msgs/msg/Shed.msg": "string name\nvisualization_msgs/Marker[] markers\n",
+    }
+    for name, text in files.items():
+        path = ws / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    def tell(*targets: str) -> dict[tuple[str, str], dict]:
+        found = json.loads(say("env", "diff", *targets, ws, "--format", "json").out)["wire"]
+        return {(each["kind"], each["name"]): each for each in found}
+
+    told = tell("humble", "jazzy")
+    assert list(told) == [("action", "/navigate_to_pose")]
+    assert told["action", "/navigate_to_pose"]["places"] == ["pilot/pilot.py:12"]
+    assert say("env", "diff", "humble", "jazzy", ws).out.splitlines()[2] == "what nodes on both cannot talk about"
+    told = tell("foxy", "humble")
+    assert told["topic", "/sheds"]["type"] == "yard_msgs/Shed"
+    assert told["topic", "/sheds"]["why"].startswith("in `markers`: only humble has the field")
+    assert ("topic", "/words") not in told
+    assert ("middleware", "") in tell("galactic", "humble")

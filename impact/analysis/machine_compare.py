@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 from ..config import load
 from ..model.build_order import build_order
+from ..model.flow.wire import WireDifference, list_wire_differences
+from ..model.flow.workspace import get_flow
 from ..model.view import TargetView
 from ..model.workspace import Package
 from ..targets.capture import MachineDifference, find_differences
@@ -40,7 +42,7 @@ class Machines(NamedTuple):
     machine: distro, date and platform. versions: of packages and libraries; beside a workspace those alone that it
     uses. others: how many more there are. report: the workspace judged on both; None without one, as is all that
     follows. harms: errors and warnings that hold on one of them alone, the gravest first; in each, the targets of the
-    findings name the machine. both: how many hold on both. known: name that the workspace goes by.
+    findings name the machine. both: how many hold on both. wire: what nodes of both cannot talk about.
     """
 
     first: ReportedTarget
@@ -51,6 +53,7 @@ class Machines(NamedTuple):
     report: Report | None = None
     harms: tuple[UpgradeItem, ...] = ()
     both: int = 0
+    wire: tuple[WireDifference, ...] = ()
 
 
 def compare_machines(first: str, second: str, path: Path | None = None) -> Machines:
@@ -74,6 +77,9 @@ def _compare_in_workspace(path: Path, first: str, second: str) -> Machines:
         order = build_order(opened.views[0])
         found = find_differences(opened.targets[0].target, opened.targets[1].target)
         uses = _collect_uses(opened.views)
+        flow, targets = get_flow(opened.workspace), [each.target for each in opened.targets]
+        same = targets[0].ros == targets[1].ros
+        wire = list_wire_differences(flow.system, opened.workspace, *targets) if same else []
     versions = [
         Used(each, uses[each.name])
         for each in found
@@ -93,6 +99,7 @@ def _compare_in_workspace(path: Path, first: str, second: str) -> Machines:
         report,
         tuple(sorted(harms, key=lambda item: -rank(item.severity))),
         len(alone.both),
+        tuple(wire),
     )
 
 

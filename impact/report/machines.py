@@ -27,12 +27,24 @@ def render_text(found: Machines, style: Style) -> str:
     """What differs, for people: what breaks on one of them alone, then versions, then what is only counted."""
     lines = [f"compared: {describe_target(found.first)} and {describe_target(found.second)}"]
     lines += [f"  {escape(target.name)}: {escape(note)}" for target in _get_targets(found) for note in target.notes]
+    if found.wire:
+        lines += ["", *_render_wire(found, style)]
     if found.report is not None:
         for item in found.harms:
             lines += ["", *render_item(found.report, item, style)]
     if found.versions:
         lines += ["", *_render_versions(found, style)]
     return "\n".join([*lines, "", _format_summary(found, style)]) + "\n"
+
+
+def _render_wire(found: Machines, style: Style) -> Iterator[str]:
+    """What nodes on both machines cannot talk about."""
+    yield paint(style, "bold", "what nodes on both cannot talk about")
+    for each in found.wire:
+        head = f"  {each.kind} {escape(each.name)}  {escape(each.type)}".rstrip()
+        pieces = [LinePart(head), LinePart(escape(each.why))]
+        pieces += [LinePart("", path=f"{escape(path)}:{line}") for path, line in each.places[:1]]
+        yield from lay_out(pieces, style, 0, 4)
 
 
 def _get_targets(found: Machines) -> tuple[ReportedTarget, ReportedTarget]:
@@ -116,6 +128,9 @@ def render_json(found: Machines, version: str) -> str:
         ],
     }
     if found.report is not None:
+        data["wire"] = [
+            each._asdict() | {"places": [f"{path}:{line}" for path, line in each.places]} for each in found.wire
+        ]
         data["others"] = found.others
         data["both"] = found.both
         data["harms"] = [

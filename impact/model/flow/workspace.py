@@ -56,6 +56,12 @@ class WorkspaceFlow:
         return found
 
     @cached_property
+    def system(self) -> Graph:
+        """The graph of what its launch files start, and of the programs that none of them does."""
+        launches = self.launches
+        return merge_launches(self.graph, launches)
+
+    @cached_property
     def callers(self) -> Callers:
         """Who calls whom in its code, and what triggers it."""
         return recall(self._store, "callers", _make_key(self._workspace), Callers, lambda: build_callers(self.code))
