@@ -15,6 +15,7 @@ from ....edges.groups import group_pairs
 from ...facts.interface import PRIMITIVES, TIMES, Interface, Section
 from ...targets.distro.distro import DistroTarget
 from ...targets.surface.store import load_shipped
+from ...targets.version import find_newest_up_to, parse
 from ..workspace import Workspace
 from .graph import Graph
 from .select import get_kind
@@ -103,9 +104,11 @@ class _Types:
         if version is None:
             return f"{package} is not released there" if target.was_ever_released(package) else None
         history = load_shipped().find_history(package, target.ros)
-        if history is None or version not in history.versions:
+        stored = find_newest_up_to(version, history.versions) if history is not None else None
+        # Interfaces stay the same from patch to patch.
+        if history is None or stored is None or parse(stored)[:2] != parse(version)[:2]:
             return None
-        interfaces = history.load_interfaces(version)
+        interfaces = history.load_interfaces(stored)
         return interfaces.get(f"{kind}/{name}") or (f"{package} {version}" if interfaces else None)
 
     def _compare_sections(self, one: Section, other: Section, ros1: bool) -> Iterator[str]:
