@@ -23,6 +23,7 @@ from .graph import Graph
 from .join import Join
 from .launches import Launch
 from .nodes import BuiltPackage, asks_for_name, find_entry_point
+from .plugins import list_plugin_loads, assign_plugins
 from .system import merge_launches
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
@@ -59,7 +60,7 @@ class WorkspaceFlow:
     def system(self) -> Graph:
         """The graph of what its launch files start, and of the programs that none of them does."""
         launches = self.launches
-        return merge_launches(self.graph, launches)
+        return assign_plugins(merge_launches(self.graph, launches), list_plugin_loads(self._workspace))
 
     @cached_property
     def callers(self) -> Callers:
@@ -220,12 +221,9 @@ def make_graph(
         code = get_flow(workspace).code
         return code.build(unread=_list_unread(code))
 
-    launches: tuple[Launch, ...] = ()
-    if not code_alone:
-        flow = get_flow(workspace)
-        flow.jobs = jobs
-        launches = flow.launches
-    graph = merge_launches(recall(store, "graph", _make_key(workspace), Graph, make), launches)
+    flow = get_flow(workspace)
+    flow.jobs = jobs
+    graph = recall(store, "graph", _make_key(workspace), Graph, make) if code_alone else flow.system
     return msgspec.structs.replace(graph, root=root, rev=rev)
 
 

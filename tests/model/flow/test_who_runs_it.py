@@ -358,3 +358,59 @@ def test_defaults_stand_where_a_function_is_declared():
         """,
     }
     assert ends(graph(files, 1), "publisher") == {("car/servo", "/arm/out", "std_msgs/String")}
+
+
+def test_plugins_are_in_the_nodes_that_parameter_files_load_them_into(tmp_path):
+    code = """
+        #include <rclcpp/rclcpp.hpp>
+        #include <std_msgs/msg/string.hpp>
+        #include <pluginlib/class_list_macros.hpp>
+        namespace car {
+        class %s : public Base {
+          void configure() {
+            auto node = get_node();
+            one_ = node->create_publisher<std_msgs::msg::String>("~/state", 1);
+            two_ = node->create_publisher<std_msgs::msg::String>("/whole", 1);
+            three_ = node->create_publisher<std_msgs::msg::String>("plain", 1);
+          }
+          rclcpp::Publisher<std_msgs::msg::String>::SharedPtr one_, two_, three_;
+        };
+        }
+        PLUGINLIB_EXPORT_CLASS(car::%s, Base)
+    """
+    plugins = """
+        <library path="car"><class name="car/Wheel" type="car::Wheel" base_class_type="Base"/>
+        <class name="car::Layer" type="car::Layer" base_class_type="Base"/></library>
+    """
+    parameters = """
+        left/controller_manager:
+          ros__parameters:
+            front_wheel: {type: car/Wheel}
+        map/map:
+          ros__parameters:
+            layers: ["sky"]
+            sky: {plugin: "car::Layer"}
+    """
+    cmake = """
+        project(car)
+        find_package(ament_cmake REQUIRED)
+        add_library(car SHARED wheel.cpp layer.cpp)
+        pluginlib_export_plugin_description_file(base plugins.xml)
+        ament_package()
+    """
+    files = {
+        "car/package.xml": manifest("car", "ament_cmake"), "car/CMakeLists.txt": cmake, "car/plugins.xml": plugins,
+        "car/wheel.cpp": code % ("Wheel", "Wheel"), "car/layer.cpp": code % ("Layer", "Layer"),
+        "car/config/a.yaml": parameters,
+    }  # fmt: skip
+    found = graph_on_disk(tmp_path, files)
+    assert {node.id: node.started for node in found.nodes} == {
+        "/left/front_wheel": "car/config/a.yaml:3", "/map/map": "car/config/a.yaml:7"
+    }  # fmt: skip
+    assert {(node, topic) for node, topic, _ in ends(found, "publisher")} == {
+        ("/left/front_wheel", "/left/front_wheel/state"), ("/left/front_wheel", "/whole"),
+        ("/left/front_wheel", "/left/plain"),
+        ("/map/map", "/map/map/state"), ("/map/map", "/whole"), ("/map/map", "/map/plain"),
+    }  # fmt: skip
+    del files["car/config/a.yaml"]
+    assert {node.name for node in graph_on_disk(tmp_path / "alone", files).nodes} == {""}

@@ -1,0 +1,110 @@
+"""Plugins in the nodes that load them, as parameter files say.
+
+A parameter `<name>.plugin` (navigation2, MoveIt, costmaps) makes the node that has it load a class into itself. A
+parameter `<name>.type` of a controller manager makes it load a controller, which is a node of its own of that name, in
+the manager's namespace. Source: nav2's "Configuration Guide", ros2_control's "Controller Manager".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from msgspec import structs
+
+from ...facts.launch.parameter_files import ParameterFile
+from ..workspace import Workspace
+from .code import get_tail
+from .graph import Graph, Node
+from .names import get_namespace, is_open, join_name, normalise
+
+_MANAGER = "controller_manager"
+
+
+class PluginLoad(NamedTuple):
+    """A plugin in a node. node: the full name of the node that it is, or is in; place: `path:line` of the parameter."""
+
+    node: str
+    place: str
+
+
+def list_plugin_loads(workspace: Workspace) -> dict[str, tuple[PluginLoad, ...]]:
+    """Classes of the workspace's plugins, without a leading `::`, to the nodes that parameter files of ROS 2 in it load
+    them into."""
+    classes: dict[str, str] = {}
+    for package in workspace:
+        for _, plugin in package.linked.plugins:
+            if plugin.type:
+                classes[plugin.name or plugin.type] = classes[plugin.type] = plugin.type.removeprefix("::")
+    if not classes or workspace.ros != 2:
+        return {}
+    paths = [path for package in workspace for path in package.linked.files if path.endswith((".yaml", ".yml"))]
+    found: dict[str, dict[PluginLoad, None]] = {}
+    for path, file in workspace.extraction.look(paths, "flow_parameters").items():
+        for name, load in _list_loads(path, file):
+            if name in classes:
+                found.setdefault(classes[name], {})[load] = None
+    return {name: tuple(loads) for name, loads in found.items()}
+
+
+def _list_loads(path: str, file: ParameterFile | None) -> Iterator[tuple[str, PluginLoad]]:
+    """What the parameters of a file load, by the name that is given."""
+    for entry in file.entries if file is not None else ():
+        if "ros__parameters" not in entry.path or not isinstance(entry.value, str):
+            continue
+        split = entry.path.index("ros__parameters")
+        node, (*inner, last) = normalise("/" + "/".join(entry.path[:split])), entry.path[split + 1 :] or ("",)
+        if not inner or last not in ("plugin", "type") or "*" in node:
+            continue
+        controller = last == "type" and get_tail(node.replace("/", "::")) == _MANAGER
+        if controller or last == "plugin":
+            full = join_name(get_namespace(node), inner[-1]) if controller else node
+            yield entry.value, PluginLoad(full, f"{path}:{entry.line}")
+
+
+def assign_plugins(graph: Graph, loads: Mapping[str, Iterable[PluginLoad]]) -> Graph:
+    """A graph with each of its plugins in the nodes that load it, by class; those that nothing loads stay."""
+    placed = {
+        node.id: (node, tuple(loads.get(node.plugin.removeprefix("::"), ())))
+        for node in graph.nodes
+        if node.kind == "plugin" and not node.name
+    }
+    placed = {id_: row for id_, row in placed.items() if row[1]}
+    if not placed:
+        return graph
+
+    def replace(rows: Iterable[Any]) -> tuple[Any, ...]:
+        return tuple(dict.fromkeys(one for row in rows for one in _assign(row, placed)))
+
+    known = {node.id: node for node in graph.nodes if node.id not in placed}
+    for node, those in placed.values():
+        for load in those:
+            known.setdefault(load.node, structs.replace(node, id=load.node, name=load.node, started=load.place))
+    return structs.replace(
+        graph,
+        nodes=tuple(known[id_] for id_ in sorted(known)),
+        endpoints=replace(graph.endpoints),
+        publishes=replace(graph.publishes),
+        timers=replace(graph.timers),
+        parameters=replace(graph.parameters),
+    )
+
+
+def _assign(row: Any, placed: Mapping[str, tuple[Node, tuple[PluginLoad, ...]]]) -> Iterator[Any]:
+    """An entry of the graph as it is in each node that loads the plugin that it is of."""
+    if row.node not in placed:
+        yield row
+        return
+    node, loads = placed[row.node]
+    own = f"/<{node.executable or get_tail(node.plugin)}>"
+    for load in loads:
+        changes: dict[str, Any] = {"node": load.node}
+        topic = getattr(row, "topic", "")
+        if topic:
+            private = topic == own or topic.startswith(f"{own}/")
+            absolute = getattr(row, "written", '"/').startswith('"/')
+            inside = load.node + topic[len(own) :] if private else topic
+            changes["topic"] = inside if private or absolute else join_name(get_namespace(load.node), topic[1:])
+        if getattr(row, "how", "") == "partly" and not is_open(changes.get("topic", "")):
+            changes["how"] = "launch"
+        yield structs.replace(row, **changes)
