@@ -68,6 +68,7 @@ EXTRACTORS = [
     ("impact.facts.manifest", {"manifest", "manifest_variant"}),
     ("impact.facts.cmake", {"cmake"}),
     ("impact.facts.launch.python_calls", {"flow_launch_xml", "flow_launch_yaml", "flow_launch_python"}),
+    ("impact.facts.nodl", {"flow_nodl"}),
     ("databuild.extract.cpp_enums", {cpp.__name__}),
     ("databuild.extract.python", {python.__name__}),
     ("databuild.extract.parameters", PARAMETERS),

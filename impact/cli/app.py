@@ -216,8 +216,14 @@ def graph(
     rev: _Revision = "",
     base: list[str] = _make_option("Mark what was added, removed and changed since this revision, as for check."),
     follow_links: _FollowLinks = False,
-    format: str = _make_option("One of text, json, graphml, dot, mermaid, html.", "--format", "-f", default="text"),
-    output: Path | None = _make_option("Write the graph to this file.", "--output", "-o"),
+    format: str = _make_option(
+        "One of text, json, graphml, dot, mermaid, html, nodl (the interface of each node, as .nodl.yaml).",
+        "--format", "-f", default="text",
+    ),
+    output: Path | None = _make_option(
+        "Write the graph to this file; with nodl, PACKAGE/PROGRAM.nodl.yaml for each node to this folder.",
+        "--output", "-o",
+    ),
     all: bool = _make_option("Also show hidden names and everything that was not resolved.", "--all", default=False),
     schema: bool = _make_schema_option("graph.json"),
     jobs: _Jobs = None,

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import wraps
 from pathlib import Path
@@ -17,25 +17,30 @@ READ_SO_FAR = "interrupted; what was read is kept, and the next run continues fr
 PARSED_SO_FAR = "interrupted; what was parsed is kept, and the next run continues from there"
 
 
+Answer = str | Mapping[str, str]
+"""A text, or texts by the path of a file for each."""
+
+
 def make_command(
-    *formats: str, about: str = "path"
-) -> Callable[[Callable[..., str | tuple[str, int]]], Callable[..., int]]:
+    *formats: str, about: str = "path", folders: Sequence[str] = ()
+) -> Callable[[Callable[..., Answer | tuple[Answer, int]]], Callable[..., int]]:
     """Makes a command of a function that gives its answer, or the answer and the exit status: the answer is delivered,
     an error told in one line. The command returns the exit status: 0 or what is given, 2 (failed), 130 (interrupted).
 
-    formats: those of the command. about: the argument that an error without a file of its own is about.
+    formats: those of the command. about: the argument that an error without a file of its own is about. folders: those
+    formats whose answer is a file for each of several things, so that --output is a folder.
     """
 
-    def wrap_answer(answer: Callable[..., str | tuple[str, int]]) -> Callable[..., int]:
+    def wrap_answer(answer: Callable[..., Answer | tuple[Answer, int]]) -> Callable[..., int]:
         @wraps(answer)
         def run_answer(**given: Any) -> int:
             format, output, path = given.get("format", "text"), given.get("output"), given.get(about) or ""
 
             def write_answer() -> int:
                 validate_choice("--format", format, formats or ("text",))
-                check_output(output, path)
+                check_output(output / "a" if output is not None and format in folders else output, path)
                 found = answer(**given)
-                text, status = (found, 0) if isinstance(found, str) else found
+                text, status = found if isinstance(found, tuple) else (found, 0)
                 deliver(text, output, format, path)
                 return status
 
@@ -57,12 +62,14 @@ def say_notes(notes: Iterable[str]) -> None:
         say(f"rosimpact: {note}")
 
 
-def deliver(text: str, output: Path | None, format: str, path: object = "") -> None:
-    """Writes a text to the file asked for, or to standard output. Raises UserError when that cannot be written."""
+def deliver(text: Answer, output: Path | None, format: str, path: object = "") -> None:
+    """Writes a text to the file asked for, several to files in the folder asked for, or all to standard output. Raises
+    UserError when that cannot be written."""
     if output is None:
-        print_answer(text, format)
-    else:
-        save(output, text, path)
+        print_answer(text if isinstance(text, str) else "".join(f"---\n{one}" for one in text.values()), format)
+        return
+    for file, one in ((output, text),) if isinstance(text, str) else ((output / name, t) for name, t in text.items()):
+        save(file, one, path)
 
 
 def save(file: Path, text: str, path: object) -> None:

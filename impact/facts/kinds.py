@@ -44,6 +44,7 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("python.flow", "FlowFile", ("flow_python",)),
     ("launch.flow", "LaunchFile", ("flow_launch_xml", "flow_launch_yaml", "flow_launch_python")),
     ("launch.parameter_files", "ParameterFile", ("flow_parameters",)),
+    ("nodl", "NodlFile", ("flow_nodl",)),
     ("colcon", "ColconFile",
      ("colcon_cmake", "colcon_setup_py", "colcon_setup_cfg", "colcon_pyproject", "colcon_settings")),
     ("distros", "ContainerFile", ("dockerfile", "ci")),
@@ -155,7 +156,7 @@ def find_size_limit(kind: str) -> int:
 
 # Names of limits, where the extractor's name does not say it.
 _BUDGETS = {
-    **dict.fromkeys(("launch_yaml", "params", "flow_launch_yaml", "flow_parameters"), "parameters"),
+    **dict.fromkeys(("launch_yaml", "params", "flow_launch_yaml", "flow_parameters", "flow_nodl"), "parameters"),
     "flow_launch_xml": "launch",
     **dict.fromkeys(("setup_cfg", "pyproject", "colcon_setup_cfg", "colcon_pyproject", "colcon_settings"), "settings"),
     **dict.fromkeys(("setup_py", "colcon_setup_py"), "python"),

@@ -68,7 +68,8 @@ class Endpoint(msgspec.Struct, frozen=True):
     """One side of a topic, service or action.
 
     node: the id of its Node, empty when no node is known to run it. topic: the full name (also of a service or action),
-    empty when it is not known. written: the name as the source has it. type: `package/Name`, empty when not known, `*`
+    empty when it is not known. written: the name as the source has it; code_name: the name that the code gives to ROS,
+    before namespaces and remappings, empty where that is not known. type: `package/Name`, empty when not known, `*`
     for any. function: in which it is made. variable: what it is kept in. implied: made by the framework or a helper of
     it (a transform listener, a diagnostic updater), not by a call that names the topic. only_if: on what it depends
     whether the node makes it: the condition of the preprocessor under which the code is compiled, a flag that is down
@@ -91,6 +92,7 @@ class Endpoint(msgspec.Struct, frozen=True):
     implied: bool = False
     framework: str = ""
     only_if: str = ""
+    code_name: str = ""
 
 
 class GuardAt(msgspec.Struct, frozen=True):

@@ -456,7 +456,7 @@ class Join:
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
-            use.row.framework, only_if,
+            use.row.framework, only_if, _make_code_name(site, value.text or "") if topic else "",
         )  # fmt: skip
 
     def _describe_condition(self, use: FrameworkCall, owner: Owner) -> str:
@@ -506,10 +506,7 @@ class Join:
                 if instance is not None and name == resolve_ros1_name(text, full):
                     name = instance.remap_name(name, 1)
             else:
-                if text.startswith("~") and not text.startswith("~/") and len(text) > 1:
-                    text = f"~/{text[1:]}"
-                if site.prefix == "~" and text[:1] not in ("/", "~"):
-                    text = f"~/{text}"
+                text = _make_code_name(site, text)
                 plain = resolve_ros2_name(text, own, namespace or "/")
                 kind = "topic" if site.role in ("publisher", "subscriber") else "service"
                 name = plain if instance is None else instance.remap_name(text, 2, kind)
@@ -627,6 +624,14 @@ def _select_types(site: Site, owner: Owner) -> tuple[str, ...]:
         here = [one for one in here if one.cls in owner.classes or one.fn in owner.functions]
     found = tuple(dict.fromkeys(one.type for one in here)) or ("",)
     return found if len(found) == 1 or len(site.names) < 2 else ("",)
+
+
+def _make_code_name(site: Site, text: str) -> str:
+    """The name that an endpoint's code gives to ROS: private where its node handle is."""
+    if text.startswith("~") and not text.startswith("~/") and len(text) > 1:
+        return f"~/{text[1:]}"
+    private = site.prefix == "~" and text and text[0] not in "/~"
+    return f"~/{text}" if private else text
 
 
 def _get_node(owner: Owner) -> Node | None:

@@ -43,17 +43,8 @@ def select_graph(
     """
     names = {endpoint.topic for endpoint in graph.endpoints} | {publish.topic for publish in graph.publishes}
     asked = bool(nodes or topics or packages or around)
-    kept_nodes = {node.id for node in graph.nodes}
+    kept_nodes = _select_nodes(graph, nodes, packages)
     kept_names = set(names)
-    if packages:
-        kept_nodes &= {node.id for node in graph.nodes if _fits(node.package, packages, ("",))}
-        if not kept_nodes:
-            raise NothingSelected(_explain("package with nodes", packages, [node.package for node in graph.nodes]))
-    if nodes:
-        named = _select_named(graph.nodes, nodes)
-        if not named:
-            raise NothingSelected(_explain("node", nodes, _list_names(graph.nodes)))
-        kept_nodes &= named
     if topics:
         fitting = {name for name in names if name and _fits(name, topics, ("", "/"))}
         if not fitting:
@@ -79,6 +70,28 @@ def select_graph(
         kept_nodes |= {""}
         kept_names |= {""}
     return Selection(extract_part(graph, kept_nodes, kept_names), len(hidden), asked)
+
+
+def select_whole_nodes(graph: Graph, *, nodes: Sequence[str] = (), packages: Sequence[str] = ()) -> Graph:
+    """The nodes of a graph that fit what is asked for, as for select_graph(), each with all that it has. Raises
+    NothingSelected."""
+    names = {each.topic for each in (*graph.endpoints, *graph.publishes)}
+    return extract_part(graph, _select_nodes(graph, nodes, packages), names)
+
+
+def _select_nodes(graph: Graph, nodes: Sequence[str], packages: Sequence[str]) -> set[str]:
+    """The ids of the nodes that have a name and a package that is asked for. Raises NothingSelected."""
+    kept = {node.id for node in graph.nodes}
+    if packages:
+        kept &= {node.id for node in graph.nodes if _fits(node.package, packages, ("",))}
+        if not kept:
+            raise NothingSelected(_explain("package with nodes", packages, [node.package for node in graph.nodes]))
+    if nodes:
+        named = _select_named(graph.nodes, nodes)
+        if not named:
+            raise NothingSelected(_explain("node", nodes, _list_names(graph.nodes)))
+        kept &= named
+    return kept
 
 
 def check_names(

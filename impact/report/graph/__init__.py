@@ -1,11 +1,11 @@
-"""The message-flow graph drawn: text, JSON, GraphML, DOT, Mermaid and a page."""
+"""The message-flow graph drawn: text, JSON, GraphML, DOT, Mermaid and a page; the interfaces of its nodes as NoDL."""
 
 from collections.abc import Sequence
 from importlib import import_module
 from typing import Any
 
 from ...model.flow.graph import Graph
-from ...model.flow.select import NothingSelected, Selection, extract_part, select_graph
+from ...model.flow.select import NothingSelected, Selection, extract_part, select_graph, select_whole_nodes
 from ..style import Style
 from .text import WIDE
 from .text import render as as_text
@@ -28,6 +28,13 @@ def draw(
     if format == "text":
         return as_text(part, before, everything, style)
     return import_module(f".{format}", __name__).render(part, before)
+
+
+def draw_nodes(graph: Graph, *, nodes: Sequence[str] = (), packages: Sequence[str] = ()) -> dict[str, str]:
+    """A NoDL document for each node asked for, all when none is, by the path of a file for it. Raises UserError."""
+    from .nodl import make_documents
+
+    return make_documents(select_whole_nodes(graph, nodes=nodes, packages=packages))
 
 
 def _select_compared(graph: Graph, base: Graph, asked: dict[str, Any]) -> tuple[Selection, Graph]:
