@@ -30,6 +30,26 @@ def draw(
     return import_module(f".{format}", __name__).render(part, before)
 
 
+def list_unknown_names(graph: Graph, **asked: Any) -> list[str]:
+    """`path:line: what is not known` of each call whose name or type is not known, or is known in part only; sorted.
+    asked: as for draw(); then only of the files of the part that is asked for."""
+    selected = select_graph(graph, everything=True, **asked)
+    part = selected.graph
+    paths = {each.path for each in (*part.endpoints, *part.publishes, *part.parameters)}
+    lost = [
+        (one.path, one.line, f"{one.what}{f' `{one.written}`' * bool(one.written)}: {one.reason}")
+        for one in graph.coverage.unresolved
+        if one.what != "started node" and not one.what.endswith(" callback")
+        if not selected.asked or one.path in paths
+    ]
+    lost += [
+        (one.path, one.line, f"{one.role} name `{one.written}`: known in part only, as `{one.topic}`")
+        for one in part.endpoints
+        if one.how == "partly"
+    ]
+    return [f"{path}:{line}: {text}" for path, line, text in sorted(set(lost))]
+
+
 def _select_compared(graph: Graph, base: Graph, asked: dict[str, Any]) -> tuple[Selection, Graph]:
     """Parts of a graph and of its base to be compared: what was asked for in either, so that nothing is new or gone
     because the question alone found it on one side. Raises NothingSelected where it finds nothing in both."""
