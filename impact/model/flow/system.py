@@ -30,6 +30,8 @@ def join_launched(parts: Sequence[Launched]) -> Launched:
     return Launched(
         tuple(started for part in parts for started in part.started), server, tuple(files),
         frozenset(name for part in parts for name in part.arguments), sum(part.actions for part in parts),
+        tuple(dict.fromkeys(file for part in parts for file in part.parameter_files)),
+        tuple(started for part in parts for started in part.outside),
     )  # fmt: skip
 
 

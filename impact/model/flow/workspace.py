@@ -28,7 +28,7 @@ from .system import ChosenLaunch, join_launched, merge_launches
 _LIBRARIES = frozenset(("library", "module", "interface"))
 _BUILD = frozenset((
     "manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action",
-    "launch_xml", "launch_yaml", "params",
+    "launch_xml", "launch_yaml", "params", "xacro",
 ))  # fmt: skip
 
 Progress = Callable[[int, int], None]
@@ -54,6 +54,11 @@ class WorkspaceFlow:
         if "code" in self.__dict__:
             _ = self.callers  # remembered beside the graph, so that they are not what needs the code joined anew
         return found
+
+    @cached_property
+    def system(self) -> Graph:
+        """The graph of the system, as its launch files start it."""
+        return make_graph(self._workspace, self._store, jobs=self.jobs)
 
     @cached_property
     def callers(self) -> Callers:
