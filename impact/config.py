@@ -26,6 +26,14 @@ class PathSetting(NamedTuple):
     severity: dict[str, str] = {}  # noqa: RUF012  NamedTuple default, never changed
 
 
+class SystemSetting(NamedTuple):
+    """A system: the launch files that it is started with, each as `graph --launch` takes it, and arguments that are for
+    all of them."""
+
+    launch: tuple[str, ...]
+    arguments: dict[str, str]
+
+
 class Config(NamedTuple):
     """What a rosimpact.toml says. path is None when there is none. trusted: the user named the file, and so it may name
     files outside of the workspace whose content is shown. talks: targets whose nodes talk to each other."""
@@ -45,10 +53,11 @@ class Config(NamedTuple):
     private: tuple[str, ...] = ()
     installed: tuple[str, ...] = ()
     talks: tuple[str, ...] = ()
+    systems: dict[str, SystemSetting] = {}  # noqa: RUF012
     trusted: bool = False
 
 
-_TABLES = {"targets", "workspace", "check", "paths", "system"}
+_TABLES = {"targets", "workspace", "check", "paths", "system", "systems"}
 _FAIL_ON = ("error", "warning", "note", "never")
 
 
@@ -136,6 +145,7 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
         private=_read_list(path, workspace, "private"),
         installed=_read_list(path, workspace, "installed"),
         talks=_read_list(path, system, "talks"),
+        systems={name: _read_system(path, name, entry) for name, entry in _read_table(path, tables, "systems").items()},
         trusted=trusted,
     )
 
@@ -148,6 +158,18 @@ def _read_entry(path: Path, pattern: str, entry: Any) -> PathSetting:
     return PathSetting(
         pattern, _read_list(path, entry, "ignore"), _read_list(path, entry, "select"), _read_severity(path, name, entry)
     )
+
+
+def _read_system(path: Path, name: str, entry: Any) -> SystemSetting:
+    name = f"systems.{name}"
+    if not isinstance(entry, dict) or not _read_list(path, entry, "launch"):
+        raise ConfigError(f'{path}: [{name}] needs `launch`, a list of files, such as ["base/launch/a.launch.py"]')
+    _check_keys(path, name, entry, {"launch", "arguments"})
+    given = entry.get("arguments", {})
+    if not isinstance(given, dict) or not all(isinstance(value, str | bool | int | float) for value in given.values()):
+        raise ConfigError(f"{path}: [{name}] `arguments` must be a table of values, such as {{ sim = true }}")
+    texts = {key: str(value).lower() if isinstance(value, bool) else str(value) for key, value in given.items()}
+    return SystemSetting(_read_list(path, entry, "launch"), texts)
 
 
 def _read_severity(path: Path, name: str, table: dict[str, Any]) -> dict[str, str]:

@@ -160,6 +160,90 @@ def test_an_argument_that_the_launch_file_does_not_declare_is_told(ws):
     assert "no such argument" not in run(ws, "--launch", "talk.launch.xml", "--set", "where:=rear")[2]
 
 
+TWO = ["--launch", "talk/launch/talk.launch.xml where:=rear", "--launch", "hear.launch.xml"]
+
+
+def write_second_launch(ws: Path) -> None:
+    (ws / "src/hear/launch").mkdir()
+    (ws / "src/hear/launch/hear.launch.xml").write_text(
+        '<launch><arg name="to" default="rear/speech"/><node pkg="hear" exec="hear_node" name="second">'
+        '<remap from="chatter" to="$(var to)"/></node></launch>'
+    )
+
+
+def test_several_launch_files_start_one_system(ws):
+    write_second_launch(ws)
+    both = {("/rear/speaker", "publisher", "/rear/speech"), ("/listener", "subscriber", "/front/speech")}
+    assert edges(run(ws, *TWO, "-f", "json")[1]) == both | {("/second", "subscriber", "/rear/speech")}
+    found = json.loads(run(ws, *TWO, "--set", "to:=a, b", "-f", "json")[1])
+    assert found["coverage"]["calls"] == json.loads(run(ws, "-f", "json")[1])["coverage"]["calls"]
+    assert edges(run(ws, *TWO, "--set", "to:=other", "-f", "json")[1]) == both | {("/second", "subscriber", "/other")}
+
+
+def test_one_node_that_two_launch_files_start_is_shown_once(ws):
+    found = json.loads(run(ws, *["--launch", "talk.launch.xml"] * 2, "-f", "json")[1])
+    assert [node["id"] for node in found["nodes"]] == ["/front/speaker", "/listener"]
+
+
+def test_a_system_is_named_in_the_configuration(ws):
+    write_second_launch(ws)
+    (ws / "rosimpact.toml").write_text(
+        '[systems.robot]\nlaunch = ["talk/launch/talk.launch.xml where:=rear", "hear.launch.xml"]\n'
+        'arguments = { to = "other", where = "top" }\n'
+    )
+    code, out, err = run(ws, "--system", "robot", "-f", "json")
+    assert (code, err) == (0, "")
+    assert edges(out) == {
+        ("/rear/speaker", "publisher", "/rear/speech"),
+        ("/listener", "subscriber", "/front/speech"),
+        ("/second", "subscriber", "/other"),
+    }
+    _, out, _ = run(ws, "--system", "robot", "--set", "to:=third", "-f", "json")
+    assert ("/second", "subscriber", "/third") in edges(out)
+
+
+SYSTEMS = {
+    "unknown": ('launch = ["talk.launch.xml"]', "other", "has no [systems.other]; known are `robot`"),
+    "no file": ('launch = ["none.launch"]', "robot", "--system robot: none.launch: no such file in the workspace"),
+    "no launch files": ("", "robot", "[systems.robot] needs `launch`"),
+    "another key": ('launch = ["talk.launch.xml"]\nlunch = 1', "robot", "[systems.robot] has no `lunch`"),
+    "arguments in a list": ('launch = ["talk.launch.xml"]\narguments = []', "robot", "`arguments` must be a table"),
+}
+
+
+@pytest.mark.parametrize(("table", "asked", "said"), SYSTEMS.values(), ids=SYSTEMS)
+def test_a_system_that_cannot_be_shown_is_told_in_a_line(ws, table, asked, said):
+    (ws / "rosimpact.toml").write_text(f"[systems.robot]\n{table}\n")
+    code, out, err = run(ws, "--system", asked)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert said in err
+
+
+def test_strict_fails_where_a_name_is_not_known(ws):
+    assert run(ws, "--strict")[::2] == (0, "")
+    source = ws / "src/hear/hear/node.py"
+    whole = source.read_text()
+    source.write_text(whole.replace('"chatter"', "open('names').read()"))
+    code, out, err = run(ws, "--strict")
+    assert (code, "2 nodes" in out) == (1, True)
+    assert "src/hear/hear/node.py:8: subscriber name" in err
+    assert "1 API call whose name or type is not fully known" in err
+    assert run(ws, "--strict", "--package", "talk")[0] == 0
+    source.write_text(whole)
+    launch = ws / "src/talk/launch/talk.launch.xml"
+    launch.write_text(launch.read_text().replace('default="front"', ""))
+    code, _, err = run(ws, "--strict")
+    assert code == 1
+    assert "known in part only, as `/<where>/speech`" in err
+    assert run(ws, "--strict", "--launch", "talk.launch.xml where:=rear")[0] == 0
+
+
+def test_strict_does_not_ask_about_nodes_of_other_packages(ws):
+    launch = ws / "src/talk/launch/talk.launch.xml"
+    launch.write_text(launch.read_text().replace("</launch>", '<node pkg="elsewhere" exec="x"/></launch>'))
+    assert run(ws, "--strict", "--launch", "talk.launch.xml")[0] == 0
+
+
 def test_beside_a_base(ws):
     def git(*arguments: str) -> None:
         settings = ["-c", "user.name=a", "-c", "user.email=a@b.org", "-c", "init.defaultBranch=main"]
@@ -190,6 +274,8 @@ def test_an_unchanged_workspace_is_not_joined_again(ws, monkeypatch):
         (["--format", "png"], "--format png: unknown"),
         (["--launch", "none.launch"], "--launch none.launch: no such file"),
         (["--set", "a:=1"], "name it with --launch"),
+        (["--system", "robot"], "rosimpact.toml has no [systems.robot]; add it with its launch files"),
+        (["--system", "robot", "--launch", "talk.launch.xml"], "leave out --system or --launch"),
         (["--launch", "talk.launch.xml", "--set", "a"], "write NAME:=VALUE"),
         (["--node", "talkr"], "`talkr`: no node of this name"),
         (["--base", "nowhere"], "no base to compare with"),

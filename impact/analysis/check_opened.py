@@ -44,7 +44,7 @@ from .session import (
 if TYPE_CHECKING:
     from ..model.install_space import InstallSpace
     from ..targets.machine.shared_libraries import SharedLibraries
-    from .downstream import Impact
+    from .effects import Impact
 
 
 def check_opened(

@@ -1,12 +1,13 @@
-"""What a change reaches: changed messages, topics, publish conditions and callbacks, and what lies downstream."""
+"""What a change reaches: changed messages, topics, publish conditions, callbacks and launches, and what lies
+downstream."""
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
 from itertools import product
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import msgspec
 
@@ -20,79 +21,31 @@ from ..logic.states import find_renamed_words
 from ..logic.two_states import Differing, compare_publishing, extract_flow_facts, find_differences, read_bytes
 from ..model.flow.callers import Led
 from ..model.flow.connections import Edge, list_edges
-from ..model.flow.graph import Coverage, Endpoint, Graph, Node, Publish
+from ..model.flow.graph import Endpoint, Graph, Node, Publish
+from ..model.flow.launch_changes import NO_CHANGES, LaunchChanges, compare_launches
+from ..model.flow.launches import is_launch
 from ..model.flow.reach import EVERYWHERE, DownstreamSearch, Step
 from ..model.flow.select import check_names, get_kind
 from ..model.flow.workspace import get_flow, link_for_flow
 from ..model.workspace import Workspace
+from .effects import (
+    ASKS,
+    KINDS,
+    NOTHING,
+    RECEIVING,
+    DownstreamLister,
+    Effect,
+    Hop,
+    Impact,
+    Outgoing,
+    list_left_alone,
+    merge_effects,
+)
+from .launch_effects import LaunchEffects
 from .message_changes import find_containing_types, list_message_changes
 from .session import link_flow, open_tree
 
-Kind = Literal["message", "topic", "condition", "trigger", "callback"]
-KINDS: tuple[Kind, ...] = ("message", "condition", "trigger", "topic", "callback")
 EVENTS = frozenset(("subscriber", "service", "action", "timer", "parameter"))
-RECEIVING = frozenset(("subscriber", "server", "action server"))
-ASKS = {"server": "client", "action server": "action client"}
-
-
-class Hop(msgspec.Struct, frozen=True):
-    """A node that is reached. came: the node before it on the shortest way, empty where it is reached at once. kind,
-    name: the topic, service or action between; path, line: of the subscriber or server."""
-
-    node: str
-    package: str
-    came: str
-    kind: str
-    name: str
-    path: str
-    line: int
-
-
-class Effect(msgspec.Struct, frozen=True):
-    """A change and what it reaches.
-
-    kind: what is changed; change: how (`added`, `removed`, `changed`, or as `rosimpact logic` has it). subject: the
-    message, topic or function. path, line: its place now, at the base where it is gone. nodes: that have it.
-    topics: that it goes out by, full names. why: what differs, in a clause. reaches: all nodes downstream, nearest
-    first.
-    """
-
-    kind: Kind
-    change: str
-    subject: str
-    package: str
-    path: str
-    line: int
-    nodes: tuple[str, ...]
-    topics: tuple[str, ...]
-    why: str
-    reaches: tuple[Hop, ...] = ()
-
-
-class Impact(msgspec.Struct, frozen=True):
-    """All of it. nodes: that are changed or reached; of: how many the workspace has. silent: changed functions of
-    which nothing is known to be published because of them. coverage: of the workspace's graph."""
-
-    effects: tuple[Effect, ...]
-    nodes: tuple[Node, ...]
-    of: int
-    silent: int
-    coverage: Coverage
-
-    @property
-    def reached(self) -> set[str]:
-        """Ids of all nodes downstream of a change."""
-        return {hop.node for effect in self.effects for hop in effect.reaches}
-
-
-NOTHING = Impact((), (), 0, 0, Coverage(0, 0, 0, 0))
-
-
-class _Out(NamedTuple):
-    """What goes out of a node because of a change: (name, role of who sends)."""
-
-    node: str
-    sent: tuple[tuple[str, str], ...]
 
 
 @lru_cache(maxsize=2)
@@ -111,7 +64,7 @@ class _Reading:
     def has_flow_changes(self) -> bool:
         """Whether anything differs that message flow can follow; asked before the graphs are made, which are dear."""
         found = self.differing
-        if any(True for _ in list_message_changes(self.workspace, self.base)):
+        if self.launches != NO_CHANGES or any(True for _ in list_message_changes(self.workspace, self.base)):
             return True
         names = {found.renamed.get(state.locate(file.path), state.locate(file.path)) for state in found.old
                  for file in state.files}  # fmt: skip
@@ -130,12 +83,16 @@ class _Reading:
         return _list_declarations(old) != _list_declarations(new)
 
     @cached_property
+    def launches(self) -> LaunchChanges:
+        return compare_launches(self.workspace, self.base)
+
+    @cached_property
     def now(self) -> Graph:
-        return get_flow(self.workspace).graph
+        return get_flow(self.workspace).system
 
     @cached_property
     def before(self) -> Graph:
-        return get_flow(self.base).graph
+        return get_flow(self.base).system
 
     @cache_method
     def get_side(self, gone: bool) -> tuple[Graph, DownstreamSearch]:
@@ -144,8 +101,18 @@ class _Reading:
         return graph, DownstreamSearch(graph)
 
     @cached_property
+    def nodes(self) -> dict[str, Node]:
+        """All nodes by id, those of the base and of changed launches too."""
+        graphs = [graph for launch in self.launches.launches for graph in (launch.before, launch.now)]
+        return {node.id: node for graph in (*graphs, self.before, self.now) for node in graph.nodes}
+
+    @cached_property
     def packages(self) -> dict[str, str]:
-        return {node.id: node.package for node in (*self.before.nodes, *self.now.nodes)}
+        return {node.id: node.package for node in self.nodes.values()}
+
+    @cached_property
+    def downstream(self) -> DownstreamLister:
+        return DownstreamLister(self.packages)
 
     @cached_property
     def facts(self) -> tuple[ExtractedFacts, ExtractedFacts]:
@@ -161,42 +128,12 @@ class _Reading:
         found = [*self.compare_messages(), *self.compare_logic()]
         found += self.compare_topics(found)
         found += self.compare_callbacks()
+        found += merge_effects(self.describe_launches())
         ordered = sorted(found, key=lambda one: (KINDS.index(one.kind), one.package, one.path, one.line, one.subject))
         effects = tuple(dict.fromkeys(ordered))
         used = {id for effect in effects for id in (*effect.nodes, *(hop.node for hop in effect.reaches))}
-        nodes = {node.id: node for node in (*self.before.nodes, *self.now.nodes)}
-        kept = tuple(node for id, node in sorted(nodes.items()) if id in used)
+        kept = tuple(node for id, node in sorted(self.nodes.items()) if id in used)
         return Impact(effects, kept, len(self.now.nodes), self.silent, self.now.coverage)
-
-    def list_downstream(
-        self, nodes: Iterable[str], out: Iterable[_Out], reach: DownstreamSearch, first: Iterable[Hop] = ()
-    ) -> tuple[Hop, ...]:
-        """All nodes that what goes out reaches, nearest first, each once. nodes: that are changed themselves; first:
-        nodes that are reached at once."""
-        own = set(nodes)
-        found: dict[str, tuple[int, Hop]] = {}
-        for hop in first:
-            if hop.node not in own:
-                found.setdefault(hop.node, (1, hop))
-        near = set(found)
-        for one in out:
-            for steps, hop in self.find_hops(one, reach):
-                known = found.get(hop.node)
-                steps += one.node in near
-                if hop.node not in own and (known is None or steps < known[0]):
-                    found[hop.node] = (steps, hop)
-        reported = sorted(found.values(), key=lambda each: each[0])
-        return tuple(msgspec.structs.replace(hop, came="") if hop.came in own else hop for _, hop in reported)
-
-    @cache_method
-    def find_hops(self, out: _Out, reach: DownstreamSearch) -> list[tuple[int, Hop]]:
-        return [
-            (len(one.steps), self.make_hop(one.steps[-1], one.steps[-2].node if len(one.steps) > 1 else out.node))
-            for one in reach.find_downstream(out.sent, out.node)
-        ]
-
-    def make_hop(self, step: Step, came: str = "") -> Hop:
-        return Hop(step.node, self.packages.get(step.node, ""), came, step.kind, step.name, step.path, step.line)
 
     def compare_messages(self) -> Iterator[Effect]:
         for change in list_message_changes(self.workspace, self.base):
@@ -205,16 +142,16 @@ class _Reading:
             types = find_containing_types(self.base if gone else self.workspace, change.name)
             using = [one for one in graph.endpoints if one.type in types and one.topic and one.node]
             first = [
-                self.make_hop(Step(get_kind(one), one.topic, one.node, one.path, one.line))
+                self.downstream.make_hop(Step(get_kind(one), one.topic, one.node, one.path, one.line))
                 for one in sorted(using, key=lambda one: one.role in ("publisher", "client", "action client"))
             ]
             out = [
-                _Out(one.node, tuple(reach.list_sent_on(one.node, one.path, one.line, True)))
+                Outgoing(one.node, tuple(reach.list_sent_on(one.node, one.path, one.line, True)))
                 for one in using
                 if one.role in RECEIVING
             ]
             topics = tuple(sorted({one.topic for one in using}))
-            reached = self.list_downstream((), out, reach, first)
+            reached = self.downstream.list_downstream((), out, reach, first)
             yield Effect(
                 "message", change.change, change.name, change.package, change.path, change.line, (), topics,
                 change.why, reached,
@@ -238,7 +175,7 @@ class _Reading:
             yield Effect(
                 "trigger" if change.kind == "trigger changed" else "condition", change.kind,
                 ", ".join(topics) or change.topic, change.package, change.path, change.line, nodes, topics, change.why,
-                self.list_downstream(nodes, [_Out(node, sent) for node in nodes or ("",)], reach),
+                self.downstream.list_downstream(nodes, [Outgoing(node, sent) for node in nodes or ("",)], reach),
             )  # fmt: skip
 
     def compare_topics(self, reported: Sequence[Effect]) -> Iterator[Effect]:
@@ -253,6 +190,11 @@ class _Reading:
         }
         found = [edge for edge in list_edges(self.now, self.before) if edge.mark]
         renamed = self.find_renamed_nodes(found)
+        if self.launches.launches:
+            # What differs in the code too; the rest is the launch files' doing.
+            code = list_edges(get_flow(self.workspace).graph, get_flow(self.base).graph)
+            changed = {(one.role, one.path, one.line) for edge in code if edge.mark for one in edge.endpoints}
+            found = [edge for edge in found if any((e.role, e.path, e.line) in changed for e in edge.endpoints)]
         for edge in found:
             why = ", ".join(clause for clause in edge.why.split(", ") if clause in ("type", "QoS"))
             endpoint = edge.endpoints[0]
@@ -273,7 +215,7 @@ class _Reading:
             sent = tuple(reach.list_sent_on(edge.node, endpoint.path, endpoint.line, True))
             asking = ASKS.get(edge.role)
             first = [
-                self.make_hop(Step(edge.kind, edge.name, one.node, one.path, one.line))
+                self.downstream.make_hop(Step(edge.kind, edge.name, one.node, one.path, one.line))
                 for one in graph.endpoints
                 if one.role == asking and one.topic == edge.name and one.node
             ]
@@ -283,8 +225,23 @@ class _Reading:
         return Effect(
             "topic", edge.mark, edge.name, self.packages.get(edge.node, ""), endpoint.path, endpoint.line,
             (edge.node,) if edge.node else (), (edge.name,), says.format(edge.role),
-            self.list_downstream((edge.node,), [_Out(edge.node, sent)], reach, first),
+            self.downstream.list_downstream((edge.node,), [Outgoing(edge.node, sent)], reach, first),
+            tuple(list_left_alone(self.before, self.now, {edge.name})) if gone else (),
         )  # fmt: skip
+
+    def describe_launches(self) -> Iterator[Effect]:
+        """What launch files start otherwise."""
+        for launch in self.launches.launches:
+            yield from LaunchEffects(launch, self.downstream, self.find_package).describe()
+        for path in (*self.launches.unused, *self.launches.without_effect):
+            had, has = (any(path in one.linked.files for one in each) for each in (self.base, self.workspace))
+            change = "changed" if had and has else "added" if has else "removed"
+            why = "no launch file of the workspace is known to use it"
+            if path in self.launches.without_effect:
+                why = "all that launch files are known to start is as it was"
+            elif is_launch(path):
+                why = "nothing is known that it starts"
+            yield Effect("launch", change, path, self.find_package(path), path, 1, (), (), why)
 
     def find_renamed_nodes(self, found: Sequence[Edge]) -> set[str]:
         """Nodes that are merely called otherwise: all that one of them had, another one has now."""
@@ -322,6 +279,8 @@ class _Reading:
         for function in self.functions:
             place = (function.path, function.name, function.line)
             led = [one for one in get_flow(self.workspace).callers.list_triggers(*place) if one.trigger.kind in EVENTS]
+            if is_launch(function.path):
+                continue
             if not function.known and not (led and led[0].steps == 0):
                 continue  # who calls what is new is another function too
             sent: dict[str, dict[tuple[str, str], None]] = {}
@@ -345,10 +304,11 @@ class _Reading:
             if topics <= reported.get((function.path, function.name), set()):
                 continue
             nodes = tuple(sorted(node for node, each in sent.items() if each and node))
+            out = [Outgoing(node, tuple(each)) for node, each in sent.items()]
             yield Effect(
                 "callback", "changed" if function.known else "added", function.name, self.find_package(function.path),
                 function.path, function.line, nodes, tuple(sorted(topics)), _describe_trigger(led),
-                self.list_downstream(nodes, [_Out(node, tuple(each)) for node, each in sent.items()], reach),
+                self.downstream.list_downstream(nodes, out, reach),
             )  # fmt: skip
 
     @cached_property

@@ -1,17 +1,22 @@
 """The message-flow graph of a workspace, and of its base: from a path to graphs."""
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from ...edges import processes
+from ..config import SystemSetting
 from ..facts.store import Store
 from ..model.flow.graph import Graph
+from ..model.flow.system import ChosenLaunch
 from ..model.flow.workspace import link_for_flow, make_graph
 from ..model.workspace import Workspace
 from ..tree import Tree
-from .session import CheckError, link_flow, open_tree
+from .session import CheckError, link_flow, load_settings, open_tree
+
+_ARGUMENT = re.compile(r"\s+(?=[A-Za-z_][\w.-]*:=)")
 
 
 class Graphs(NamedTuple):
@@ -23,48 +28,92 @@ class Graphs(NamedTuple):
 
 
 def build_graphs(
-    path: Path, *, rev: str = "", base: Sequence[str] = (), launch: str = "",
-    arguments: Mapping[str, str] | None = None, jobs: int | None = None,
+    path: Path, *, rev: str = "", base: Sequence[str] = (), launch: Sequence[str] = (),
+    arguments: Mapping[str, str] | None = None, system: str = "", config: Path | None = None, jobs: int | None = None,
     progress: Callable[[int, int], None] | None = None, follow_links: bool = False, code_alone: bool = False,
 ) -> Graphs:  # fmt: skip
     """The message-flow graph of the workspace at a path.
 
-    rev, base, jobs, follow_links: as for check. launch: a launch file, as a path or relative to the workspace's
-    root: then only what it starts, under the names it gives; arguments: those of the launch file. code_alone: all
-    programs, as if no launch file started them. Raises CheckError, TreeError and BaseError with a text for the user.
+    rev, base, config, jobs, follow_links: as for check. launch: launch files, each as a path, relative to the
+    workspace's root or to a package, and any arguments of its own behind it (`a.launch.py sim:=true`): then only what
+    they start together, under the names they give; arguments: for all of them. system: the name of launch files and
+    arguments in rosimpact.toml instead. code_alone: all programs, as if no launch file started them. Raises CheckError,
+    ConfigError, TreeError and BaseError with a text for the user.
     """
     tree = open_tree(path, rev, follow_links=follow_links)
+    given = dict(arguments or {})
+    option = "--launch"
+    if system:
+        found = _find_system(path, tree, system, config, follow_links)
+        option, launch, given = f"--system {system}:", found.launch, {**found.arguments, **given}
     with Store() as store:
-        file = _launch_file(path, tree, launch) if launch else ""
         workspace = link_flow(path, tree, store, jobs, progress)
+        own = [_parse_launch(path, workspace, tree, option, text) for text in launch]
+        chosen = [one._replace(arguments={**given, **one.arguments}) for one in own]
         how = {"code_alone": code_alone, "jobs": jobs or processes.count_cores()}
-        now = make_graph(workspace, store, os.fspath(path), rev, file, arguments, **how)
-        strangers = _describe_undeclared(workspace, file, arguments) if file and arguments else ()
+        now = make_graph(workspace, store, os.fspath(path), rev, chosen if launch else None, **how)
+        strangers = tuple(_describe_undeclared(workspace, own, given))
         if not base:
             return Graphs(now, None, strangers)
         from .revision_compare import open_base_tree
 
         old_tree, notes = open_base_tree(tree, tuple(base))
-        had = not file or old_tree.exists(file)
+        had = [one for one in chosen if old_tree.exists(one.path)]
         old = link_for_flow(old_tree, store, jobs)
-        before = make_graph(old, store, os.fspath(path), " ".join(base), file if had else "", arguments, **how)
+        before = make_graph(old, store, os.fspath(path), " ".join(base), had if launch else None, **how)
         return Graphs(now, before, (*strangers, *notes))
 
 
-def _describe_undeclared(workspace: Workspace, launch: str, arguments: Mapping[str, str]) -> tuple[str, ...]:
-    """A note for each argument that neither the launch file nor any that it includes declares."""
+def _find_system(path: Path, tree: Tree, name: str, config: Path | None, follow_links: bool) -> SystemSetting:
+    """A system of rosimpact.toml. Raises CheckError."""
+    settings = load_settings(path, tree, config, follow_links=follow_links)
+    if name in settings.systems:
+        return settings.systems[name]
+    where = settings.path or path / "rosimpact.toml"
+    known = ", ".join(f"`{each}`" for each in sorted(settings.systems))
+    remedy = f"known are {known}" if known else "add it with its launch files, or name these with --launch"
+    raise CheckError(f"--system {name}: {where} has no [systems.{name}]; {remedy}")
+
+
+def _describe_undeclared(
+    workspace: Workspace, chosen: Sequence[ChosenLaunch], given: Mapping[str, str]
+) -> Iterator[str]:  # fmt: skip
+    """A note for each argument that no launch file it is meant for declares, nor any that this includes. chosen: launch
+    files with arguments of their own; given: those for all."""
     from ..model.flow.started import follow_workspace_launch  # of no use to a graph of code alone
 
-    declared = sorted(follow_workspace_launch(workspace, launch, arguments).arguments)
-    known = f"it declares {', '.join(f'`{name}`' for name in declared)}" if declared else "it declares none"
-    return tuple(
-        f"--set {name}: `{launch}` has no such argument; {known}" for name in arguments if name not in declared
-    )
+    if not given and not any(one.arguments for one in chosen):
+        return
+    declared = [follow_workspace_launch(workspace, one.path, {**given, **one.arguments}).arguments for one in chosen]
+    for one, names in zip(chosen, declared, strict=True):
+        for name in one.arguments:
+            if name not in names:
+                yield f"{name}:={one.arguments[name]}: `{one.path}` has no such argument; {_list_declared(names)}"
+    for name in given:
+        if not any(name in names for names in declared):
+            files, have = (f"`{chosen[0].path}`", "has") if len(chosen) == 1 else ("the launch files", "have")
+            every = frozenset[str]().union(*declared)
+            yield f"--set {name}: {files} {have} no such argument; {_list_declared(every, len(chosen))}"
 
 
-def _launch_file(path: Path, tree: Tree, launch: str) -> str:
+def _list_declared(names: frozenset[str], files: int = 1) -> str:
+    who = "it declares" if files == 1 else "they declare"
+    return f"{who} {', '.join(f'`{name}`' for name in sorted(names)) or 'none'}"
+
+
+def _parse_launch(path: Path, workspace: Workspace, tree: Tree, option: str, text: str) -> ChosenLaunch:
+    """A launch file with its own arguments, from `FILE NAME:=VALUE ...`. Raises CheckError."""
+    file, *rest = _ARGUMENT.split(text.strip())
+    given = {name: value for name, _, value in (argument.strip().partition(":=") for argument in rest)}
+    return ChosenLaunch(_find_launch_file(path, workspace, tree, option, file), given)
+
+
+def _find_launch_file(path: Path, workspace: Workspace, tree: Tree, option: str, launch: str) -> str:
     """The launch file's path relative to the workspace's root; a bare name is looked for. Raises CheckError."""
-    for candidate in (launch, os.path.relpath(os.path.realpath(launch), os.path.realpath(path))):
+    package, _, inner = launch.partition("/")
+    owner = workspace.packages.get(package)
+    of_package = f"{owner.path}/{inner}".lstrip("/") if owner is not None and inner else launch
+    for candidate in (launch, of_package, os.path.relpath(os.path.realpath(launch), os.path.realpath(path))):
         inside = candidate.replace(os.sep, "/").removeprefix("./")
         if not inside.startswith("..") and tree.exists(inside) and not tree.is_dir(inside):
             return inside
@@ -73,6 +122,6 @@ def _launch_file(path: Path, tree: Tree, launch: str) -> str:
         return found[0]
     if found:
         raise CheckError(
-            f"--launch {launch}: there are {len(found)} of them ({', '.join(found[:3])}); give the whole path"
+            f"{option} {launch}: there are {len(found)} of them ({', '.join(found[:3])}); give the whole path"
         )
-    raise CheckError(f"--launch {launch}: no such file in the workspace; give its path")
+    raise CheckError(f"{option} {launch}: no such file in the workspace; give its path")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..config import Config
     from ..targets.resolve import Chosen
     from ..tree import Tree
-    from .downstream import Impact
+    from .effects import Impact
     from .findings import UpgradeItem
 
 CONTEXT = 1

@@ -94,7 +94,7 @@ _Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number o
 _Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on standard error.")]
 
 # Options whose values may hold commas; others that may be repeated take several names at once.
-_WITH_COMMAS = frozenset(("target", "base", "set_", "names"))
+_WITH_COMMAS = frozenset(("target", "base", "set_", "names", "launch"))
 
 
 def _add_command(group: typer.Typer, name: str | None = None) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -202,8 +202,14 @@ def why(
 @_add_command(app)
 def graph(
     path: _Workspace = Path("."),
-    launch: str = _make_option("Only what this launch file starts, with the names that it assigns.", default=""),
-    set_: list[str] = _make_option("An argument of the launch file, NAME:=VALUE. May be repeated.", "--set"),
+    launch: list[str] = _make_option(
+        "Only what this launch file starts, with the names that it assigns; its arguments may follow in the same "
+        "quotes: 'robot.launch.py sim:=true'. May be repeated: then what all of them start together."
+    ),
+    set_: list[str] = _make_option(
+        "An argument of all launch files that declare it, NAME:=VALUE. May be repeated.", "--set"
+    ),
+    system: str = _make_option("Only what the launch files of [systems.NAME] in rosimpact.toml start.", default=""),
     code: bool = _make_option(
         "All programs, with the names that the code gives them, as if no launch file started them.", "--code",
         default=False,
@@ -215,6 +221,12 @@ def graph(
     hops: int = _make_option("With --around: the number of steps from node to node.", default=2, min=1),
     rev: _Revision = "",
     base: list[str] = _make_option("Mark what was added, removed and changed since this revision, as for check."),
+    strict: bool = _make_option(
+        "Exit with 1 where names or types are not known, or names in part only; their places go to standard error.",
+        "--strict",
+        default=False,
+    ),
+    config: _Config = None,
     follow_links: _FollowLinks = False,
     format: str = _make_option(
         "One of text, json, graphml, dot, mermaid, html, nodl (the interface of each node, as .nodl.yaml).",
@@ -229,7 +241,10 @@ def graph(
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
-    """Show which nodes are connected by topics, services and actions, without building or running anything."""
+    """Show which nodes are connected by topics, services and actions, without building or running anything.
+
+    Exit status: 0 the graph was made, 1 with --strict where not all names are known, 2 the tool failed.
+    """
 
 
 @_add_command(app)

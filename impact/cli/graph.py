@@ -2,37 +2,46 @@
 
 from pathlib import Path
 
-from ...edges.console import UserError
+from ...edges.console import UserError, format_count, say
 from .output import find_style, make_command, make_progress_bar, say_notes
 
 
 @make_command("text", "json", "graphml", "dot", "mermaid", "html", "nodl", folders=("nodl",))
 def graph(
-    path: Path, *, launch, set_, code, node, topic, package, around, hops, rev, base, format, output, all, jobs, quiet,
-    follow_links,
-) -> str | dict[str, str]:  # fmt: skip
-    """The message-flow graph."""
+    path: Path, *, launch, set_, system, code, node, topic, package, around, hops, rev, base, strict, config, format,
+    output, all, jobs, quiet, follow_links,
+) -> tuple[str | dict[str, str], int]:  # fmt: skip
+    """The message-flow graph, and the exit status."""
     given = dict(argument.partition(":=")[::2] for argument in set_)
     if any(":=" not in argument for argument in set_):
         raise UserError("--set: write NAME:=VALUE")
-    if given and not launch:
+    if system and launch:
+        raise UserError("--system: names launch files already; leave out --system or --launch")
+    if given and not launch and not system:
         raise UserError("--set: arguments belong to a launch file; name it with --launch")
-    if code and launch:
-        raise UserError("--code: shows the graph without launch files; leave out --code or --launch")
+    if code and (launch or system):
+        raise UserError("--code: shows the graph without launch files; leave out --code, or --launch and --system")
     if format == "nodl" and (base or topic or around):
         raise UserError("--format nodl: writes whole interfaces of one revision; choose nodes with --node or --package")
     from ..analysis.graph import build_graphs
-    from ..report.graph import draw, draw_nodes
+    from ..report.graph import draw, draw_nodes, list_unknown_names
 
     found = build_graphs(
-        path, rev=rev, base=base, launch=launch, arguments=given, jobs=jobs,
+        path, rev=rev, base=base, launch=launch, arguments=given, system=system, config=config, jobs=jobs,
         progress=None if quiet else make_progress_bar(), follow_links=follow_links,
-        code_alone=code or (format == "nodl" and not launch),
+        code_alone=code or (format == "nodl" and not launch and not system),
     )  # fmt: skip
     say_notes(found.notes)
+    asked = {"nodes": node, "topics": topic, "packages": package, "around": around, "hops": hops}
+    text: str | dict[str, str]
     if format == "nodl":
-        return draw_nodes(found.now, nodes=node, packages=package)
-    return draw(
-        found.now, format, found.before, nodes=node, topics=topic, packages=package, around=around,
-        hops=hops, everything=all, style=find_style(output),
-    )  # fmt: skip
+        text = draw_nodes(found.now, nodes=node, packages=package)
+    else:
+        text = draw(found.now, format, found.before, everything=all, style=find_style(output), **asked)
+    unknown = list_unknown_names(found.now, **asked) if strict else []
+    for line in unknown:
+        say(line)
+    if unknown:
+        count = format_count(len(unknown), "API call")
+        say(f"rosimpact: --strict: {count} whose name or type is not fully known; write it out, or give it with --set")
+    return text, int(bool(unknown))

@@ -8,7 +8,8 @@ from typing import Any
 import msgspec
 
 from ...edges.console import format_count, format_json
-from ..analysis.downstream import KINDS, Effect, Hop, Impact, ImpactResult
+from ..analysis.downstream import ImpactResult
+from ..analysis.effects import KINDS, Effect, Hop, Impact
 from ..model.flow.connections import name_nodes
 from .columns import LinePart, lay_out
 from .graph.text import WIDE, render_coverage
@@ -22,9 +23,13 @@ _MOST_NODES = 3
 _MOST_EFFECTS = 6
 _MOST_NODES = 20
 _ROLES = {"tightened": "error", "gone": "error", "removed": "error", "new": "good", "added": "good"}
+_ALONE = {
+    "publisher": "subscribes to", "subscriber": "publishes", "server": "asks for", "client": "serves",
+    "action server": "asks for", "action client": "serves",
+}  # fmt: skip
 _HEADS = {
     "message": "messages", "topic": "topics", "condition": "publish conditions", "trigger": "triggers",
-    "callback": "callbacks",
+    "callback": "callbacks", "launch": "launch settings", "parameter": "parameters",
 }  # fmt: skip
 
 
@@ -36,7 +41,7 @@ def render_text(impact: Impact, everything: bool = False, style: Style = WIDE) -
         lines += [*([""] if lines else []), paint(style, "bold", _HEADS[kind])]
         for group in same:
             for one in group:
-                lines += _render_head(one, names, style)
+                lines += [*_render_head(one, names, style), *_render_alone(one, names, style)]
             lines += _render_tree(group[0], names, everything, style)
     lines += [*([""] if lines else []), *_render([LinePart(summarize(impact))], style, 0, 2)]
     if impact.of:
@@ -89,6 +94,13 @@ def _render_head(effect: Effect, names: dict[str, str], style: Style) -> Iterato
         yield from _render([LinePart(effect.why)], style, 6, 8)
 
 
+def _render_alone(effect: Effect, names: dict[str, str], style: Style) -> Iterator[str]:
+    for (role, name), same in groupby(effect.alone, key=lambda one: (one.role, one.name)):
+        left = _format_names(list(dict.fromkeys(names.get(one.node, one.node) for one in same)))
+        said = f"nothing in the workspace {_ALONE[role]} {name} of {left} any more"
+        yield from _render([LinePart(said, "warning")], style, 6, 8)
+
+
 def _format_names(names: Sequence[str]) -> str:
     more = f" and {len(names) - _MOST_NODES} more" if len(names) > _MOST_NODES else ""
     return ", ".join(names[:_MOST_NODES]) + more
@@ -136,7 +148,7 @@ def render_short(impact: Impact, style: Style, base: str) -> list[str]:
     for group in group_effects(impact.effects)[:_MOST_EFFECTS]:
         for effect in group[:_MOST_NODES]:
             reported = effect if len(group) == 1 else msgspec.structs.replace(effect, why="")
-            lines += _render_head(reported, names, style)
+            lines += [*_render_head(reported, names, style), *_render_alone(effect, names, style)]
         if len(group) > _MOST_NODES:
             lines.append(f"  and {len(group) - _MOST_NODES} more")
         near = list(dict.fromkeys(names.get(hop.node, hop.node) for hop in group[0].reaches))
@@ -161,6 +173,8 @@ def build_compact_data(impact: Impact) -> dict[str, Any]:
 
 def _explain_none(effect: Effect) -> str:
     """What is said of a change that reaches no node."""
+    if effect.kind in ("launch", "parameter"):
+        return "reaches no other node that is known"
     return "reaches nothing in the workspace" if effect.topics else "no topic of it is known"
 
 

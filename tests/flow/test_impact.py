@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import jsonschema
 import pytest
-from rosimpact.impact.analysis.downstream import NOTHING, Impact, ImpactResult, compute_impact, select_effects
+from rosimpact.impact.analysis.downstream import ImpactResult, compute_impact, select_effects
+from rosimpact.impact.analysis.effects import NOTHING, Impact
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow.workspace import link_for_flow
 from rosimpact.impact.report import impact as impact_report

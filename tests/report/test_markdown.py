@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt
-from rosimpact.impact.analysis.downstream import Effect, Impact
+from rosimpact.impact.analysis.effects import Effect, Impact
 from rosimpact.impact.analysis.report import AnalysisCoverage, Report, ReportedPackage, ReportedTarget
 from rosimpact.impact.model.flow.graph import Coverage as FlowCoverage
 from rosimpact.impact.report import github, markdown

@@ -22,7 +22,7 @@ _RUNNING = frozenset(("executable", "script", "component", "nodelet"))
 # A type of a package outside of the workspace may be a class that stands for a message.
 _INTERFACES = ("_msgs", "_interfaces", "_srvs", "_actions", "turtlesim", "dynamic_reconfigure")
 _SURE = frozenset(("literal", "given", "launch"))
-_OTHER_SIDE = {
+OTHER_SIDE = {
     "publisher": "subscriber", "subscriber": "publisher", "server": "client", "client": "server",
     "action server": "action client", "action client": "action server",
 }  # fmt: skip
@@ -101,7 +101,7 @@ class Flow:
 
     def list_others(self, endpoint: Endpoint) -> list[Endpoint]:
         """The other side of an endpoint's topic, service or action, sure or not."""
-        return self._of_role.get((_OTHER_SIDE[endpoint.role], endpoint.topic), [])
+        return self._of_role.get((OTHER_SIDE[endpoint.role], endpoint.topic), [])
 
     def may_have(self, role: str, type_: str) -> bool:
         """Whether something in the workspace of this role and type has a name that is not known or not certain, or

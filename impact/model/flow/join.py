@@ -591,10 +591,11 @@ class _Owners:
             self._used.add(node.id)
 
     def list_nodes(self) -> tuple[Node, ...]:
-        """Those that have an entry, and all that a launch starts; sorted."""
+        """Those that have an entry, and all that a launch starts; sorted. Of those of one name the first."""
         running = (one.node for one in self.running if self.launched or one.node.id in self._used)
         libraries = (node for node in self._libraries.values() if node.id in self._used)
-        return tuple(sorted(dict.fromkeys((*running, *libraries)), key=lambda node: node.id))
+        found = {node.id: node for node in reversed([*running, *libraries])}
+        return tuple(node for _, node in sorted(found.items()))
 
 
 class _Count:

@@ -93,10 +93,15 @@ def list_launches(workspace: Workspace, code: Callable[[], Join], jobs: int = 1)
     return recall(store, "launches", key, tuple[Launch, ...], lambda: tuple(_find_launches(workspace, code, jobs)))
 
 
+def follow_launch_files(workspace: Workspace) -> list[tuple[str, Launched]]:
+    """Path and what it starts of each launch file that no other includes, with the defaults of its arguments."""
+    return _follow(workspace, list(islice(_list_files(workspace), _MOST)))
+
+
 def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) -> Iterator[Launch]:
     files = list(islice(_list_files(workspace), _MOST))
     if jobs < 2 or len(files) < _ALONE or not processes.may_fork():
-        followed = _follow(workspace, files)
+        followed = _select_starting(_follow(workspace, files))
         yield from _start(workspace, code(), followed) if followed else ()
         return
     workspace.extraction.store.close()  # another process opens it for itself
@@ -106,6 +111,7 @@ def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) ->
         ((_, followed),) = workers.wait_for_finished()
     if isinstance(followed, processes.Died):
         followed = _follow(workspace, files)
+    followed = _select_starting(followed)
     _ = join.list_running(), join.sites.statements  # made once, not in every process
     parts = [part for at in range(jobs) if (part := followed[at::jobs])]
     found: dict[str, Launch] = {}
@@ -114,6 +120,10 @@ def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) ->
             # What ends another process may end this one.
             found[row[0]] = launch or next(_start(workspace, join, [row]))
     yield from (found[path] for path, _ in followed)
+
+
+def _select_starting(followed: Iterable[_Followed]) -> list[_Followed]:
+    return [row for row in followed if row[1].started]
 
 
 def _run_within_limits(task: Callable[..., Iterable[_Row]], *given: Any) -> list[_Row]:
@@ -146,7 +156,7 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
 
 
 def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list[_Followed]:
-    """Each launch file that no other includes and that starts something, followed. files: as _files() gives them."""
+    """Each launch file that no other includes, followed. files: as _list_files() gives them."""
     sources, changed = InWorkspace(workspace), ChangedFiles()
     found: list[_Followed] = []
     included: set[str] = set()
@@ -158,7 +168,7 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
         found.append((path, launch))
         own, *others = launch.files or (("", ""),)
         included.update(sources.find_workspace_path(*other) for other in others if other != own)
-    return [row for row in found if row[1].started and row[0] not in included]
+    return [row for row in found if row[0] not in included]
 
 
 def _list_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:

@@ -1,18 +1,38 @@
 """The message flow of a workspace as it is started: one graph of what all its launch files start, and of the programs
-that none of them does."""
+that none of them does; or of what some launch files start together."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import msgspec
 
+from ..launch.result import Launched
 from .graph import Graph
 from .launches import Launch
 
 _Row = TypeVar("_Row")
+
+
+class ChosenLaunch(NamedTuple):
+    """A launch file that a system is started with. path: relative to the workspace's root."""
+
+    path: str
+    arguments: Mapping[str, str] = {}
+
+
+def join_launched(parts: Sequence[Launched]) -> Launched:
+    """What several launch files start together: all their nodes, with one parameter server in ROS 1."""
+    server = {name: setting for part in parts for name, setting in part.server.items()}
+    files = dict.fromkeys(file for part in parts for file in part.files)
+    return Launched(
+        tuple(started for part in parts for started in part.started), server, tuple(files),
+        frozenset(name for part in parts for name in part.arguments), sum(part.actions for part in parts),
+        tuple(dict.fromkeys(file for part in parts for file in part.parameter_files)),
+        tuple(started for part in parts for started in part.outside),
+    )  # fmt: skip
 
 
 def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:

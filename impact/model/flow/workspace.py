@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 
 import msgspec
@@ -23,13 +23,13 @@ from .graph import Graph
 from .join import Join
 from .launches import Launch
 from .nodes import BuiltPackage, asks_for_name, find_entry_point
-from .plugins import list_plugin_loads, assign_plugins
-from .system import merge_launches
+from .plugins import assign_plugins, list_plugin_loads
+from .system import ChosenLaunch, join_launched, merge_launches
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
 _BUILD = frozenset((
     "manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action",
-    "launch_xml", "launch_yaml", "params",
+    "launch_xml", "launch_yaml", "params", "xacro",
 ))  # fmt: skip
 
 Progress = Callable[[int, int], None]
@@ -201,19 +201,19 @@ def join_code(workspace: Workspace) -> Join:
 
 
 def make_graph(
-    workspace: Workspace, store: Store | None, root: str = "", rev: str = "", launch: str = "",
-    arguments: Mapping[str, str] | None = None, code_alone: bool = False, jobs: int = 1,
+    workspace: Workspace, store: Store | None, root: str = "", rev: str = "",
+    chosen: Sequence[ChosenLaunch] | None = None, code_alone: bool = False, jobs: int = 1,
 ) -> Graph:  # fmt: skip
     """The message-flow graph of a workspace: of what its launch files start, and of the programs that none of them
     does. store: remembers it by the content it was joined from.
 
-    launch: the path of a launch file, relative to the workspace's root: then the graph of what it starts; arguments:
-    the launch file's arguments. code_alone: of all programs, as if no launch file started them.
+    chosen: launch files: then the graph of what these start together. code_alone: of all programs, as if no launch file
+    started them.
     """
-    if launch:
+    if chosen is not None:
         from .started import follow_workspace_launch
 
-        start = follow_workspace_launch(workspace, launch, arguments or {})
+        start = join_launched([follow_workspace_launch(workspace, one.path, one.arguments) for one in chosen])
         code = get_flow(workspace).code
         return code.build(root, rev, _list_unread(code), start)
 

@@ -83,6 +83,8 @@ class Filling:
         self.package = ""
         self.path = ""
         self.rewrites: dict[str, Rewrite] = {}
+        # Those that are read, or would be if they were there.
+        self.parameter_files: dict[tuple[str, str], None] = {}
 
     def locate_line(self, line: int) -> ShareLine:
         return ShareLine(self.package, self.path, line)
@@ -128,8 +130,18 @@ class Filling:
             entries = self.read_entries(rewrite.source.value) if rewrite.source.value is not None else None
             return None if entries is None else self._rewrite_shared(entries, rewrite)
         place = self.split_share_path(file)
-        found = self.sources.find_parameter_file(*place) if place is not None else None
+        if place is None:
+            return None
+        self.parameter_files[place] = None
+        found = self.sources.find_parameter_file(*place)
         return None if found is None else found.entries
+
+    def find_source(self, file: str) -> tuple[str, str] | None:
+        """Package and path of the file that the entries of a parameter file come from."""
+        rewrite = self.rewrites.get(file)
+        if rewrite is not None:
+            return self.find_source(rewrite.source.value) if rewrite.source.value is not None else None
+        return self.split_share_path(file)
 
     def _rewrite_shared(self, entries: tuple[ParameterEntry, ...], rewrite: Rewrite) -> tuple[ParameterEntry, ...]:
         """The same for all nodes that are given one file with one rewrite."""
@@ -213,7 +225,8 @@ class Filling:
         return LaunchText(None, f"{name.shown}_<anonymous>", ("an anonymous name is made up at every start",))
 
     def fill_command(self, piece: ValuePart) -> LaunchText:
-        return make_unknown(show((piece,)), f"it is {OF_RUNNING[piece.kind]}")
+        parts = " ".join(self.fill(part).shown for part in piece.parts)
+        return make_unknown(f"$({piece.kind} {parts})", f"it is {OF_RUNNING[piece.kind]}")
 
     fill_content = fill_command
 

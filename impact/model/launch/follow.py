@@ -19,13 +19,12 @@ from ...facts.launch.parameter_files import ParameterEntry
 from ...facts.launch.parameter_files import extract as parameters
 from ..flow.names import normalise, parse_ros2_rule
 from .fill import OF_RUNNING, ActionScope, ChangedFiles, Filling
-from .result import EMPTY, Launched, LaunchParameter, LaunchSources, Remap, SettingFile, Started
+from .result import EMPTY, Launched, LaunchParameter, LaunchSources, Remap, SettingFile, ShareLine, Started
 from .text import (
     LaunchText,
     make_unknown,
     parse_truth,
     resolve,
-    show,
     show_condition,
     wrap,
 )
@@ -55,7 +54,8 @@ def follow(
     with contextlib.suppress(RecursionError):  # what is nested too deeply is not followed
         launch.include((package, posixpath.normpath(path).lstrip("/")))
     files, done = tuple(dict.fromkeys(launch.files)), most - max(0, launch.budget)
-    return Launched(tuple(launch.started), launch.server, files, frozenset(launch.declared), done)
+    declared, settings = frozenset(launch.declared), tuple(launch.parameter_files)
+    return Launched(tuple(launch.started), launch.server, files, declared, done, settings, tuple(launch.outside))
 
 
 class _Launch(Filling):
@@ -76,6 +76,7 @@ class _Launch(Filling):
         self.open: list[str] = []
         self.budget = most
         self.started: list[Started] = []
+        self.outside: list[Started] = []
         self.server: dict[str, LaunchParameter] = {}
         self.files: list[tuple[str, str]] = []
         self.declared: set[str] = set()
@@ -83,6 +84,8 @@ class _Launch(Filling):
     def include(self, place: tuple[str, str], action: Action | None = None) -> None:
         """Follows a file that an action includes; without one the file that is launched."""
         file = self.sources.find_launch_file(*place)
+        if file is None and action is not None:
+            self.note_outside(place, action)
         if file is None or len(self.chain) > DEEPEST or self.chain[:-1].count(place) > 3:
             return
         before = self.scope, self.package, self.path, self.generation
@@ -100,6 +103,31 @@ class _Launch(Filling):
         self.run(file.actions)
         self.chain.pop()
         self.scope, self.package, self.path, self.generation = before
+
+    def note_outside(self, place: tuple[str, str], action: Action) -> None:
+        """Notes an include of a file that cannot be read, with what it is given."""
+        at, settings = self.locate_line(action.line), []
+        for name, text in self.list_passed(action):
+            settings.append(LaunchParameter(name, text, at))
+            if text.value and text.value.endswith((".yaml", ".yml")):
+                entries, source = self.read_entries(text.value), self.find_source(text.value)
+                settings.append(SettingFile(text, entries, at, source=source))
+        namespace = self.scope.namespace
+        if self.generation == 1 and action.get("namespace") is not None:
+            namespace = self.make_inner_namespace(self.read_field(action, "namespace"))
+        self.outside.append(
+            Started(
+                "include",
+                self.generation,
+                at,
+                tuple(self.open),
+                wrap(place[0]),
+                wrap(place[1]),
+                namespace=namespace,
+                remaps=tuple(self.scope.remaps),
+                settings=tuple(settings),
+            )
+        )
 
     def run(self, actions: Iterable[Action]) -> None:
         for action in actions:
@@ -282,13 +310,13 @@ class _Launch(Filling):
         at, conditions = self.locate_line(action.line), tuple(self.open[self.scope.open :])
         if not file.value:
             return SettingFile(file, None if file.value is None else (), at, conditions)
-        entries = self.read_entries(file.value)
+        entries, source = self.read_entries(file.value), self.find_source(file.value)
         if entries is not None and find_literal(action.get("substitute")) is not None:
             entries = self.substitute_entries(entries)
         below = [self.fill(key).value for key in action.list_values("below")]
         name = action.get("name")
         if not below and name is None:
-            return SettingFile(file, entries, at, conditions)
+            return SettingFile(file, entries, at, conditions, source=source)
         prefix = (self.fill(name).shown,) if name is not None else ()
         if entries is not None:
             entries = tuple(
@@ -296,7 +324,7 @@ class _Launch(Filling):
                 for entry in entries
                 if list(entry.path[: len(below)]) == below
             )
-        return SettingFile(file, entries, at, conditions, True)
+        return SettingFile(file, entries, at, conditions, True, source)
 
     def serve(self, action: Action, namespace: LaunchText) -> None:
         """Puts a <param> of ROS 1 on the server, below a namespace."""
@@ -310,14 +338,14 @@ class _Launch(Filling):
         if not given:
             text = self.read_field(action, "value")
         else:
-            text = make_unknown(show(action.get(given) or make_literal("")), f"it is {OF_RUNNING[given]}")
+            text = make_unknown(self.read_field(action, given).shown, f"it is {OF_RUNNING[given]}")
         self.put(full.value, text, action.line)
 
-    def put(self, name: str, text: LaunchText, line: int) -> None:
+    def put(self, name: str, text: LaunchText, line: int, source: ShareLine | None = None) -> None:
         before = self.server.pop(name, None)
         if self.open and before is not None and before.text.value != text.value:
             text = make_unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}")
-        self.server[name] = LaunchParameter(name, text, self.locate_line(line), tuple(self.open))
+        self.server[name] = LaunchParameter(name, text, self.locate_line(line), tuple(self.open), source)
 
     def serve_file(self, action: Action, namespace: LaunchText) -> None:
         """Does a <rosparam>."""
@@ -335,16 +363,18 @@ class _Launch(Filling):
             return
         substitute = action.get("substitute")
         fill = substitute is not None and parse_truth(self.fill(substitute)) is True
-        file, content = action.get("file"), action.get("text")
+        file, content, place = action.get("file"), action.get("text"), None
         if file is not None:
             name = self.fill(file).value
             entries = self.read_entries(name) if name is not None else None
+            place = self.find_source(name) if name is not None else None
         else:
             # What is filled in may be any piece of YAML, so that it comes before reading.
             entries, fill = parameters(self.fill(content or make_literal("")).shown).entries, False
         for entry in self.substitute_entries(entries or ()) if fill else entries or ():
             key = "/".join(part.strip("/") for part in (full.value or "/", *entry.path) if part.strip("/"))
-            self.put(f"/{key}", wrap(str(entry.value)), action.line)
+            source = ShareLine(*place, entry.line) if place is not None else None
+            self.put(f"/{key}", wrap(str(entry.value)), action.line, source)
 
     def do_node(self, action: Action) -> None:
         if self.generation == 1:
@@ -426,7 +456,8 @@ class _Launch(Filling):
                 elif option in ("-p", "--param"):
                     settings.append(LaunchParameter(old, wrap(new), self.locate_line(line)))
                 elif option == "--params-file":
-                    settings.append(SettingFile(text, self.read_entries(word), self.locate_line(line)))
+                    entries, source = self.read_entries(word), self.find_source(word)
+                    settings.append(SettingFile(text, entries, self.locate_line(line), source=source))
                 option = ""
             else:
                 option = ""

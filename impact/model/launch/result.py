@@ -43,29 +43,33 @@ class Remap(NamedTuple):
 
 class LaunchParameter(NamedTuple):
     """A parameter. name: private to its node (`scan_topic`), or global on ROS 1's parameter server (`/robot/scan`).
-    conditions: as in Started."""
+    conditions: as in Started. source: the line of the parameter file that it comes from."""
 
     name: str
     text: LaunchText
     at: ShareLine
     conditions: tuple[str, ...] = ()
+    source: ShareLine | None = None
 
 
 class SettingFile(NamedTuple):
     """A parameter file given to a node of ROS 2. entries: None where it could not be had. plain: its entries are
-    parameters by themselves, without the name of a node above them."""
+    parameters by themselves, without the name of a node above them. source: package and path of the file that is read,
+    None where that is not known."""
 
     file: LaunchText
     entries: tuple[ParameterEntry, ...] | None
     at: ShareLine
     conditions: tuple[str, ...] = ()
     plain: bool = False
+    source: tuple[str, str] | None = None
 
 
 class Started(NamedTuple):
     """A node, or another program, that the launch starts.
 
-    kind: `node`, `lifecycle`, `test`, `container`, `composable` (ROS 1: a nodelet that is loaded) or `process`.
+    kind: `node`, `lifecycle`, `test`, `container`, `composable` (ROS 1: a nodelet that is loaded) or `process`; in
+    Launched.outside `include`.
     executable or plugin: what runs. name: empty where it is left to the program. namespace: absolute; empty where it is
     left to the program, which then means `/`.
     remaps, settings: in the order in which they are given to the node; of remaps ROS 1 takes the last for a name, ROS 2
@@ -89,13 +93,17 @@ class Started(NamedTuple):
 
 class Launched(NamedTuple):
     """All that a launch does. server: ROS 1's parameters by their global names. files: (package, path) of the launch
-    files read. arguments: those that they declare. actions: how many were done."""
+    files read; parameter_files: of the parameter files. arguments: those that they declare. actions: how many were
+    done. outside: launch files that are included and cannot be read, as of other packages: executable is their path,
+    settings are their arguments and the parameter files that these name."""
 
     started: tuple[Started, ...]
     server: Mapping[str, LaunchParameter]
     files: tuple[tuple[str, str], ...]
     arguments: frozenset[str] = frozenset()
     actions: int = 0
+    parameter_files: tuple[tuple[str, str], ...] = ()
+    outside: tuple[Started, ...] = ()
 
     def collect_parameters(self, started: Started, full: str) -> dict[str, LaunchParameter]:
         """The private parameters of a node. full: its full name; of one that is empty, only what holds for any node."""
@@ -112,7 +120,8 @@ class Launched(NamedTuple):
                 continue
             for key, entry in select_file_values(setting, full).items():
                 found.pop(key, None)
-                found[key] = LaunchParameter(key, wrap(str(entry.value)), setting.at, setting.conditions)
+                source = ShareLine(*setting.source, entry.line) if setting.source is not None else None
+                found[key] = LaunchParameter(key, wrap(str(entry.value)), setting.at, setting.conditions, source)
         return found
 
 

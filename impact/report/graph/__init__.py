@@ -35,6 +35,24 @@ def draw_nodes(graph: Graph, *, nodes: Sequence[str] = (), packages: Sequence[st
     from .nodl import make_documents
 
     return make_documents(select_whole_nodes(graph, nodes=nodes, packages=packages))
+def list_unknown_names(graph: Graph, **asked: Any) -> list[str]:
+    """`path:line: what is not known` of each call whose name or type is not known, or is known in part only; sorted.
+    asked: as for draw(); then only of the files of the part that is asked for."""
+    selected = select_graph(graph, everything=True, **asked)
+    part = selected.graph
+    paths = {each.path for each in (*part.endpoints, *part.publishes, *part.parameters)}
+    lost = [
+        (one.path, one.line, f"{one.what}{f' `{one.written}`' * bool(one.written)}: {one.reason}")
+        for one in graph.coverage.unresolved
+        if one.what != "started node" and not one.what.endswith(" callback")
+        if not selected.asked or one.path in paths
+    ]
+    lost += [
+        (one.path, one.line, f"{one.role} name `{one.written}`: known in part only, as `{one.topic}`")
+        for one in part.endpoints
+        if one.how == "partly"
+    ]
+    return [f"{path}:{line}: {text}" for path, line, text in sorted(set(lost))]
 
 
 def _select_compared(graph: Graph, base: Graph, asked: dict[str, Any]) -> tuple[Selection, Graph]:

@@ -12,6 +12,7 @@ from rosimpact.impact.model.flow.frameworks import Frameworks
 from rosimpact.impact.model.flow.graph import Graph
 from rosimpact.impact.model.flow.join import Join
 from rosimpact.impact.model.flow.nodes import BuiltPackage
+from rosimpact.impact.model.flow.system import ChosenLaunch
 from rosimpact.impact.model.flow.workspace import link_for_flow, make_graph
 
 
@@ -64,7 +65,8 @@ def graph_on_disk(root: Path, files: dict[str, str], launch: str = "") -> Graph:
     """The graph of a workspace that is written to a folder, or of what one of its launch files starts."""
     write(root, files)
     with Store(root / ".cache") as store:
-        return make_graph(link_for_flow(open_tree(root, ""), store), None, launch=launch)
+        chosen = [ChosenLaunch(launch)] if launch else None
+        return make_graph(link_for_flow(open_tree(root, ""), store), None, chosen=chosen)
 
 
 def manifest(name: str, build: str) -> str:

@@ -1,0 +1,430 @@
+"""What launch files start otherwise than at a base: nodes, names, remappings and parameters, with the lines for it."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, lru_cache
+from typing import Literal, NamedTuple
+
+from ....edges.groups import group_pairs
+from ....edges.reach import walk
+from ...facts.kinds import find_kind
+from ..launch.result import Launched, LaunchParameter, SettingFile, ShareLine, Started
+from ..launch.text import wrap
+from ..package import find_folder_role
+from ..workspace import Workspace
+from .graph import Graph
+from .join import Running
+from .launches import follow_launch_files, is_launch
+from .names import normalise
+from .started import InWorkspace, follow_workspace_launch, make_instance
+from .workspace import get_flow
+
+_SETTINGS = frozenset(("launch_xml", "launch_yaml", "params", "xacro"))
+_SHARED = re.compile(r"\$\(find ([\w.-]+)\)/([\w./-]+)")
+_BESIDE = re.compile(r"filename\s*=\s*[\x22\x27]([\w./-]+)[\x22\x27]")
+_COMMENT = re.compile(r"(?m)^\s*#.*$")
+_XML_COMMENT = re.compile(r"(?s)<!--.*?-->")
+_What = Literal["name", "program", "condition", "arguments", "remapping", "parameter", "file"]
+
+
+class StartValue(NamedTuple):
+    """What a node is given, with the line of the launch or parameter file that gives it."""
+
+    text: str
+    path: str
+    line: int
+
+
+class StartedNode(NamedTuple):
+    """A node as a launch file starts it, or an include of a launch file of another package; without a program, a node
+    that only a parameter file names, as the costmap within a server; without a name, what is set for all nodes on
+    ROS 1's parameter server.
+
+    node: its id in the graph of the launch, empty for a program of another package. remaps: by the old name,
+    parameters: by name; files: texts that name files of the workspace, by the parameter that is made from them.
+    """
+
+    name: str
+    node: str
+    program: str
+    condition: str
+    arguments: str
+    path: str
+    line: int
+    remaps: Mapping[str, StartValue]
+    parameters: Mapping[str, StartValue]
+    files: Mapping[str, str]
+
+
+class StartDifference(NamedTuple):
+    """What of a start differs. name: of the remapping or parameter; old, new: empty where there is none. path, line: of
+    the line that says it now, or of what starts the node where none does."""
+
+    what: _What
+    name: str
+    old: str
+    new: str
+    path: str
+    line: int
+
+
+class NodeChange(NamedTuple):
+    """A node that is started otherwise, or is started only now (before is None) or only at the base (now is None).
+    made_of: files that differ, of which what it is given is made."""
+
+    before: StartedNode | None
+    now: StartedNode | None
+    differences: tuple[StartDifference, ...]
+    made_of: tuple[str, ...] = ()
+
+
+class LaunchChange(NamedTuple):
+    """A launch file that starts something otherwise. path: now, at the base where it is gone; added, removed: it is
+    there on one side alone. before, now: the graphs of what it starts. others: it starts programs of other packages."""
+
+    path: str
+    added: bool
+    removed: bool
+    before: Graph
+    now: Graph
+    nodes: tuple[NodeChange, ...]
+    others: bool
+
+
+class LaunchChanges(NamedTuple):
+    """launches: those that start something otherwise. Of launch files, parameter files and robot descriptions that
+    differ in more than comments and layout, unused: those that no launch file is known to use; without_effect: those
+    that are used, though all that is known to be started is as it was."""
+
+    launches: tuple[LaunchChange, ...]
+    unused: tuple[str, ...]
+    without_effect: tuple[str, ...]
+
+
+NO_CHANGES = LaunchChanges((), (), ())
+
+
+@lru_cache(maxsize=2)
+def compare_launches(workspace: Workspace, base: Workspace) -> LaunchChanges:
+    """What the launch files of a workspace start otherwise than at the base."""
+    sides = _Side(workspace), _Side(base)
+    ids = [side.settings for side in sides]
+    changed = {path for path in ids[0].keys() | ids[1].keys() if ids[0].get(path) != ids[1].get(path)}
+    return _Comparison(*sides, changed).compare() if changed else NO_CHANGES
+
+
+class _Side:
+    """A workspace as its launch files start it."""
+
+    def __init__(self, workspace: Workspace):
+        self.workspace, self.sources = workspace, InWorkspace(workspace)
+        self._descriptions: dict[str, frozenset[str]] = {}
+
+    @cached_property
+    def settings(self) -> dict[str, str]:
+        """Contents of launch files, parameter files and robot descriptions, by path; those of tests are left out."""
+        main = self.workspace.extraction
+        found: dict[str, str] = {}
+        for package in self.workspace:
+            start = len(package.path) + 1 if package.path else 0
+            for path in package.linked.files:
+                inner = path[start:]
+                if (find_kind(path) in _SETTINGS or is_launch(inner)) and find_folder_role(inner) != "test":
+                    looks = (main, main.second) if main.second is not None else (main,)
+                    content = next((each.ids[path] for each in looks if path in each.ids), "")
+                    found[path] = content
+        return found
+
+    @cached_property
+    def launches(self) -> dict[str, Launched]:
+        """Launch files that no other includes."""
+        return dict(follow_launch_files(self.workspace))
+
+    def read(self, path: str) -> str | None:
+        """The text of a launch file or the like; None where there is none."""
+        return self.workspace.read(path).decode("utf-8", "replace") if path in self.settings else None
+
+    def follow(self, path: str) -> Launched | None:
+        """What a launch file starts; None where there is none."""
+        if path not in self.launches and path in self.settings:
+            self.launches[path] = follow_workspace_launch(self.workspace, path, {})
+        return self.launches.get(path)
+
+    def list_files(self, launched: Launched) -> Iterator[str]:
+        """All files that decide what a launch starts."""
+        for place in (*launched.files, *launched.parameter_files):
+            yield self.sources.find_workspace_path(*place)
+        for started in (*launched.started, *launched.outside):
+            for text in _list_texts(launched, started):
+                yield from self.list_described(text)
+
+    def list_described(self, text: str) -> Iterator[str]:
+        """The files that a text of a launch names, and those that these include."""
+        for package, inner in _SHARED.findall(text):
+            path = self.sources.find_workspace_path(package, inner.rstrip("."))
+            if path and path not in self._descriptions:
+                self._descriptions[path] = frozenset(walk([path], self._list_included))
+            yield from self._descriptions.get(path, ())
+
+    def _list_included(self, path: str) -> list[str]:
+        text = (self.read(path) or "") if find_kind(path) == "xacro" else ""
+        folder = path.rpartition("/")[0]
+        found = [posixpath.normpath(f"{folder}/{inner}") for inner in _BESIDE.findall(text)]
+        found += [self.sources.find_workspace_path(*place) for place in _SHARED.findall(text)]
+        return [each for each in found if each in self.settings]
+
+    def build_graph(self, launched: Launched | None) -> Graph:
+        code = get_flow(self.workspace).code
+        return code.build(launch=launched or Launched((), {}, ()))
+
+    def list_starts(self, launched: Launched | None) -> Iterator[StartedNode]:
+        if launched is None:
+            return
+        running, _ = get_flow(self.workspace).code.find_started(launched)
+        known = {id(one.instance.started): one for one in running if one.instance is not None}
+        names: list[str] = []
+        inner: dict[str, dict[str, LaunchParameter]] = {}
+        for started in (*launched.started, *launched.outside):
+            if started.kind != "process":
+                found = self._describe_start(launched, started, known.get(id(started)))
+                names.append(found.name)
+                yield found
+                for name, given in _list_inner_parameters(started):
+                    inner.setdefault(name, {}).update(given)
+        for name in sorted(inner.keys() - set(names)):
+            first = next(iter(inner[name].values()))
+            at = self._locate("", first.source or first.at)
+            yield StartedNode(name, "", "", "", "", at.path, at.line, {}, *self._describe_parameters(inner[name]))
+        below = tuple(f"{name}/" for name in names)
+        shared = {key: value for key, value in launched.server.items() if not key.startswith(below)}
+        if shared:
+            at = self._locate("", next(iter(shared.values())).at)
+            yield StartedNode("", "", "", "", "", at.path, at.line, {}, *self._describe_parameters(shared))
+
+    def _describe_start(self, launched: Launched, started: Started, one: Running | None) -> StartedNode:
+        what = started.plugin.shown or started.executable.shown
+        own = what.replace("::", "/").rpartition("/")[2].removesuffix(".py")
+        own = f"<{own}>" if started.kind == "include" else own
+        instance = one.instance if one is not None else None
+        instance = instance or make_instance(launched, own, started)
+        remaps: dict[str, StartValue] = {}
+        for remap in started.remaps if started.generation == 1 else reversed(started.remaps):
+            condition = f" if {' and '.join(remap.conditions)}" if remap.conditions else ""
+            remaps[remap.old.shown] = self._locate(remap.new.shown + condition, remap.at)
+        given = launched.collect_parameters(started, instance.name)
+        if started.kind == "include":
+            given = {each.name: each for each in started.settings if isinstance(each, LaunchParameter)}
+        parameters, files = self._describe_parameters(given)
+        read = {each.file.value for each in started.settings if isinstance(each, SettingFile) and each.entries}
+        files = {key: text for key, text in files.items() if text not in read}
+        arguments = " ".join(argument.shown for argument in started.arguments)
+        if _SHARED.search(arguments):
+            files["arguments"] = arguments
+        place = self._locate("", started.at)
+        package = started.package.shown
+        return StartedNode(
+            instance.name, one.node.id if one is not None else "", f"{package}/{what}" if package else what,
+            " and ".join(started.conditions), arguments, place.path, place.line, remaps, parameters, files,
+        )  # fmt: skip
+
+    def _describe_parameters(
+        self, given: Mapping[str, LaunchParameter]
+    ) -> tuple[dict[str, StartValue], dict[str, str]]:  # fmt: skip
+        """The values of parameters, and the texts of those that name files."""
+        values = {key: self._locate(value.text.shown, value.source or value.at) for key, value in given.items()}
+        return values, {key: value.text for key, value in values.items() if _SHARED.search(value.text)}
+
+    def _locate(self, text: str, at: ShareLine) -> StartValue:
+        path = self.sources.find_workspace_path(at.package, at.path)
+        return StartValue(text, path or f"{at.package}/{at.path}", at.line)
+
+
+def _list_inner_parameters(started: Started) -> Iterator[tuple[str, dict[str, LaunchParameter]]]:
+    """Full names of nodes that the parameter files of a start name, and the parameters: they are for all nodes of the
+    process. Names that are patterns are left out."""
+    for setting in started.settings:
+        if not isinstance(setting, SettingFile) or setting.plain:
+            continue
+        found: dict[str, dict[str, LaunchParameter]] = {}
+        for entry in setting.entries or ():
+            if "ros__parameters" in entry.path and "*" not in "".join(entry.path):
+                split = entry.path.index("ros__parameters")
+                name, key = normalise("/" + "/".join(entry.path[:split])), ".".join(entry.path[split + 1 :])
+                source = ShareLine(*setting.source, entry.line) if setting.source is not None else None
+                found.setdefault(name, {})[key] = LaunchParameter(key, wrap(str(entry.value)), setting.at, (), source)
+        yield from found.items()
+
+
+def _list_texts(launched: Launched, started: Started) -> Iterator[str]:
+    """Texts in which a start may name files."""
+    for argument in started.arguments:
+        yield argument.shown
+    for setting in started.settings:
+        if isinstance(setting, LaunchParameter):
+            yield setting.text.shown
+    if started.generation == 1:
+        yield from (setting.text.shown for setting in launched.server.values())
+
+
+class _Comparison:
+    def __init__(self, now: _Side, before: _Side, changed: set[str]):
+        self.now, self.before, self.changed = now, before, changed
+        self._new_lines: dict[str, dict[int, str]] = {}
+
+    def compare(self) -> LaunchChanges:
+        used: set[str] = set()
+        found = [one for pair in self._pair_launches() if (one := self._compare_launch(*pair, used)) is not None]
+        told = {difference.path for one in found for node in one.nodes for difference in node.differences}
+        told |= {path for one in found for node in one.nodes for path in node.made_of}
+        told |= {place.path for one in found for node in one.nodes for place in (node.before, node.now) if place}
+        unused, silent = self.changed - used - self._find_moved(), used - told - self._find_moved()
+        return LaunchChanges(tuple(found), *(tuple(sorted(filter(self._differs, each))) for each in (unused, silent)))
+
+    def _find_moved(self) -> set[str]:
+        """Files that only have another path."""
+        now, before = self.now.settings, self.before.settings
+        come = {path: content for path, content in now.items() if path not in before}
+        gone = {path: content for path, content in before.items() if path not in now}
+        both = set(come.values()) & set(gone.values())
+        return {path for path, content in (*come.items(), *gone.items()) if content in both}
+
+    def _differs(self, path: str) -> bool:
+        """Whether a file differs in more than comments and layout, or is there on one side alone."""
+        texts = [side.read(path) for side in (self.now, self.before)]
+        if None in texts or not path.endswith((".yaml", ".yml")):
+            return texts[0] is None or texts[1] is None or _strip(texts[0], path) != _strip(texts[1], path)
+        looks = (side.workspace.extraction.look((path,), "flow_parameters") for side in (self.now, self.before))
+        entries = [{one.path: one.value for one in facts[path].entries} if path in facts else {} for facts in looks]
+        return entries[0] != entries[1]
+
+    def _pair_launches(self) -> Iterator[tuple[str, str]]:
+        """The paths of launch files now and at the base, the same but for those that were moved; empty for none."""
+        now, before = self.now.settings, self.before.settings
+        moved: dict[str, str] = {}
+        gone = [path for path in self.before.launches if path not in now]
+        come = [path for path in self.now.launches if path not in before]
+        keys = (lambda settings, path: settings[path], lambda settings, path: path.rpartition("/")[2])
+        for key in keys:
+            old = group_pairs((key(before, path), path) for path in gone if path not in moved.values())
+            new = group_pairs((key(now, path), path) for path in come if path not in moved)
+            alone = (name for name, paths in new.items() if len(paths) == len(old.get(name, ())) == 1)
+            moved |= {new[name][0]: old[name][0] for name in alone}
+        for path in sorted(self.now.launches):
+            yield path, moved.get(path, path if path in before else "")
+        for path in sorted(self.before.launches.keys() - self.now.launches.keys() - set(moved.values())):
+            yield path if path in now else "", path
+
+    def _compare_launch(self, path: str, old_path: str, used: set[str]) -> LaunchChange | None:
+        now, before = self.now.follow(path), self.before.follow(old_path)
+        files = {*self.now.list_files(now)} if now is not None else set()
+        files |= {*self.before.list_files(before)} if before is not None else set()
+        here = files & self.changed
+        used |= here
+        if not here:
+            return None
+        order = [path, *(place for place in sorted(here) if place != path)]
+        starts = [list(side.list_starts(each)) for side, each in ((self.before, before), (self.now, now))]
+        nodes = [
+            NodeChange(old, new, differences, tuple(self._list_all_made_of(new)))
+            for old, new in _pair_starts(*starts)
+            if (differences := tuple(self._list_differences(old, new, order))) or old is None or new is None
+        ]
+        if not nodes:
+            return None
+        others = any(one.program and not one.node for each in starts for one in each)
+        return LaunchChange(
+            path or old_path, not before, not now, self.before.build_graph(before), self.now.build_graph(now),
+            tuple(nodes), others,
+        )  # fmt: skip
+
+    def _list_differences(
+        self, old: StartedNode | None, new: StartedNode | None, files: Sequence[str]
+    ) -> Iterator[StartDifference]:
+        if old is None or new is None:
+            return
+        whole: tuple[tuple[_What, str, str], ...] = (
+            ("name", old.name, new.name), ("program", old.program, new.program),
+            ("condition", old.condition, new.condition), ("arguments", old.arguments, new.arguments),
+        )  # fmt: skip
+        for what, was, value in whole:
+            if was != value:
+                cause = self._find_cause(StartValue(value, new.path, new.line), was, files)
+                yield StartDifference(what, "", was, value, *cause)
+        tables: tuple[tuple[_What, Mapping[str, StartValue], Mapping[str, StartValue]], ...] = (
+            ("remapping", old.remaps, new.remaps), ("parameter", old.parameters, new.parameters),
+        )  # fmt: skip
+        for what, before, now in tables:
+            for name in {**before, **now}:
+                was, value = before.get(name), now.get(name)
+                if was is None or value is None or was.text != value.text:
+                    old_text, text = was.text if was is not None else "", value.text if value is not None else ""
+                    cause = self._find_cause(value or StartValue("", new.path, new.line), old_text, files)
+                    yield StartDifference(what, name, old_text, text, *cause)
+        for name, text in new.files.items():
+            made_of = self._list_made_of(text)
+            was = old.parameters.get(name)
+            if made_of and (name not in new.parameters or (was is not None and new.parameters[name].text == was.text)):
+                line = min(self._list_new(made_of[0]), default=1)
+                yield StartDifference("file", name, "", ", ".join(made_of), made_of[0], line)
+
+    def _list_all_made_of(self, node: StartedNode | None) -> Iterator[str]:
+        for text in node.files.values() if node is not None else ():
+            yield from self._list_made_of(text)
+
+    def _list_made_of(self, text: str) -> list[str]:
+        """The files that differ, of which what a text of a launch names is made; descriptions first."""
+        found = self.changed.intersection(self.now.list_described(text))
+        return sorted(found, key=lambda path: (find_kind(path) != "xacro", path))
+
+    def _find_cause(self, place: StartValue, old: str, files: Iterable[str]) -> tuple[str, int]:
+        """The line that makes a value what it is now: its own, or, where this is as it was, that of a changed file that
+        says so. old: the value that it was."""
+        if place.line in self._list_new(place.path):
+            return place.path, place.line
+        words = set(re.split(r"[^\w.-]+", place.text)) - set(re.split(r"[^\w.-]+", old))
+        order = dict.fromkeys((place.path, *(path for path in files if find_kind(path) != "xacro")))
+        lines = [(path, line, text) for path in order for line, text in sorted(self._list_new(path).items())]
+        named = next(((path, line) for path, line, text in lines if any(word in text for word in words if word)), None)
+        if named is not None:
+            return named
+        own = place.path in self.changed or not lines
+        return (place.path, place.line) if own else lines[0][:2]
+
+    def _list_new(self, path: str) -> dict[int, str]:
+        """The lines of a file that it did not have at the base."""
+        if path not in self._new_lines:
+            old, new = ((side.read(path) or "").splitlines() for side in (self.before, self.now))
+            had = {line.strip() for line in old}
+            self._new_lines[path] = (
+                {place: line for place, line in enumerate(new, 1) if line.strip() not in had}
+                if path in self.changed
+                else {}
+            )
+        return self._new_lines[path]
+
+
+def _strip(text: str, path: str) -> list[str]:
+    """The words of XML or Python without comments."""
+    return (_COMMENT if path.endswith(".py") else _XML_COMMENT).sub(" ", text).split()
+
+
+def _pair_starts(
+    before: Iterable[StartedNode], now: Iterable[StartedNode]
+) -> Iterator[tuple[StartedNode | None, StartedNode | None]]:
+    """Nodes of two launches that are the same: of one name and program, of one name, or else of one program."""
+    old, new = list(before), list(now)
+    keys = (lambda one: (one.name, one.program), lambda one: one.name, lambda one: one.program)
+    for key in keys:
+        waiting = group_pairs((key(one), one) for one in old)
+        for one in [*new]:
+            fitting = waiting.get(key(one))
+            if fitting:
+                first = fitting.pop(0)
+                old.remove(first)
+                new.remove(one)
+                yield first, one
+    yield from ((one, None) for one in old)
+    yield from ((None, one) for one in new)
