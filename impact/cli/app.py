@@ -205,7 +205,8 @@ def graph(
     launch: str = _make_option("Only what this launch file starts, with the names that it assigns.", default=""),
     set_: list[str] = _make_option("An argument of the launch file, NAME:=VALUE. May be repeated.", "--set"),
     code: bool = _make_option(
-        "All programs, with the names that the code gives them, as if no launch file started them.", "--code",
+        "All programs, with the names that the code gives them, as if no launch file started them.",
+        "--code",
         default=False,
     ),
     node: list[str] = _make_option("Only this node and its neighbours; `*` matches any text."),
@@ -218,7 +219,13 @@ def graph(
     follow_links: _FollowLinks = False,
     format: str = _make_option("One of text, json, graphml, dot, mermaid, html.", "--format", "-f", default="text"),
     output: Path | None = _make_option("Write the graph to this file.", "--output", "-o"),
-    all: bool = _make_option("Also show hidden names and everything that was not resolved.", "--all", default=False),
+    all: bool = _make_option(
+        "Also show hidden names, whole conditions and everything that was not resolved.", "--all", default=False
+    ),
+    editor: str = _make_option(
+        "With --format html: the address that opens a place in the editor, with {path} and {line}; `off` for no links.",
+        default="vscode://file/{path}:{line}",
+    ),
     schema: bool = _make_schema_option("graph.json"),
     jobs: _Jobs = None,
     quiet: _Quiet = False,
