@@ -237,6 +237,8 @@ def test_beside_a_base(ws):
     assert "changed: guards" in out
     code, out, _ = run(ws, "--rev", "HEAD")
     assert "when ready_" not in out
+    data = find_data(run(ws, "--rev", "HEAD", "-f", "html")[1])
+    assert data["editor"] == "", "the files on disk are others"
 
 
 def test_an_unchanged_workspace_is_not_joined_again(ws, monkeypatch):

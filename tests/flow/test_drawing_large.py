@@ -108,18 +108,16 @@ def test_moving_and_zooming_lay_nothing_out_anew(page):
 
 
 def test_the_map_shows_and_moves_what_is_in_view(page):
+    from selenium.webdriver import ActionChains
+
     browser = page(LARGE)
     assert not browser.find_element("id", "map").is_displayed(), "all is in view"
     for _ in range(5):
         press(browser, "in")
     assert browser.find_element("id", "map").is_displayed()
     before = get_view(browser)
-    browser.execute_script(
-        "const map = document.getElementById('map'), area = map.getBoundingClientRect();"
-        "map.setPointerCapture = () => {};"
-        "const at = {clientX: area.left + 20, clientY: area.top + 60, buttons: 1};"
-        "map.dispatchEvent(new PointerEvent('pointerdown', at))"
-    )
+    chart = browser.find_element("id", "map")
+    ActionChains(browser).move_to_element_with_offset(chart, -75, 0).click().perform()
     assert get_view(browser) != before
     part = browser.execute_script(
         "const {x, width} = document.getElementById('map-part').getBBox(); return x + width / 2"
@@ -212,6 +210,15 @@ def test_the_choice_of_a_launch_file(page):
     assert shown == {node.name for node in LARGE.nodes if LAUNCHES[2] in node.launches}
     alone = structs.replace(LARGE, nodes=tuple(structs.replace(node, launches=LAUNCHES[:1]) for node in LARGE.nodes))
     assert not page(alone).find_element("id", "launch").is_displayed()
+
+
+def test_a_group_counts_what_the_filters_let_through(page):
+    browser = page(LARGE)
+    choose(browser, "launch", f"={LAUNCHES[2]}")
+    counts = {n: sum(LAUNCHES[2] in node.launches for node in LARGE.nodes[n::10]) for n in range(10)}
+    assert labels(browser) == [f"group /space_{n}, {count} of 20 nodes" for n, count in counts.items()]
+    choose(browser, "package", "=package_4")
+    assert not any(label.startswith("group /space_4, 1 ") for label in labels(browser)), "one node stands for itself"
 
 
 def test_the_search_finds_what_is_folded(page):

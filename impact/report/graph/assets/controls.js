@@ -11,7 +11,15 @@ const isFolded = (group) => !open.has(group.key);
 // The box that stands for a node; what is near a box is never folded.
 function stand(box) {
   const group = near ? null : groupOf(box);
-  return group && isFolded(group) ? group : box;
+  return group && isFolded(group) && group.present > 1 ? group : box;
+}
+// How many nodes of each group the filters let through; a group of which that is one stands as this one.
+function countPresent() {
+  for (const group of grouping() ? groups[grouping()].list : []) {
+    group.present = group.members.filter((box) => fitting.boxes.has(box)).length;
+    const all = counted(group.members.length, "node"), below = group.present < group.members.length ? `${number(group.present)} of ${all}` : all;
+    if (group.below !== below) Object.assign(group, { below, shown: undefined });
+  }
 }
 function fold(group, shut) {
   if (shut) open.delete(group.key); else open.add(group.key);
@@ -32,9 +40,11 @@ function update() {
   const loners = !near && at("alone").checked ? [...nodes, ...names].filter((box) => lone(box) && (!asked.changed || box.mark)
     && (box.node ? (!asked.package || asked.package === `=${box.node.package}`) && startedBy(box.node, asked.launch) : asked.kinds.has(box.kind) && !asked.package && !asked.launch)) : [];
   fitting = { edges: kept, boxes: new Set([...kept.flatMap((edge) => [edge.nodeBox, edge.nameBox]), ...loners, ...(near ? [near] : [])]) };
+  countPresent();
   const table = viewed() === "table";
   at("stage").hidden = table;
   at("table").hidden = !table;
+  at("legend").querySelector('[data-kind="group"]').hidden = !grouping();
   at("folding").hidden = table || !grouping() || viewed() === "topics";
   if (!table) arrange(kept, loners);
   const wanted = chosen?.key;
@@ -69,6 +79,7 @@ function arrange(kept, loners) {
   drawMap();
   fit();
   at("empty").hidden = shownBoxes.length > 0;
+  if (!nodes.length && !names.length) at("empty").textContent = "No node was found; the panel says what was read.";
   performance.measure("rosimpact graph layout", { start, end: performance.now() });
 }
 
@@ -171,11 +182,11 @@ function comeBack() {
 // ---- what the controls offer ---------------------------------------------------------------------------------------
 
 function legend() {
-  const sample = (kind, mark, text) => make("li", null, draw("svg", { width: 26, height: 14, viewBox: "-13 -7 26 14", "aria-hidden": "true" },
+  const sample = (kind, mark, text) => make("li", { "data-kind": kind }, draw("svg", { width: 26, height: 14, viewBox: "-13 -7 26 14", "aria-hidden": "true" },
     kind === "line" ? draw("g", { class: `edge ${mark}` }, draw("path", { class: "line", d: "M-12 0H5" }), draw("path", { class: "tip", d: "M12 0l-9 -4.2v8.4z" }))
       : draw("g", { class: `box ${kind}` }, kind === "action" ? draw("path", { class: "shape", d: "M-12 0L-7 -5.5H7L12 0L7 5.5H-7Z" })
         : draw("rect", { class: "shape", x: -12, y: -5.5, width: 24, height: 11, rx: kind === "node" ? 5.5 : 2 }))), text);
-  const present = ["node", ...(groups.package.list.length + groups.namespace.list.length ? ["group"] : []), ...KINDS.filter((kind) => names.some((box) => box.kind === kind))];
+  const present = ["node", "group", ...KINDS.filter((kind) => names.some((box) => box.kind === kind))];
   at("legend").append(...present.map((kind) => sample(kind, "", kind)));
   if ([...nodes, ...names, ...edges].some((one) => one.unsure)) at("legend").append(sample("line", "unsure", "not certain"));
   if (graph.base !== null) at("legend").append(...MARKS.map((mark) => sample("line", mark, mark)));
@@ -220,7 +231,7 @@ performance.mark("rosimpact graph drawn");
 
 at("filters").addEventListener("input", (event) => {
   if (event.target === at("search")) { chosen = null; search(); show(); return; }
-  if (event.target === at("group")) open.clear();
+  if (event.target === at("group")) { open.clear(); if (chosen?.members) chosen = null; }
   update();
 });
 at("filters").addEventListener("submit", (event) => event.preventDefault());

@@ -51,7 +51,6 @@ function groupNodes(how, find) {
   }
   const real = [...found.values()].filter((group) => group.members.length > 1).sort((a, b) => (a.label < b.label ? -1 : 1));
   for (const group of real) {
-    group.below = counted(group.members.length, "node");
     group.edges = group.members.flatMap((box) => box.edges);
     group.mark = group.edges.some((edge) => edge.mark) ? "changed" : "";
   }

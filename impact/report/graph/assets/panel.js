@@ -1,5 +1,5 @@
 // The panel beside the drawing: all that is known of what is chosen.
-const BATCH = 100, LONG = 160;
+const BATCH = 100, LONG = 160, FEW = 12;
 const [NAME, DEFAULT, USES, PATH, LINE, MORE] = Array(6).keys();
 
 // A place is a link into the editor, where the page was made for one; gone: it is one of the base, not of the files.
@@ -42,7 +42,7 @@ function head(title, mark, facts, tools = []) {
 function toolsOf(box) {
   const found = [near === box ? button("Show all again", () => { near = null; update(); }) : button("Only what is near", () => { near = box; update(); go(box); })];
   const group = groupOf(box);
-  if (group && !near) found.push(isFolded(group) ? button(`Unfold ${group.label}`, () => fold(group, false)) : button(`Fold ${group.label}`, () => fold(group, true)));
+  if (group?.present > 1 && !near) found.push(isFolded(group) ? button(`Unfold ${group.label}`, () => fold(group, false)) : button(`Fold ${group.label}`, () => fold(group, true)));
   return found;
 }
 
@@ -112,13 +112,16 @@ function namePanel(box) {
   const facts = [`${box.kind}, ${name.types.length ? name.types.join(" or ") : "type not known"}`];
   if (name.open) facts.push(doubt("not certain: what stands in < > is not known"));
   if (name.rates.length) facts.push(`published at ${name.rates.map(sayRate).join(", ")}`);
-  return [...head(box.label, marked(box.mark), facts, toolsOf(box)), ...byRole(box, 2), ...name.keys.flatMap(fieldList)];
+  return [...head(box.label, marked(box.mark), facts, toolsOf(box)), ...name.keys.flatMap(fieldList), ...byRole(box, 2)];
 }
 
 // What a message, service or action consists of; what is nested in it opens.
 function fieldList(key) {
   const found = Object.hasOwn(graph.interfaces, key) ? graph.interfaces[key] : null;
-  return found ? [make("h3", null, `Fields of ${key}`), ...members(key, [])] : [];
+  if (!found) return [];
+  const shown = make("details", { class: "type" }, make("summary", null, make("h3", null, `Fields of ${key}`)), members(key, []));
+  shown.open = Object.values(found).flat().length <= FEW;
+  return [shown];
 }
 function members(key, above) {
   return Object.entries(graph.interfaces[key]).flatMap(([part, list]) => [
@@ -166,7 +169,7 @@ function summary() {
     ...(graph.base === null ? [] : changes.length ? section(`Changes since ${graph.base}`, changes, (edge) => make("li", null, marked(edge.mark, edge.why), " ",
       edge.nodeBox ? button(`${edge.nodeBox.label} ${verb(edge.role)} ${edge.nameBox.label}`, () => { choose(edge); revealChosen(); }, { class: "go" }) : link(edge.nameBox),
       place(edge.at[0]?.path, edge.at[0]?.line, edge.mark === "removed"))) : [make("h3", null, "Changes"), make("p", null, `None since ${graph.base}.`)]),
-    ...section("Groups", grouping() ? groups[grouping()].list : [], (group) => make("li", { class: "foldable" }, link(group), group.below, button(isFolded(group) ? "Unfold" : "Fold", () => fold(group, !isFolded(group)), { class: "small", "aria-label": `${isFolded(group) ? "unfold" : "fold"} ${group.label}` }))),
+    ...section("Groups", grouping() ? groups[grouping()].list.filter((group) => group.present > 1) : [], (group) => make("li", { class: "foldable" }, link(group), group.below, button(isFolded(group) ? "Unfold" : "Fold", () => fold(group, !isFolded(group)), { class: "small", "aria-label": `${isFolded(group) ? "unfold" : "fold"} ${group.label}` }))),
     ...section("Not resolved", coverage.unresolved, (one) => make("li", null, `${one.what} `, one.written ? code(one.written) : "", make("p", { class: "soft" }, withCode(one.reason)), place(one.path, one.line))),
     ...section("Read in part", coverage.unread, (path) => make("li", null, place(path))),
     make("p", { class: "soft" }, `rosimpact ${graph.version}, ROS ${graph.ros}`)].filter(Boolean);

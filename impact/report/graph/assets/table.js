@@ -10,7 +10,7 @@ const COLUMNS = [
 ];
 let sorted = { column: "name", down: false };
 
-const endQos = (qos) => (qos ? [qos.reliability, qos.durability, qos.depth >= 0 ? `depth ${qos.depth}` : ""].filter(Boolean).join(" ") || qos.written : "");
+const endQos = (qos) => (qos ? [...new Set([qos.reliability, qos.durability, qos.depth >= 0 ? `depth ${qos.depth}` : ""])].filter(Boolean).join(" ") : "");
 const sayRate = ([period, rate]) => (rate === null ? `each ${period}` : `${number(Number(rate.toPrecision(3)))} Hz`);
 
 function buildRows() {
@@ -37,8 +37,8 @@ function compareRows(a, b) {
 
 function nodeList(list) {
   const boxes = [...new Set(list.map((edge) => edge.nodeBox))];
-  const shown = boxes.slice(0, 3).map((box) => make("span", { class: list.find((edge) => edge.nodeBox === box).unsure ? "unsure" : "" }, button(box.label, () => go(box), { class: "go" })));
-  return make("td", null, make("b", null, number(boxes.length)), " ", shown.flatMap((one, index) => (index ? [", ", one] : [one])), boxes.length > 3 ? ` and ${number(boxes.length - 3)} more` : "");
+  const shown = boxes.slice(0, 3).map((box) => make("div", { class: list.find((edge) => edge.nodeBox === box).unsure ? "unsure" : "" }, button(box.label, () => go(box), { class: "go" })));
+  return make("td", null, make("b", null, number(boxes.length)), shown, boxes.length > 3 ? `and ${number(boxes.length - 3)} more` : "");
 }
 
 function tabulate() {
