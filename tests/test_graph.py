@@ -142,6 +142,67 @@ def test_nodes_are_told_by_what_is_built_and_installed(ws):
     }
 
 
+def test_a_node_tells_the_launch_files_that_start_it(ws):
+    other = ws / "src/talk/launch/other.launch.xml"
+    other.write_text('<launch><include file="$(find-pkg-share talk)/launch/talk.launch.xml"/></launch>')
+    third = ws / "src/talk/launch/third.launch.xml"
+    third.write_text('<launch><node pkg="hear" exec="hear_node"/></launch>')
+    nodes = {node["name"]: node for node in json.loads(run(ws, "-f", "json")[1])["nodes"]}
+    folder = "src/talk/launch"
+    assert nodes["/front/speaker"]["launches"] == [f"{folder}/other.launch.xml"], "what another includes is no system"
+    assert nodes["/listener"]["launches"] == [f"{folder}/other.launch.xml", f"{folder}/third.launch.xml"]
+    assert nodes["/front/speaker"]["started"] == f"{folder}/talk.launch.xml:3", "a path in the workspace"
+
+
+def find_data(text: str) -> dict:
+    return json.loads(text.partition('id="data">')[2].partition("</script>")[0])
+
+
+def test_the_page_has_the_fields_of_the_types_that_the_graph_uses(ws):
+    folder = ws / "src/own_msgs"
+    for name, text in {
+        "package.xml": manifest("own_msgs", "ament_cmake"),
+        "CMakeLists.txt": 'project(own_msgs)\nrosidl_generate_interfaces(own_msgs "msg/Mood.msg" "msg/Other.msg")\n',
+        "msg/Mood.msg": "int32 GOOD=1\nint32 mood 1\nstd_msgs/Header header\nPart[] parts\n",
+        "msg/Part.msg": "string<=10 text\n",
+        "msg/Other.msg": "string text\n",
+    }.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    source = ws / "src/talk/src/talker.cpp"
+    source.write_text(source.read_text().replace("std_msgs::msg::String", "own_msgs::msg::Mood"))
+    data = find_data(run(ws, "-f", "html")[1])
+    assert data["interfaces"]["own_msgs/msg/Mood"] == {"message": [
+        ["GOOD", "int32", "", "1", True], ["mood", "int32", "", "1", False],
+        ["header", "std_msgs/Header", "std_msgs/msg/Header", "", False],
+        ["parts", "Part[]", "own_msgs/msg/Part", "", False],
+    ]}  # fmt: skip
+    assert data["interfaces"]["own_msgs/msg/Part"] == {"message": [["text", "string<=10", "", "", False]]}
+    assert "frame_id" in [member[0] for member in data["interfaces"]["std_msgs/msg/Header"]["message"]], "as released"
+    assert "own_msgs/msg/Other" not in data["interfaces"]
+
+
+@pytest.mark.parametrize(
+    ("options", "editor"),
+    [
+        ([], "vscode://file/{path}:{line}"),
+        (["--editor", "idea://open?file={path}&line={line}"], "idea://open?file={path}&line={line}"),
+        (["--editor", "off"], ""),
+    ],
+)
+def test_the_page_links_into_the_editor(ws, options, editor):
+    data = find_data(run(ws, "-f", "html", *options)[1])
+    assert (data["editor"], data["folder"]) == (editor, str(ws.resolve()))
+
+
+@pytest.mark.parametrize("pattern", ["", "vim", "javascript:alert('{path}')", "data:text/html,{path}", "vscode://file"])
+def test_an_editor_that_is_no_address_is_refused(ws, pattern):
+    code, _, err = run(ws, "-f", "html", "--editor", pattern)
+    assert code == 2
+    help = "write an address such as vscode://file/{path}:{line}, or off for no links"
+    assert err == f"rosimpact: --editor {pattern}: {help}\n"
+
+
 def test_a_launch_file_gives_names_parameters_and_remappings(ws):
     code, out, _ = run(ws, "--launch", "talk.launch.xml", "-f", "json")
     assert code == 0
@@ -260,6 +321,8 @@ def test_beside_a_base(ws):
     assert "changed: guards" in out
     code, out, _ = run(ws, "--rev", "HEAD")
     assert "when ready_" not in out
+    data = find_data(run(ws, "--rev", "HEAD", "-f", "html")[1])
+    assert data["editor"] == "", "the files on disk are others"
 
 
 def test_an_unchanged_workspace_is_not_joined_again(ws, monkeypatch):

@@ -9,7 +9,9 @@ from typing import NamedTuple
 from ...edges import processes
 from ..config import SystemSetting
 from ..facts.store import Store
+from ..model.flow.definitions import Sections
 from ..model.flow.graph import Graph
+from ..model.flow.select import get_kind
 from ..model.flow.system import ChosenLaunch
 from ..model.flow.workspace import link_for_flow, make_graph
 from ..model.workspace import Workspace
@@ -20,11 +22,20 @@ _ARGUMENT = re.compile(r"\s+(?=[A-Za-z_][\w.-]*:=)")
 
 
 class Graphs(NamedTuple):
-    """The graph asked for, that of the base when there is one, and what to know about both."""
+    """The graph asked for, that of the base when there is one, what to know about both, and the workspace."""
 
     now: Graph
     before: Graph | None
     notes: tuple[str, ...]
+    workspace: Workspace
+
+    def describe_interfaces(self) -> dict[str, Sections]:
+        """What the types of both graphs consist of, see model/flow/definitions.py."""
+        from ..model.flow.definitions import describe_interfaces  # of use to the page alone
+
+        graphs = [self.now, *([self.before] if self.before is not None else [])]
+        types = {(get_kind(one), one.type) for graph in graphs for one in graph.endpoints if "/" in one.type}
+        return describe_interfaces(self.workspace, sorted(types))
 
 
 def build_graphs(
@@ -54,14 +65,14 @@ def build_graphs(
         now = make_graph(workspace, store, os.fspath(path), rev, chosen if launch else None, **how)
         strangers = tuple(_describe_undeclared(workspace, own, given))
         if not base:
-            return Graphs(now, None, strangers)
+            return Graphs(now, None, strangers, workspace)
         from .revision_compare import open_base_tree
 
         old_tree, notes = open_base_tree(tree, tuple(base))
         had = [one for one in chosen if old_tree.exists(one.path)]
         old = link_for_flow(old_tree, store, jobs)
         before = make_graph(old, store, os.fspath(path), " ".join(base), had if launch else None, **how)
-        return Graphs(now, before, (*strangers, *notes))
+        return Graphs(now, before, (*strangers, *notes), workspace)
 
 
 def _find_system(path: Path, tree: Tree, name: str, config: Path | None, follow_links: bool) -> SystemSetting:

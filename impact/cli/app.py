@@ -211,7 +211,8 @@ def graph(
     ),
     system: str = _make_option("Only what the launch files of [systems.NAME] in rosimpact.toml start.", default=""),
     code: bool = _make_option(
-        "All programs, with the names that the code gives them, as if no launch file started them.", "--code",
+        "All programs, with the names that the code gives them, as if no launch file started them.",
+        "--code",
         default=False,
     ),
     node: list[str] = _make_option("Only this node and its neighbours; `*` matches any text."),
@@ -236,7 +237,13 @@ def graph(
         "Write the graph to this file; with nodl, PACKAGE/PROGRAM.nodl.yaml for each node to this folder.",
         "--output", "-o",
     ),
-    all: bool = _make_option("Also show hidden names and everything that was not resolved.", "--all", default=False),
+    all: bool = _make_option(
+        "Also show hidden names, whole conditions and everything that was not resolved.", "--all", default=False
+    ),
+    editor: str = _make_option(
+        "With --format html: the address that opens a place in the editor, with {path} and {line}; `off` for no links.",
+        default="vscode://file/{path}:{line}",
+    ),
     schema: bool = _make_schema_option("graph.json"),
     jobs: _Jobs = None,
     quiet: _Quiet = False,

@@ -1,15 +1,19 @@
 """rosimpact graph."""
 
+import os
+import re
 from pathlib import Path
 
 from ...edges.console import UserError, format_count, say
 from .output import find_style, make_command, make_progress_bar, say_notes
 
+_ADDRESS = re.compile(r"(?!(?:javascript|data|vbscript|blob):)[a-z][a-z0-9+.-]*:[^\s\"<>\\^`|]*\Z")
+
 
 @make_command("text", "json", "graphml", "dot", "mermaid", "html", "nodl", folders=("nodl",))
 def graph(
     path: Path, *, launch, set_, system, code, node, topic, package, around, hops, rev, base, strict, config, format,
-    output, all, jobs, quiet, follow_links,
+    output, all, editor, jobs, quiet, follow_links,
 ) -> tuple[str | dict[str, str], int]:  # fmt: skip
     """The message-flow graph, and the exit status."""
     given = dict(argument.partition(":=")[::2] for argument in set_)
@@ -23,6 +27,7 @@ def graph(
         raise UserError("--code: shows the graph without launch files; leave out --code, or --launch and --system")
     if format == "nodl" and (base or topic or around):
         raise UserError("--format nodl: writes whole interfaces of one revision; choose nodes with --node or --package")
+    address = _validate_editor(editor)
     from ..analysis.graph import build_graphs
     from ..report.graph import draw, draw_nodes, list_unknown_names
 
@@ -37,7 +42,12 @@ def graph(
     if format == "nodl":
         text = draw_nodes(found.now, nodes=node, packages=package)
     else:
-        text = draw(found.now, format, found.before, everything=all, style=find_style(output), **asked)
+        # What an editor opens is the file on disk, which another revision's lines do not fit.
+        text = draw(
+            found.now, format, found.before, everything=all, style=find_style(output), **asked,
+            editor="" if rev else address, folder=os.path.realpath(path),
+            interfaces=found.describe_interfaces() if format == "html" else None,
+        )  # fmt: skip
     unknown = list_unknown_names(found.now, **asked) if strict else []
     for line in unknown:
         say(line)
@@ -45,3 +55,13 @@ def graph(
         count = format_count(len(unknown), "API call")
         say(f"rosimpact: --strict: {count} whose name or type is not fully known; write it out, or give it with --set")
     return text, int(bool(unknown))
+
+
+def _validate_editor(pattern: str) -> str:
+    """The address of a place in an editor, empty for no links. Raises UserError."""
+    if pattern == "off":
+        return ""
+    if "{path}" not in pattern or not _ADDRESS.match(pattern):
+        example = "vscode://file/{path}:{line}"
+        raise UserError(f"--editor {pattern}: write an address such as {example}, or off for no links")
+    return pattern

@@ -57,6 +57,40 @@ def test_text_beside_a_base():
     assert any(line.startswith("  subscribes  /mover") for line in lines)
 
 
+def guarded(*conditions):
+    """The driver, with conditions around its publish statement; those that begin with ! are early returns."""
+    lines = [f"if ({one[1:]}) return;" if one[0] == "!" else f"if ({one})" for one in conditions]
+    return DRIVER.replace("if (ready_) pub_", " ".join([*lines, "pub_"]))
+
+
+CHAIN = [f"!code_ == {number} && state_machine_.last_transition() != Transition::kind_{number}" for number in range(8)]
+
+
+def test_conditions_are_cut_to_those_nearest_to_the_statement():
+    graph = robot(driver=guarded(*CHAIN, "code_ == 8"))
+    (line,) = (line for line in draw(graph, "text").splitlines() if "publish at driver" in line)
+    last = "not (code_ == 7 && state_machine_.last_transition() != Transition::kind_7)"
+    assert line.endswith(f"  when {last} and code_ == 8 and 7 more (--all); on timer 100ms")
+    (line,) = (line for line in draw(graph, "text", everything=True).splitlines() if "publish at driver" in line)
+    assert line.count("not (") == 8
+    assert "more (--all)" not in line
+
+
+@pytest.mark.parametrize(
+    ("condition", "shown"),
+    [
+        (lambda mode: [f"!mode_ == {mode}", *CHAIN, "code_ == 8"], "when not (mode_ == {}) and "),
+        (lambda mode: [" || ".join([*(f"code_ == Code::number_{one}" for one in range(9)), mode])], " || {};"),
+    ],
+)
+def test_of_conditions_that_are_cut_those_that_differ_stay(condition, shown):
+    now, before = (robot(driver=guarded(*condition(mode))) for mode in ("FAST", "SLOW"))
+    gone, new = (line for line in draw(now, "text", before).splitlines() if "publish at driver" in line)
+    assert shown.format("SLOW") in gone
+    assert shown.format("FAST") in new
+    assert len(max(gone, new, key=len)) < 200
+
+
 def test_of_a_statement_that_many_ways_lead_to_the_ways_that_differ_are_said():
     def driver(guard):
         return DRIVER.replace("if (ready_) pub_->publish(scan_);", "send();").replace(

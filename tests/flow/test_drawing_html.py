@@ -1,12 +1,14 @@
-"""The page of the message-flow graph in a real browser: places, filters, keyboard, hostile names, 300 nodes."""
+"""The page of the message-flow graph in a real browser: places, filters, keyboard, hostile names."""
 
 import json
 import re
 from itertools import pairwise
 
 import pytest
+from in_browser import asked_for, choose, click, keys, labels, overlapping, texts
 from msgspec import structs
 from robot import DRIVER, robot
+from rosimpact.impact.model.flow.definitions import DefinedMember, make_key
 from rosimpact.impact.model.flow.graph import (
     Callback,
     Coverage,
@@ -37,10 +39,17 @@ def hostile() -> Graph:
     callback = Callback(PAYLOAD, PAYLOAD, 5)
     made = {"node": PAYLOAD, "type": PAYLOAD, "path": PAYLOAD, "line": 1, "written": PAYLOAD, "function": PAYLOAD}
     return Graph(
-        nodes=(Node(PAYLOAD, PAYLOAD, PAYLOAD, "executable", PAYLOAD, PAYLOAD, "cpp", PAYLOAD, 1, PAYLOAD),),
+        nodes=tuple(
+            Node(
+                id, PAYLOAD, PAYLOAD, "executable", PAYLOAD, PAYLOAD, "cpp", PAYLOAD, 1, PAYLOAD, (PAYLOAD,),
+                (PAYLOAD, f"{PAYLOAD}/2"),
+            )
+            for id in (PAYLOAD, f"{PAYLOAD}/2")
+        ),
         endpoints=(
             Endpoint("publisher", topic=PAYLOAD, qos=Qos(reliability=PAYLOAD, written=PAYLOAD), **made),
-            Endpoint("server", topic=f"/{PAYLOAD}", callback=callback, **made),
+            Endpoint("server", topic=f"/{PAYLOAD}", callback=callback, only_if=PAYLOAD, **made),
+            Endpoint("subscriber", topic=PAYLOAD, **made | {"node": f"{PAYLOAD}/2"}),
             Endpoint("subscriber", topic="", reason=PAYLOAD, **made),
         ),
         publishes=(
@@ -54,66 +63,6 @@ def hostile() -> Graph:
         coverage=Coverage(3, 2, 0, 1, (PAYLOAD,), (Unresolved(PAYLOAD, PAYLOAD, PAYLOAD, 8, PAYLOAD),)),
         root=PAYLOAD,
     )  # fmt: skip
-
-
-def large() -> Graph:
-    """300 nodes and 600 topics: each node says two and hears up to four, near and far ones."""
-    nodes = tuple(Node(f"p{n % 30}/n{n}", f"/ns/node_number_{n}", f"p{n % 30}", "executable") for n in range(300))
-    ends = []
-    for n, node in enumerate(nodes):
-        said = [f"/ns/topic_{2 * n}", f"/ns/topic_{2 * n + 1}"]
-        heard = [f"/ns/topic_{(n * k + j) % 600}" for k, j in ((2, 590), (2, 583), (7, 11), (13, 5))][: 1 + n % 4]
-        for role, topics in (("publisher", said), ("subscriber", heard)):
-            ends += [Endpoint(role, node.id, topic, "std_msgs/String", f"p/n{n}.cpp", 10) for topic in topics]
-    return Graph(nodes, tuple(ends), (), (), (), Coverage(len(ends), len(ends), 0, 300), root="large")
-
-
-@pytest.fixture
-def page(browser, opened):
-    yield lambda graph, base=None, fragment="", **asked: opened(draw(graph, "html", base, **asked), fragment)
-    assert browser.get_log("browser") == []
-
-
-def texts(browser, selector):
-    return browser.execute_script(
-        "return [...document.querySelectorAll(arguments[0])].map((node) => node.textContent)", selector
-    )
-
-
-def labels(browser, selector=""):
-    """What screen readers call the boxes that fit the selector, sorted."""
-    return sorted(
-        browser.execute_script(
-            "return [...document.querySelectorAll('.box[role]' + arguments[0])].map((box) => box.ariaLabel)",
-            selector,
-        )
-    )
-
-
-def click(browser, label):
-    browser.find_element("css selector", f'.box[aria-label="{label}"]').click()
-
-
-def choose(browser, name, value):
-    browser.execute_script(
-        "const node = document.getElementById(arguments[0]); node.value = arguments[1];"
-        "node.dispatchEvent(new Event('input', {bubbles: true}))",
-        name,
-        value,
-    )
-
-
-def keys(browser, *pressed):
-    from selenium.webdriver import ActionChains
-
-    ActionChains(browser).send_keys(*pressed).perform()
-
-
-def asked_for(browser):
-    """Addresses the page asked for, itself excepted."""
-    events = [json.loads(entry["message"])["message"] for entry in browser.get_log("performance")]
-    urls = [e["params"]["request"]["url"] for e in events if e["method"] == "Network.requestWillBeSent"]
-    return [url for url in urls if url != browser.current_url.partition("#")[0] and url != "about:blank"]
 
 
 ALL = ["node /driver", "node /mover", "node /planner", "service /calibrate", "topic /plan", "topic /scan"]
@@ -143,16 +92,6 @@ def test_messages_flow_from_left_to_right_and_no_boxes_overlap(page):
     for left, right in pairwise(way):
         assert place[left][1] < place[right][0]
     assert not overlapping([sides for _, *sides in found])
-
-
-def overlapping(boxes):
-    """Pairs of boxes (left, right, top, bottom) that share some ground."""
-    return [
-        (a, b)
-        for n, a in enumerate(boxes)
-        for b in boxes[:n]
-        if a[0] < b[1] and b[0] < a[1] and a[2] < b[3] and b[2] < a[3]
-    ]
 
 
 def test_a_click_on_a_topic_shows_who_uses_it_and_where(page):
@@ -255,60 +194,34 @@ def test_changes_against_a_base(page):
     assert "ready_" not in browser.find_element("css selector", "#panel .before").text
 
 
-def test_hostile_names_stay_names(page):
-    browser = page(hostile(), everything=True)
-    for box in range(3):
+@pytest.mark.parametrize("group", ["", "package"])
+def test_hostile_names_stay_names(page, group):
+    key = make_key("topic", PAYLOAD)
+    member = DefinedMember(PAYLOAD, PAYLOAD, key, PAYLOAD)
+    browser = page(
+        hostile(), fragment=f"#group={group}", everything=True, interfaces={key: {PAYLOAD: [member]}},
+        editor="vscode://file/{path}:{line}", folder=PAYLOAD,
+    )  # fmt: skip
+    for box in range(len(labels(browser))):
         browser.execute_script(
             "document.querySelectorAll('.box[role]')[arguments[0]].dispatchEvent(new MouseEvent('click'))", box
         )
         assert "onerror=window.hacked=1>" in browser.find_element("id", "panel").text
+    choose(browser, "view", "table")
+    assert "onerror=window.hacked=1>" in browser.find_element("id", "table").text
     choose(browser, "search", PAYLOAD[:40])
     assert browser.execute_script("return window.hacked") is None
-    assert browser.execute_script("return document.querySelectorAll('main img, main script, main a').length") == 0
+    assert browser.execute_script("return document.querySelectorAll('main img, main script').length") == 0
+    links = browser.execute_script("return [...document.querySelectorAll('main a')].map((one) => one.protocol)")
+    assert set(links) <= {"vscode:"}
     assert "\u202e" not in browser.page_source, "nothing turns the direction of the text"
     assert asked_for(browser) == []
 
 
 def test_hostile_filters_in_the_address_do_nothing(page):
-    browser = page(NOW, fragment="#package=%3D%3Cimg%20src%3Dx%3E&show=__proto__&near=%3Cscript%3E&topic=x")
+    asked = "package=%3D%3Cimg%20src%3Dx%3E&show=__proto__&near=%3Cscript%3E&topic=x&open=%7B&sort=x+down&view=x"
+    browser = page(NOW, fragment=f"#{asked}")
     assert texts(browser, "#panel h2") == ["ws"]
-
-
-def test_three_hundred_nodes_and_six_hundred_topics_are_usable(page):
-    browser = page(large())
-    assert len(labels(browser)) == 900
-    seconds = browser.execute_script("return performance.getEntriesByName('rosimpact graph drawn')[0].startTime") / 1000
-    assert seconds < 10, "2 s on an idle machine; the rest is for busy ones"
-    boxes = browser.execute_script(
-        "return [...document.querySelectorAll('.box[role] .shape')].map((box) => {"
-        " const {left, right, top, bottom} = box.getBoundingClientRect(); return [left, right, top, bottom]; })"
-    )
-    assert not overlapping(boxes)
-    choose(browser, "search", "topic_599")
-    assert labels(browser, ".hit") == ["topic /ns/topic_599"]
-    choose(browser, "search", "")
-    choose(browser, "package", "=p7")
-    assert sum(label.startswith("node") for label in labels(browser)) == 10
-
-
-def test_the_layout_is_the_same_every_time(page):
-    def places(browser):
-        return browser.execute_script(
-            "return [...document.querySelectorAll('.box[role]')].map((box) => box.getAttribute('transform'))"
-        )
-
-    assert places(page(large())) == places(page(large()))
-
-
-def test_paper_shows_the_whole_graph(page):
-    browser = page(large())
-    browser.execute_script("dispatchEvent(new Event('beforeprint'))")
-    room = browser.execute_script("return document.getElementById('drawing').viewBox.baseVal.width")
-    widest = browser.execute_script("return document.getElementById('world').getBBox().width")
-    assert room >= widest
-    assert browser.execute_script("return document.getElementById('world').getAttribute('transform')") is None
-    browser.execute_script("dispatchEvent(new Event('afterprint'))")
-    assert browser.execute_script("return document.getElementById('drawing').getAttribute('viewBox')") is None
 
 
 def test_an_empty_graph(page):

@@ -105,16 +105,21 @@ def name_nodes(nodes: Sequence[Node]) -> dict[str, str]:
 
 
 def format_conditions(guards: Sequence[GuardAt]) -> str:
-    """What must hold, in one line; what is a choice itself stands in parentheses among others. Empty for nothing."""
+    """What must hold, in one line. Empty for nothing."""
+    return " and ".join(list_conditions(guards))
+
+
+def list_conditions(guards: Sequence[GuardAt]) -> list[str]:
+    """What must hold, outermost first; what is a choice itself stands in parentheses among others."""
     asked = [guard for guard in guards if guard.kind in ("if", "unless")]
-    return " and ".join(
+    return [
         f"not ({guard.text})"
         if guard.kind == "unless"
         else f"({guard.text})"
         if len(asked) > 1 and _CHOICE.search(guard.text)
         else guard.text
         for guard in asked
-    )
+    ]
 
 
 def format_loops(guards: Sequence[GuardAt]) -> str:

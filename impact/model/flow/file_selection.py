@@ -60,8 +60,8 @@ def compute_stamp(workspace: Workspace, second: ExtractedFacts | None = None) ->
     facts alone, for what is joined of nothing else."""
     found = hashlib.sha1(workspace.identity + compute_code_stamp().encode())
     main = workspace.extraction
-    for extraction in (second,) if second is not None else (main, main.second):
-        for path in sorted(extraction.kinds if extraction is not None else ()):
+    for extraction in filter(None, (second,) if second is not None else (main, main.second)):
+        for path in sorted(extraction.kinds):
             if extraction is not main or extraction.kinds[path] in _READ:
                 row = f"{path} {extraction.ids.get(path, '')} {extraction.kinds[path]}\n"
                 found.update(row.encode("utf-8", "surrogateescape"))

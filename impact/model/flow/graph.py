@@ -22,7 +22,8 @@ class Node(msgspec.Struct, frozen=True):
     name: with its namespace, as in a running system; the name that the source gives where no launch file says another.
     kind: `executable`, `component`, `nodelet`, `plugin`, `script`, or `library` for code that no executable of the
     workspace uses. plugin: the class, for what is loaded. started: `path:line` of the launch file, empty without one.
-    uncertain: why the launch file may give it another name, or may not start it at all.
+    uncertain: why the launch file may give it another name, or may not start it at all. launches: the launch files of
+    the workspace that start it, by themselves or by what they include, where the graph is of all of them.
     """
 
     id: str
@@ -36,6 +37,7 @@ class Node(msgspec.Struct, frozen=True):
     line: int = 0
     started: str = ""
     uncertain: tuple[str, ...] = ()
+    launches: tuple[str, ...] = ()
 
 
 class Callback(msgspec.Struct, frozen=True):

@@ -74,7 +74,7 @@ Owner = Running | Node | None
 class Join:
     """One body of code joined. files: facts by path; package_of: the package a path belongs to; built: what is built of
     it; ros: the generation where a framework does not tell; defined: knows which interfaces there are; before: as for
-    Code."""
+    Code; find_file: the workspace path of a file in a package's share folder, empty for what is not there."""
 
     def __init__(
         self,
@@ -85,8 +85,9 @@ class Join:
         table: Frameworks | None = None,
         defined: DefinedInterfaces | None = None,
         before: FlowCode | None = None,
+        find_file: Callable[[str, str], str] = lambda package, path: "",
     ):
-        self.ros, self.built = ros, list(built)
+        self.ros, self.built, self._find_file = ros, list(built), find_file
         self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
         sources = (CodeFile(path, package_of(path), facts) for path, facts in sorted(files.items()))
         self.code = FlowCode(sources, before)
@@ -162,7 +163,8 @@ class Join:
         found: list[Running] = []
         missing: list[Unresolved] = []
         for start in launch.started:
-            at = (f"{start.at.package}/{start.at.path}", start.at.line)
+            place = self._find_file(start.at.package, start.at.path)
+            at = (place or f"{start.at.package}/{start.at.path}".lstrip("/"), start.at.line)
             if start.kind == "process":
                 continue
             what = start.plugin.value or start.executable.value

@@ -32,6 +32,11 @@ class NothingSelected(UserError, ValueError):
     """No node or name fits; the text says which, and names like it."""
 
 
+def is_standard(name: str) -> bool:
+    """Whether most nodes have a topic or service of this name, see HIDDEN."""
+    return _fits(name, HIDDEN, ("",))
+
+
 def select_graph(
     graph: Graph, *, nodes: Sequence[str] = (), topics: Sequence[str] = (), packages: Sequence[str] = (),
     around: str = "", hops: int = 2, everything: bool = False,
@@ -59,10 +64,10 @@ def select_graph(
         # Whom a node talks to belongs to it.
         kept_names = {e.topic for e in graph.endpoints if e.node in kept_nodes and e.topic}
         if nodes:
-            kept_nodes = kept_nodes | _select_users(graph, {n for n in kept_names if not _fits(n, HIDDEN, ("",))})
+            kept_nodes = kept_nodes | _select_users(graph, {n for n in kept_names if not is_standard(n)})
     if not kept_nodes and asked:
         raise NothingSelected(_explain("node", (*nodes, *packages), [node.id for node in graph.nodes]))
-    hidden = set() if everything or topics else {name for name in kept_names if _fits(name, HIDDEN, ("",))}
+    hidden = set() if everything or topics else {name for name in kept_names if is_standard(name)}
     if around:
         hidden -= {name for name in hidden if _fits(name, (around,), ("", "/"))}
     kept_names -= hidden
@@ -154,7 +159,7 @@ def _find_near(graph: Graph, around: str, hops: int) -> tuple[set[str], set[str]
     of_node: dict[str, set[str]] = {}
     of_name: dict[str, set[str]] = {}
     for endpoint in graph.endpoints:
-        if endpoint.topic and not _fits(endpoint.topic, HIDDEN, ("",)):
+        if endpoint.topic and not is_standard(endpoint.topic):
             of_node.setdefault(endpoint.node, set()).add(endpoint.topic)
             of_name.setdefault(endpoint.topic, set()).add(endpoint.node)
     edge = reached

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import msgspec
 
+from ....edges.groups import group_pairs
 from ..launch.result import Launched
 from .graph import Graph
 from .launches import Launch
@@ -50,7 +51,12 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
         own = (row for row in getattr(code, field) if row.node not in started)
         return _drop_repeats(chain(own, *(getattr(graph, field) for graph in graphs)))
 
-    nodes = {node.id: node for graph in reversed(graphs) for node in graph.nodes}
+    by_launch = group_pairs((node.id, launch.path) for launch in launches for node in launch.graph.nodes)
+    nodes = {
+        node.id: msgspec.structs.replace(node, launches=tuple(dict.fromkeys(by_launch[node.id])))
+        for graph in reversed(graphs)
+        for node in graph.nodes
+    }
     nodes |= {node.id: node for node in code.nodes if node.id not in started}
     return msgspec.structs.replace(
         code,

@@ -196,8 +196,12 @@ def join_code(workspace: Workspace) -> Join:
     extraction.preload(packages)
     facts = {path: extraction.get_facts(path).facts for path in packages}
     files: dict[str, FlowFile] = {path: file for path, file in facts.items() if file is not None}
+    from .started import InWorkspace  # needs all that follows launch files
+
     defined = DefinedInterfaces(workspace.interface_names, workspace.ros)
-    return Join(files, packages.__getitem__, list_built(workspace, files), workspace.ros, defined=defined)
+    find_file = InWorkspace(workspace).find_workspace_path
+    built = list_built(workspace, files)
+    return Join(files, packages.__getitem__, built, workspace.ros, defined=defined, find_file=find_file)
 
 
 def make_graph(

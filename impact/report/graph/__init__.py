@@ -1,9 +1,10 @@
 """The message-flow graph drawn: text, JSON, GraphML, DOT, Mermaid and a page; the interfaces of its nodes as NoDL."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from typing import Any
 
+from ...model.flow.definitions import Sections
 from ...model.flow.graph import Graph
 from ...model.flow.select import NothingSelected, Selection, extract_part, select_graph, select_whole_nodes
 from ..style import Style
@@ -14,19 +15,25 @@ from .text import render as as_text
 def draw(
     graph: Graph, format: str, base: Graph | None = None, *, nodes: Sequence[str] = (),
     topics: Sequence[str] = (), packages: Sequence[str] = (), around: str = "", hops: int = 2,
-    everything: bool = False, style: Style = WIDE,
+    everything: bool = False, style: Style = WIDE, editor: str = "", folder: str = "",
+    interfaces: Mapping[str, Sections] | None = None,
 ) -> str:  # fmt: skip
     """A graph in the format of one of the modules here. base: what it is compared with; what differs is then marked.
 
-    nodes to everything: as for selected(). style: how text is written. Raises NothingSelected.
+    nodes to everything: as for select_graph(). style: how text is written. editor, folder, interfaces: of the page, as
+    in PageContext. Raises NothingSelected.
     """
-    keep = everything or format == "json"
+    keep = everything or format in ("json", "html")
     asked: dict[str, Any] = {
         "nodes": nodes, "topics": topics, "packages": packages, "around": around, "hops": hops, "everything": keep,
     }  # fmt: skip
     part, before = (select_graph(graph, **asked), None) if base is None else _select_compared(graph, base, asked)
     if format == "text":
         return as_text(part, before, everything, style)
+    if format == "html":
+        from .html import PageContext, render  # no other format needs it
+
+        return render(part, before, PageContext(editor, folder, interfaces or {}, everything))
     return import_module(f".{format}", __name__).render(part, before)
 
 

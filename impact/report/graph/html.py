@@ -4,29 +4,43 @@ The page lays the graph out itself, so that what a filter leaves is laid out ane
 """
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 
 from ....edges.version import __version__
 from ...model.flow.connections import Edge, list_edges, name_nodes
+from ...model.flow.definitions import Sections, make_key
 from ...model.flow.graph import Endpoint, Graph, GuardAt, ParameterUse, Publish
-from ...model.flow.select import Selection
+from ...model.flow.names import is_open
+from ...model.flow.select import Selection, is_standard
 from ..page import render_page
+from .rates import find_rate
 
 _WAYS = 12
 _LONGEST = 2000
 
 
-def render(selection: Selection, base: Graph | None) -> str:
+class PageContext(NamedTuple):
+    """What the page has besides the graph. editor: the address of a place in an editor, with `{path}` and `{line}`,
+    empty for no links; folder: the full path of the workspace; interfaces: as describe_interfaces() gives them;
+    everything: names that most nodes have are shown at first."""
+
+    editor: str = ""
+    folder: str = ""
+    interfaces: Mapping[str, Sections] = {}
+    everything: bool = False
+
+
+def render(selection: Selection, base: Graph | None, context: PageContext) -> str:
     """The page as text."""
     template = Path(__file__).with_name("assets") / "graph.html"
-    return render_page(template, f"rosimpact graph: {selection.graph.root}", _build_data(selection, base))
+    return render_page(template, f"rosimpact graph: {selection.graph.root}", _build_data(selection, base, context))
 
 
-def _build_data(selection: Selection, base: Graph | None) -> dict[str, Any]:
+def _build_data(selection: Selection, base: Graph | None, context: PageContext) -> dict[str, Any]:
     graph = selection.graph
     found = list_edges(graph, base)
     nodes = _build_nodes(graph, base, {edge.node for edge in found})
@@ -39,7 +53,10 @@ def _build_data(selection: Selection, base: Graph | None) -> dict[str, Any]:
         "rev": graph.rev,
         "base": None if base is None else base.rev or "the base",
         "ros": graph.ros,
-        "hidden": selection.hidden,
+        "editor": context.editor,
+        "folder": context.folder,
+        "everything": context.everything,
+        "interfaces": _select_interfaces(context.interfaces, names),
         "nodes": nodes,
         "names": names,
         "edges": [
@@ -97,8 +114,37 @@ def _build_names(found: Iterable[Edge]) -> list[dict[str, Any]]:
     for (kind, name), group in groups.items():
         marks = {edge.mark for edge in group}
         mark = next(iter(marks)) if marks in ({"added"}, {"removed"}) else ""
-        rows.append({"kind": kind, "name": name, "types": sorted({t for e in group for t in e.types}), "mark": mark})
+        types = sorted({t for e in group for t in e.types})
+        rows.append({
+            "kind": kind, "name": name, "types": types, "keys": [make_key(kind, type_) for type_ in types],
+            "mark": mark, "open": is_open(name), "standard": is_standard(name), "rates": _list_rates(group),
+        })  # fmt: skip
     return rows
+
+
+def _list_rates(group: Iterable[Edge]) -> list[list[Any]]:
+    """The periods of the timers that publish on a topic, as written, each with how often a second that is."""
+    periods = {
+        trigger.detail: None
+        for edge in group
+        if edge.mark != "removed"
+        for publish in edge.publishes
+        for trigger in publish.triggers
+        if trigger.kind == "timer" and trigger.detail
+    }
+    return [[period[:_LONGEST], find_rate(period)] for period in periods]
+
+
+def _select_interfaces(known: Mapping[str, Sections], names: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """Of interfaces, those that the names of the page have, with what is nested in them."""
+    found: dict[str, Any] = {}
+    left = [key for name in names for key in name["keys"]]
+    while left:
+        key = left.pop()
+        if key in known and key not in found:
+            found[key] = known[key]
+            left += [member.nested for members in known[key].values() for member in members if member.nested]
+    return found
 
 
 def _build_edge(edge: Edge) -> dict[str, Any]:
@@ -118,7 +164,8 @@ def _describe_edge(edge: Edge) -> dict[str, Any]:
 def _build_endpoint(endpoint: Endpoint) -> dict[str, Any]:
     row = msgspec.to_builtins(endpoint)
     return {
-        key: row[key] for key in ("path", "line", "type", "written", "how", "qos", "callback", "function", "implied")
+        key: row[key]
+        for key in ("path", "line", "type", "written", "how", "qos", "callback", "function", "implied", "only_if")
     }
 
 

@@ -1,13 +1,15 @@
 """The message-flow graph as text: each topic, service and action with who uses it, and what could not be resolved."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from operator import itemgetter
 
 from ....edges.console import format_count
-from ...model.flow.connections import Edge, format_conditions, format_loops, list_edges, name_nodes
-from ...model.flow.graph import Coverage, Endpoint, Graph, GuardAt, Publish, Trigger, Unresolved
+from ...model.flow.connections import Edge, list_conditions, list_edges, name_nodes
+from ...model.flow.graph import Coverage, Endpoint, Graph, Publish, Unresolved, Way
 from ...model.flow.select import Selection
 from ..columns import UNBROKEN, LinePart, lay_out
 from ..style import PLAIN, Style
+from .conditions import ROOM, GuardKey, find_shared, format_when
 
 _SHOWN = 20
 _HANG, _NODES = 6, 14
@@ -21,8 +23,8 @@ WIDE = PLAIN._replace(width=UNBROKEN)
 
 
 def render(selection: Selection, base: Graph | None, everything: bool = False, style: Style = WIDE) -> str:
-    """The graph for people; everything: all that was not resolved, not the first 20 alone."""
-    graph = selection.graph
+    """The graph for people; everything: whole conditions, and all that was not resolved, not the first 20 alone."""
+    graph, room = selection.graph, UNBROKEN if everything else ROOM
     names = name_nodes(graph.nodes) | (name_nodes(base.nodes) if base is not None else {})
     found = list_edges(graph, base)
     lines = [*_render_head(found, graph, selection.hidden, style), ""]
@@ -30,7 +32,7 @@ def render(selection: Selection, base: Graph | None, everything: bool = False, s
     for edge in found:
         groups.setdefault((edge.name, edge.kind), []).append(edge)
     for group in groups.values():
-        lines += [*_render_name(group, names, style), ""]
+        lines += [*_render_name(group, names, style, room), ""]
     alone = {names[node.id] for node in graph.nodes} - {names.get(edge.node, "") for edge in found}
     lost = alone & {names.get(each.node, "") for each in (*graph.endpoints, *graph.publishes) if not each.topic}
     verb = "talks" if len(lost) == 1 else "talk"
@@ -59,13 +61,13 @@ def _render_head(found: Sequence[Edge], graph: Graph, hidden: int, style: Style)
     return lay_out([LinePart(text)], style, 0, _HANG)
 
 
-def _render_name(group: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
+def _render_name(group: Sequence[Edge], names: dict[str, str], style: Style, room: int) -> Iterator[str]:
     types = sorted({kind for edge in group for kind in edge.types})
     # No name begins a line: CI systems read what is there.
     name = LinePart(f"{group[0].kind} {group[0].name}", "bold")
     yield from lay_out([name, LinePart(" or ".join(types) if types else "type not known")], style, 0, _HANG)
     for same in _group_alike(group):
-        yield from _render_edge(same, names, style)
+        yield from _render_edge(same, names, style, room)
 
 
 def _group_alike(group: Sequence[Edge]) -> list[list[Edge]]:
@@ -84,7 +86,7 @@ def _make_edge_key(edge: Edge) -> tuple:
     return edge.types, places, tuple(_list_statements(edge.publishes))
 
 
-def _render_edge(same: Sequence[Edge], names: dict[str, str], style: Style) -> Iterator[str]:
+def _render_edge(same: Sequence[Edge], names: dict[str, str], style: Style, room: int) -> Iterator[str]:
     edge, mark = same[0], _ROLES[same[0].mark]
     who = ", ".join(dict.fromkeys(names.get(each.node, each.node) or "(no node)" for each in same))
     line = [LinePart(f"{_SIGN[edge.mark]}{_VERBS[edge.role]:10s}", mark), LinePart(who, mark, hang=_NODES)]
@@ -95,37 +97,52 @@ def _render_edge(same: Sequence[Edge], names: dict[str, str], style: Style) -> I
         yield from lay_out(line, style, _HANG if line[0].path else 0, _HANG)
         line = []
     if edge.before is not None:
-        yield from _render_differences(edge, edge.before, style)
+        yield from _render_differences(edge, edge.before, style, room)
         return
-    for statement in _list_statements(edge.publishes):
-        yield from lay_out(statement, style, _HANG, _HANG + 2)
+    statements = _list_statements(edge.publishes).values()
+    shared = find_shared(publish.guards for publish in statements)
+    for publish in statements:
+        yield from lay_out(_render_publish(publish, room, shared), style, _HANG, _HANG + 2)
 
 
-def _render_differences(edge: Edge, before: Edge, style: Style) -> Iterator[str]:
+def _render_differences(edge: Edge, before: Edge, style: Style, room: int) -> Iterator[str]:
     """What a changed edge was in the base (`-`) and is now (`+`), then its publish statements that are as they were."""
     for said in (_list_types, _list_qos):
         old, now = said(before), said(edge)
         for sign, role, lines in (("-", "error", old - now), ("+", "good", now - old)):
             for line in sorted(lines):
                 yield from lay_out([LinePart(f"{sign} {line}", role)], style, _HANG - 2, _HANG + 2)
-    old, now = ({statement[1:]: statement for statement in _list_statements(each.publishes)} for each in (before, edge))
-    for sign, role, lines in (("- ", "error", old.keys() - now.keys()), ("+ ", "good", now.keys() - old.keys())):
-        for statement in sorted((old | now)[line] for line in lines):
-            first = statement[0]._replace(text=sign + statement[0].text)
-            painted = [piece._replace(role=role) for piece in (first, *statement[1:])]
+    old, now = (
+        {line[1:]: (line, publish) for line, publish in _list_statements(each.publishes).items()}
+        for each in (before, edge)
+    )
+    gone, new = (
+        [publish for _, publish in sorted((one[line] for line in one.keys() - other.keys()), key=itemgetter(0))]
+        for one, other in ((old, now), (now, old))
+    )
+    shared = find_shared(publish.guards for publish in (*gone, *new))
+    for sign, role, publishes, others in (("- ", "error", gone, new), ("+ ", "good", new, gone)):
+        beside = {text for other in others for text in list_conditions(other.guards)}
+        for publish in publishes:
+            first, *rest = _render_publish(publish, room, shared, beside)
+            painted = [piece._replace(role=role) for piece in (first._replace(text=sign + first.text), *rest)]
             yield from lay_out(painted, style, _HANG - 2, _HANG + 2)
-    for line in sorted(now.keys() & old.keys(), key=now.__getitem__):
-        yield from lay_out(now[line], style, _HANG, _HANG + 2)
+    for line in sorted(now.keys() & old.keys(), key=lambda line: now[line][0]):
+        yield from lay_out(_render_publish(now[line][1], room), style, _HANG, _HANG + 2)
         was, is_now = (_collect_ways(each.publishes, line) for each in (before, edge))
-        for sign, role, ways in (("-", "error", was - is_now), ("+", "good", is_now - was)):
-            for way in sorted(ways):
-                yield from lay_out([LinePart(f"{sign} {way}", role)], style, _HANG + 2, _HANG + 4)
+        differing = {way: ways[way] for ways in (was, is_now) for way in was.keys() ^ is_now.keys() if way in ways}
+        shared = find_shared(way.guards for way in differing.values())
+        for sign, role, ways, others in (("-", "error", was, is_now), ("+", "good", is_now, was)):
+            beside = {text for way in others.values() for text in list_conditions(way.guards)}
+            for text in sorted(ways.keys() - others.keys()):
+                said = format_when(ways[text].guards, (ways[text].trigger,), room, shared, beside) or text
+                yield from lay_out([LinePart(f"{sign} {said}", role)], style, _HANG + 2, _HANG + 4)
 
 
-def _collect_ways(publishes: Sequence[Publish], line: tuple[LinePart, ...]) -> set[str]:
-    """Of the publish statements that are written as this line, the ways that lead there."""
+def _collect_ways(publishes: Sequence[Publish], line: tuple[LinePart, ...]) -> dict[str, Way]:
+    """Of the publish statements that are written as this line, the ways that lead there, by what is said in full."""
     return {
-        _format_when(way.guards, (way.trigger,)) or "always"
+        format_when(way.guards, (way.trigger,)) or "always": way
         for publish in publishes
         if _render_publish(publish)[1:] == line
         for way in publish.by
@@ -160,24 +177,23 @@ def _format_note(endpoint: Endpoint, edge: Edge, style: Style) -> str:
     return f"[{'; '.join(said)}]" if said else ""
 
 
-def _list_statements(publishes: Sequence[Publish]) -> list[tuple[LinePart, ...]]:
-    """Publish statements: where, when and on what. One that publishes to several publishers is said once."""
-    return list(dict.fromkeys(map(_render_publish, publishes)))
+def _list_statements(publishes: Sequence[Publish]) -> dict[tuple[LinePart, ...], Publish]:
+    """Publish statements by their whole lines. One that publishes to several publishers is there once."""
+    found: dict[tuple[LinePart, ...], Publish] = {}
+    for publish in publishes:
+        found.setdefault(_render_publish(publish), publish)
+    return found
 
 
-def _render_publish(publish: Publish) -> tuple[LinePart, ...]:
+def _render_publish(
+    publish: Publish, room: int = UNBROKEN, shared: Collection[GuardKey] = (), beside: Collection[str] = ()
+) -> tuple[LinePart, ...]:
+    """Where, when and on what a statement publishes. room, shared, beside: as for format_when()."""
     place = LinePart("publish at ", path=f"{publish.path}:{publish.line}")
-    said = [_format_when(publish.guards, publish.triggers)] + [f"{publish.ways} ways lead there"] * (publish.ways > 1)
+    said = [format_when(publish.guards, publish.triggers, room, shared, beside)]
+    said += [f"{publish.ways} ways lead there"] * (publish.ways > 1)
     text = "; ".join(filter(None, said))
     return (place, LinePart(text)) if text else (place,)
-
-
-def _format_when(guards: Sequence[GuardAt], triggers: Sequence[Trigger]) -> str:
-    """Under which conditions, in which loops, and on what; empty for nothing."""
-    asked, around = format_conditions(guards), format_loops(guards)
-    on = ", ".join(dict.fromkeys(f"{each.kind} {each.detail}".strip() for each in triggers if each.kind != "unknown"))
-    said = {"when": asked, "in": around, "on": on}
-    return "; ".join(f"{word} {text}" for word, text in said.items() if text)
 
 
 def render_coverage(
