@@ -94,7 +94,7 @@ def list_contracts(workspace: Workspace) -> Iterator[Contract]:
     def list_included(path: str) -> Iterator[str]:
         return (one for each in files[path].includes if (one := resolve(path, each)) in files)
 
-    roles = {section: role for role, section in SECTIONS.items()}
+    roles: dict[str, Role] = {section: role for role, section in SECTIONS.items()}
     for path, (package, program) in programs.items():
         if path not in files:
             continue

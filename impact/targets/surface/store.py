@@ -267,8 +267,9 @@ class SurfaceHistory:
         for kind, named in _NAMED.items():
             for scope, value, spans in self._rows.get(kind, ()):
                 name = named(self.package, scope, value)
-                others = found.get(name, spans)
-                found[name] = others + spans if others and spans and others != spans else others and spans
+                others = found.setdefault(name, spans)
+                if others != spans:
+                    found[name] = (*others, *spans) if others and spans else ()
         return found
 
     def has(self, name: str, version: str) -> bool:
