@@ -220,6 +220,8 @@ class Sites:
         """What the name of an endpoint may be, before the node's own. prefix: of its node handle; values: what
         expressions are worth where it runs."""
         found = tuple(values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line))
+        # What is empty was not given yet.
+        found = tuple(one for one in found if one.text != "") or (FlowValue(None, "unresolved", "the name is empty"),)
         if not prefix.startswith(LOST):
             return found
         lost = "the namespace of its node handle is not known"

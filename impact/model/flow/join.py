@@ -180,16 +180,18 @@ class Join:
                     missing.append(Unresolved("started node", reason, *at, what))
                 continue
             one = next((each for each in fitting if each.program.roots), fitting[0])
-            own = one.node.name.rpartition("/")[2] or f"<{one.program.executable or get_tail(one.program.plugin)}>"
-            instance = make_instance(launch, own, start)
-            node = structs.replace(
-                one.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
-                uncertain=instance.uncertain,
-            )  # fmt: skip
             arguments = tuple(argument.value for argument in start.arguments if argument.value is not None)
             known = arguments if len(arguments) == len(start.arguments) else None
-            values = self.values.apply_launch(instance.settings, known)
-            found.append(one._replace(node=node, instance=instance, values=values))
+            # In ROS 2 a program may be several nodes, and the name that a launch file gives is for all of them.
+            for part in (each for each in fitting if each.program == one.program):
+                own = part.node.name.rpartition("/")[2] or f"<{one.program.executable or get_tail(one.program.plugin)}>"
+                instance = make_instance(launch, own, start)
+                node = structs.replace(
+                    part.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
+                    uncertain=instance.uncertain,
+                )  # fmt: skip
+                values = self.values.apply_launch(instance.settings, known)
+                found.append(part._replace(node=node, instance=instance, values=values))
         return found, missing
 
     def add_loaded(self, running: Iterable[Running]) -> Iterator[Running]:

@@ -44,7 +44,12 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     """
     if not launches:
         return code
-    started = {start.program for launch in launches for start in launch.starts}
+    programs = {start.program for launch in launches for start in launch.starts}
+    started = {
+        node.id
+        for node in code.nodes
+        if node.kind != "library" and f"{node.package}/{node.executable or node.plugin}" in programs
+    }
     graphs = [launch.graph for launch in launches]
 
     def merge(field: str) -> tuple[Any, ...]:

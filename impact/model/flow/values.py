@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import islice, product
+from operator import attrgetter
 from typing import NamedTuple
 
-from ...facts.flow import FlowCall, FlowExpr, FlowParameter
+from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Variable, find_argument, find_parameter, get_tail
@@ -36,6 +37,7 @@ _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "
                        "resolve_service_name", "resolve_topic_or_service_name"))  # fmt: skip
 # What is least certain of a text that is put together, first.
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
+_LOOPS = frozenset(("for", "while", "do"))
 _PUT = frozenset(("push_back", "emplace_back", "append"))
 # Functions that give a topic's type, and its name beside it.
 _TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
@@ -163,8 +165,11 @@ class FlowValues:
             if self.arguments is None:
                 yield FlowValue(None, "unresolved", "an argument of the command line")
             else:
-                for place in range(max(places.start, 1), min(places.stop, len(self.arguments) + 1)):
-                    yield FlowValue(self.arguments[place - 1], "given")
+                given = self.arguments[max(places.start, 1) - 1 : places.stop - 1]
+                if len(given) == 1 or places.stop - places.start == 1:
+                    yield from (FlowValue(argument, "given") for argument in given)
+                else:
+                    yield FlowValue(None, "unresolved", "one of several arguments of the command line")
         elif container.kind == "call" and get_tail(container.text) in _TELLS_TOPIC and container.parts:
             yield from self._evaluate(container.parts[0], fn, line, seen)
         else:
@@ -214,7 +219,7 @@ class FlowValues:
         for text, how in self.command_line.list_parsed_texts(path, fn, self.arguments) if "." in path else ():
             yield FlowValue(text, "given" if how == "given" else "default")
             return
-        found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn)))
+        found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), line))
         if found:
             yield from found
         else:
@@ -231,10 +236,10 @@ class FlowValues:
         return ObjectOrigins(self.code)
 
     def evaluate_variable(
-        self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None
+        self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None, line: int = 0
     ) -> Iterator[FlowValue]:
         """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed. origins:
-        of the objects that a member may be of, None for any."""
+        of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any."""
         if variable.kind == "member":
             for cls in self.code.list_class_bodies(variable.owner):
                 for member in cls.facts.members:
@@ -254,7 +259,7 @@ class FlowValues:
         ]
         # What a parameter that surely has a value is read into is worth nothing else any more.
         sure = [use for use, values in filled if values and all(one.how in ("launch", "default") for one in values)]
-        for writer, each in self.code.list_writes(variable):
+        for writer, each in self._list_reaching(variable, fn, line):
             if any(use.fn is writer and each.line < use.call.line and each.guard == use.call.guard for use in sure):
                 continue
             if origins is not None and not self.origins.may_be_of(each.target, writer, origins):
@@ -282,6 +287,36 @@ class FlowValues:
                 if place is not None:
                     yield from self._evaluate_passed(one, *place, seen)
                     break
+
+    def _list_reaching(self, variable: Variable, fn: Fn, line: int) -> Iterable[tuple[Fn, Assignment]]:
+        """The assignments to a variable that may hold at a line of a function; those of a local variable that it is
+        surely assigned anew behind are none. line: 0 for any."""
+        rows = self.code.list_writes(variable)
+        own = [each for writer, each in rows if writer is fn and each.operator == "="]
+        if variable.kind != "local" or not line or len(own) < 2:
+            return rows
+        here = next((call.guard for call in fn.facts.calls if call.line == line), -1)
+        around = self._list_guards_around(fn, here)
+        before = [each for each in own if each.line < line and (each.guard < 0 or each.guard in around)]
+        if not before:
+            return rows
+        last = max(before, key=attrgetter("line"))
+        loops = [guard for guard in around if fn.facts.guards[guard].kind in _LOOPS]
+        again = not set(loops) <= set(self._list_guards_around(fn, last.guard))
+        return [
+            (writer, each)
+            for writer, each in rows
+            if writer is not fn or (each.line >= last.line and (again or each.line < line or each.operator == "for"))
+        ]
+
+    @staticmethod
+    def _list_guards_around(fn: Fn, guard: int) -> list[int]:
+        """A guard of a function, by its place, and those around it."""
+        found: list[int] = []
+        while 0 <= guard < len(fn.facts.guards) and len(found) < 64:
+            found.append(guard)
+            guard = fn.facts.guards[guard].outer
+        return found
 
     def _evaluate_references(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
         """What functions write into a variable that is passed to them by reference."""

@@ -1,5 +1,7 @@
 """Which node makes an endpoint, under which name, and what has to hold for it."""
 
+from textwrap import dedent
+
 from rosimpact.impact.model.flow.names import is_open, make_open_part
 from rosimpact.impact.model.flow.nodes import BuiltPackage
 
@@ -414,3 +416,56 @@ def test_plugins_are_in_the_nodes_that_parameter_files_load_them_into(tmp_path):
     }  # fmt: skip
     del files["car/config/a.yaml"]
     assert {node.name for node in graph_on_disk(tmp_path / "alone", files).nodes} == {""}
+
+
+def test_a_local_variable_has_one_value_at_each_place():
+    code = """
+        import rospy
+        from std_srvs.srv import Empty
+        from std_msgs.msg import String
+        def begin(fast):
+            name = 'first'
+            rospy.Service(name, Empty, print)
+            name = 'second'
+            if fast:
+                name = 'third'
+            rospy.Service(name, Empty, print)
+            name = 'fourth'
+            for kind in ('a', 'b'):
+                rospy.Publisher(name, String)
+                name = 'fifth'
+        if __name__ == '__main__':
+            rospy.init_node('desk')
+            begin(True)
+    """
+    found = graph({"car/desk.py": code}, 1)
+    told = {}
+    for one in found.endpoints:
+        if not one.implied:
+            told.setdefault((one.role, one.line), set()).add(one.topic)
+    assert sorted(map(sorted, told.values())) == [["/fifth", "/fourth"], ["/first"], ["/second", "/third"]]
+
+
+def test_all_nodes_of_a_program_have_the_name_that_a_launch_file_gives(tmp_path):
+    node = "".join(NODE.format(name=name, node=name.lower(), topic="~/out") for name in ("Front", "Rear"))
+    main = """
+        int main(int argc, char ** argv) {
+          rclcpp::init(argc, argv);
+          auto front = std::make_shared<Front>();
+          auto rear = std::make_shared<Rear>();
+        }
+    """
+    cmake = """
+        project(car)
+        find_package(ament_cmake REQUIRED)
+        add_executable(both both.cpp)
+        ament_package()
+    """
+    files = {"car/package.xml": manifest("car", "ament_cmake"), "car/CMakeLists.txt": cmake}
+    files["car/both.cpp"] = dedent(node) + dedent(main)
+    files["car/launch/a.launch.xml"] = '<launch><node pkg="car" exec="both" namespace="left"/></launch>'
+    assert {node.id for node in graph_on_disk(tmp_path / "own", files).nodes} == {"/left/front", "/left/rear"}
+    files["car/launch/a.launch.xml"] = '<launch><node pkg="car" exec="both" name="one"/></launch>'
+    found = graph_on_disk(tmp_path / "given", files)
+    assert {node for node, _, _ in ends(found, "publisher")} == {"/one"}
+    assert {topic for _, topic, _ in ends(found, "publisher")} == {"/one/out"}
