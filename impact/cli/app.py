@@ -215,6 +215,10 @@ def graph(
     hops: int = _make_option("With --around: the number of steps from node to node.", default=2, min=1),
     rev: _Revision = "",
     base: list[str] = _make_option("Mark what was added, removed and changed since this revision, as for check."),
+    observed: Path | None = _make_option(
+        "Compare a running system with the sources: the output of `ros2 node info` or `rosnode info`, a dump in JSON "
+        "or YAML, or a bag (.bag, .mcap, .db3, metadata.yaml)."
+    ),
     follow_links: _FollowLinks = False,
     format: str = _make_option(
         "One of text, json, graphml, dot, mermaid, html, nodl (the interface of each node, as .nodl.yaml).",
@@ -229,7 +233,10 @@ def graph(
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
-    """Show which nodes are connected by topics, services and actions, without building or running anything."""
+    """Show which nodes are connected by topics, services and actions, without building or running anything.
+
+    Exit status: 0 done, 1 with --observed, if the system differs from the sources, 2 the tool failed.
+    """
 
 
 @_add_command(app)

@@ -184,7 +184,7 @@ class _Compared:
                 continue
             if self.flow.find_type(one) and not any(self._fits(entry, one) for entry in self.entries):
                 if (one.role, one.topic) not in reported:
-                    data = {"program": self.program, "role": one.role, "file": self.contract.path}
+                    data = {"program": self.program, "role": _describe_role(one.role), "file": self.contract.path}
                     yield Diagnostic(At(one.path, one.line), one.topic, self.node.package, data, "extra")
                 reported.add((one.role, one.topic))
 
@@ -212,8 +212,12 @@ class _Compared:
                 yield self._report(entry, "qos", **data, written=written, made=made)
 
     def _report(self, entry: _Entry, kind: str, **data: str) -> Diagnostic:
-        data |= {"program": self.program, "role": entry.role}
+        data |= {"program": self.program, "role": _describe_role(entry.role)}
         return Diagnostic(At(entry.path, entry.written.line), entry.written.name, self.contract.package, data, kind)
+
+
+def _describe_role(role: Role) -> str:
+    return f"service {role}" if role in ("server", "client") else role
 
 
 def _list_policies(qos: Qos | None) -> dict[str, object]:
