@@ -80,7 +80,7 @@ def _parse_text(text: str, name: str) -> Observation:
     lines = text.splitlines()
     if any(_ROS1_NODE.match(line) for line in lines) or any(line.strip() == "Subscribers:" for line in lines):
         return _parse_info(lines)
-    if name.endswith((".yaml", ".yml")) or any(line.startswith("nodes:") for line in lines):
+    if name.endswith((".yaml", ".yml")) or any(line.startswith(("nodes:", "publishers:")) for line in lines):
         return _parse_yaml(text)
     return Observation({}, ())
 

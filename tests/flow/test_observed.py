@@ -7,6 +7,7 @@ from textwrap import dedent
 
 import ferry
 import pytest
+import yaml
 from rosimpact.impact.analysis.observed import read_observation
 from rosimpact.impact.cli.app import app
 from rosimpact.impact.model.flow.observed import SeenEndpoint
@@ -180,9 +181,15 @@ DUMP = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("make", [json.dumps, lambda dump: json.dumps(dump["nodes"]), lambda dump: (
-    "nodes:\n" + "".join(f"- {json.dumps(node)}\n" for node in dump["nodes"]) + "---\n"
-)])  # fmt: skip
+@pytest.mark.parametrize(
+    "make",
+    [
+        json.dumps,
+        lambda dump: json.dumps(dump["nodes"]),
+        lambda dump: "nodes:\n" + "".join(f"- {json.dumps(node)}\n" for node in dump["nodes"]) + "---\n",
+        lambda dump: "".join(yaml.safe_dump(node) + "---\n" for node in dump["nodes"]),
+    ],
+)
 def test_dumps(tmp_path, make):
     file = tmp_path / "dump"
     file.write_text(make(DUMP))
