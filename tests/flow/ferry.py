@@ -32,6 +32,8 @@ class Helm(Node):
         self.create_subscription(Bool, self.declare_parameter("bell", "bell").value, self.on_horn, 10)
         self.create_service(Trigger, "/harbour/call", self.on_call)
         self.dock = ActionServer(self, Fibonacci, "dock", self.on_dock)
+        if speed.value > 2.0:
+            self.blast = self.create_publisher(Bool, "blast", 10)
 
 
 def main():

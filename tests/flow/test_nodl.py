@@ -35,6 +35,7 @@ def test_a_document_has_what_the_code_makes_under_the_names_that_it_gives(ws):
             "speed": {"type": "double", "default_value": 2.5},
         },
         "publishers": [
+            {"name": "blast", "type": "std_msgs/msg/Bool", "qos": KEEP_10, "description": "only if speed.value > 2.0"},
             {"name": "course", "type": "std_msgs/msg/Float32", "qos": {
                 "history": "KEEP_LAST", "depth": 3, "reliability": "BEST_EFFORT", "durability": "VOLATILE"}},
         ],
@@ -70,7 +71,7 @@ def test_all_nodes_are_documents_of_one_stream_or_files_of_a_folder(ws, tmp_path
 def test_with_a_launch_file_names_are_those_of_the_system(ws):
     out = run(ws, "--launch", "ferry.launch.xml")[1]
     ramp, helm = yaml.safe_load_all(out)
-    assert [each["name"] for each in helm["publishers"]] == ["/course"]
+    assert [each["name"] for each in helm["publishers"]] == ["/blast", "/course"]
     assert "subscriptions" not in ramp
     assert "its name is known in part (/<$SHIP>/course)" in out
     assert [each["name"] for each in ramp["service_clients"]] == ["/harbour/call"]

@@ -106,6 +106,7 @@ def test_a_system_that_is_as_the_sources_say(observe):
     assert list_rows(out) == {
         ("matches", "/helm", "publisher", "/course"),
         ("may match", "/helm", "publisher", "/log"),
+        ("not seen", "/helm", "publisher", "/blast"),
         ("matches", "/helm", "subscriber", "/bell"),
         ("matches", "/helm", "subscriber", "/helm/horn"),
         ("matches", "/helm", "server", "/harbour/call"),
@@ -139,6 +140,7 @@ def test_what_is_not_certain_in_the_sources_makes_no_difference(observe):
     assert code == 0
     assert "- subscribes  /bell" in out
     assert "[not seen; its name is known by the default of a parameter]" in out
+    assert "[not seen; only if speed.value > 2.0]" in out
 
 
 def test_nodes_of_one_side_alone(observe):
@@ -220,7 +222,9 @@ def test_metadata_of_a_bag(observe, tmp_path):
     assert out == (
         "published by a node that the file does not name\n"
         "    publishes   /course  std_msgs/Float32  ferry/ferry/helm.py:17\n\n"
-        "endpoints: 1 seen and in the sources\n"
+        "node /helm\n"
+        "  - publishes   /blast  std_msgs/Bool  ferry/ferry/helm.py:24  [not seen; a recording need not have it]\n\n"
+        "endpoints: 1 seen and in the sources, 1 in the sources and not seen\n"
     )
     assert read_observation(tmp_path).endpoints == COURSE
 

@@ -10,6 +10,7 @@ from typing import Literal, NamedTuple
 import msgspec
 
 from ....edges.groups import group_pairs
+from .connections import format_guards
 from .contracts import is_of_framework
 from .edges import SURE
 from .graph import Endpoint, Graph, Node, Role
@@ -123,6 +124,7 @@ def _compare_node(
     }
     for one in lacking.values():
         reason = "made by a library" if one.implied else one.only_if and f"only if {one.only_if}"
+        reason = reason or (f"only if {format_guards(one)}" if one.guards else "")
         reason = reason or uncertain or ("" if one.how in SURE else f"its name is known by {_KNOWN_BY[one.how]}")
         yield _make_unseen(one, name, reason, not reason)
 

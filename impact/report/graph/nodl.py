@@ -7,6 +7,7 @@ from typing import Any
 
 from ....edges.console import UserError
 from ....edges.groups import group_pairs
+from ...model.flow.connections import format_conditions
 from ...model.flow.contracts import INTERFACE_FOLDERS, SECTIONS, is_of_framework, is_parameter_of_framework
 from ...model.flow.graph import Endpoint, Graph, Node, ParameterUse, Qos
 
@@ -93,7 +94,8 @@ def _make_rows(node: Node, endpoints: Iterable[Endpoint], left_out: list[str]) -
             row: dict[str, Any] = {"name": name, "type": f"{type_[1]}/{INTERFACE_FOLDERS[one.role]}/{type_[2]}"}
             if one.role in ("publisher", "subscriber"):
                 row["qos"] = make_qos(one.qos or Qos())
-            conditions = [f"only if {one.only_if}"] if one.only_if else []
+            condition = one.only_if or format_conditions(one.guards)
+            conditions = [f"only if {condition}"] if condition else []
             conditions += ["the name is the default of a parameter"] if one.how == "default" else []
             if conditions:
                 row["description"] = "; ".join(" ".join(each.split()) for each in conditions)
