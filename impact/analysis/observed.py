@@ -200,7 +200,8 @@ def _read_bag(file: Path) -> Rows:
     from rosbags.rosbag1 import Reader  # pyright: ignore[reportMissingImports]
 
     with Reader(file) as bag:
-        return [_make_recorded(one.topic, one.msgtype, getattr(one.ext, "callerid", None) or "") for one in bag.connections]
+        rows = ((one.topic, one.msgtype, getattr(one.ext, "callerid", None) or "") for one in bag.connections)
+        return [_make_recorded(*row) for row in rows]
 
 
 def _read_mcap(file: Path) -> Rows:
