@@ -228,6 +228,10 @@ def graph(
         default=False,
     ),
     config: _Config = None,
+    observed: Path | None = _make_option(
+        "Compare a running system with the sources: the output of `ros2 node info` or `rosnode info`, a dump in JSON "
+        "or YAML, or a bag (.bag, .mcap, .db3, metadata.yaml)."
+    ),
     follow_links: _FollowLinks = False,
     format: str = _make_option(
         "One of text, json, graphml, dot, mermaid, html, nodl (the interface of each node, as .nodl.yaml).",
@@ -250,7 +254,8 @@ def graph(
 ) -> None:
     """Show which nodes are connected by topics, services and actions, without building or running anything.
 
-    Exit status: 0 the graph was made, 1 with --strict where not all names are known, 2 the tool failed.
+    Exit status: 0 done, 1 with --strict where not all names are known, or with --observed if the system differs from the
+    sources, 2 the tool failed.
     """
 
 

@@ -12,8 +12,8 @@ _ADDRESS = re.compile(r"(?!(?:javascript|data|vbscript|blob):)[a-z][a-z0-9+.-]*:
 
 @make_command("text", "json", "graphml", "dot", "mermaid", "html", "nodl", folders=("nodl",))
 def graph(
-    path: Path, *, launch, set_, system, code, node, topic, package, around, hops, rev, base, strict, config, format,
-    output, all, editor, jobs, quiet, follow_links,
+    path: Path, *, launch, set_, system, code, node, topic, package, around, hops, rev, base, observed, strict, config,
+    format, output, all, editor, jobs, quiet, follow_links,
 ) -> tuple[str | dict[str, str], int]:  # fmt: skip
     """The message-flow graph, and the exit status."""
     given = dict(argument.partition(":=")[::2] for argument in set_)
@@ -27,16 +27,29 @@ def graph(
         raise UserError("--code: shows the graph without launch files; leave out --code, or --launch and --system")
     if format == "nodl" and (base or topic or around):
         raise UserError("--format nodl: writes whole interfaces of one revision; choose nodes with --node or --package")
+    if observed is not None and (base or format not in ("text", "json") or node or topic or package or around):
+        raise UserError("--observed: compares a whole system at one revision, as text or json")
     address = _validate_editor(editor)
     from ..analysis.graph import build_graphs
     from ..report.graph import draw, draw_nodes, list_unknown_names
 
+    seen = None
+    if observed is not None:
+        from ..analysis.observed import read_observation
+
+        seen = read_observation(observed)
     found = build_graphs(
         path, rev=rev, base=base, launch=launch, arguments=given, system=system, config=config, jobs=jobs,
         progress=None if quiet else make_progress_bar(), follow_links=follow_links,
         code_alone=code or (format == "nodl" and not launch and not system),
     )  # fmt: skip
     say_notes(found.notes)
+    if seen is not None:
+        from ..model.flow.observed import compare_observed
+        from ..report.graph.observed import render_observed
+
+        difference = compare_observed(found.now, seen)
+        return render_observed(difference, format, find_style(output)), int(difference.differs)
     asked = {"nodes": node, "topics": topic, "packages": package, "around": around, "hops": hops}
     text: str | dict[str, str]
     if format == "nodl":

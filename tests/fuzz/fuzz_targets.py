@@ -37,7 +37,7 @@ from rosimpact.impact.analysis import findings
 from rosimpact.impact.analysis import result_cache as memo
 from rosimpact.impact.analysis import revision_compare as base
 from rosimpact.impact.conditions import Environment, holds
-from rosimpact.impact.facts import allow, elf, kinds, store
+from rosimpact.impact.facts import allow, elf, kinds, nodl, store
 from rosimpact.impact.facts.cmake import extract as extract_cmake
 from rosimpact.impact.facts.condition import Condition
 from rosimpact.impact.facts.launch import flow as flow_launch
@@ -199,6 +199,7 @@ def launched(kind: str) -> Callable[[bytes], None]:
 
 def parameters(data: bytes) -> None:
     flow_parameters.extract(data)
+    nodl.extract(data)
 
 
 # CMake

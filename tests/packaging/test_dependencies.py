@@ -57,7 +57,7 @@ def imported() -> dict[str, str]:
 
 def test_every_import_is_asked_for():
     known = packages_distributions()
-    asked = declared("cluster", "study")
+    asked = declared("bags", "cluster", "study")
     missing = {
         name: where
         for name, where in imported().items()
@@ -69,7 +69,7 @@ def test_every_import_is_asked_for():
 def test_nothing_is_asked_for_in_vain():
     known = packages_distributions()
     used = {normal(d) for name in imported() for d in known.get(name, [name])}
-    assert declared("cluster", "study") - used - UNNAMED == set()
+    assert declared("bags", "cluster", "study") - used - UNNAMED == set()
 
 
 def test_the_version_is_that_of_the_package():

@@ -127,7 +127,7 @@ def format_loops(guards: Sequence[GuardAt]) -> str:
     return " in ".join(f"{guard.kind} {guard.text}" for guard in guards if guard.kind not in ("if", "unless"))
 
 
-def format_guards(publish: Publish) -> str:
-    """The guards of a publish statement in one line."""
-    asked, around = format_conditions(publish.guards), format_loops(publish.guards)
+def format_guards(guarded: Publish | Endpoint) -> str:
+    """The guards of a publish statement, or of the call that makes an endpoint, in one line."""
+    asked, around = format_conditions(guarded.guards), format_loops(guarded.guards)
     return ", ".join([*([asked] if asked else []), *([f"in {around}"] if around else [])])

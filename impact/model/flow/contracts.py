@@ -64,14 +64,22 @@ _ENDING = ".nodl.yaml"
 _FRAMEWORKS = frozenset(("nodl_common_interfaces", "rclcpp", "rclcpp_lifecycle", "rclpy"))
 
 
+class ContractEntry(NamedTuple):
+    """An endpoint of a NoDL document. path: of the file that has it."""
+
+    role: Role
+    path: str
+    written: NodlEndpoint
+
+
 class Contract(NamedTuple):
-    """A NoDL 2 document of a package. program: what it describes. entries: its endpoints with those that it includes,
-    each with its role and the file that has it. whole: all that it includes is in the workspace, or of ROS itself."""
+    """A NoDL 2 document of a package. program: what it describes. entries: its endpoints with those that it includes.
+    whole: all that it includes is in the workspace, or of ROS itself."""
 
     path: str
     package: str
     program: str
-    entries: tuple[tuple[Role, str, NodlEndpoint], ...]
+    entries: tuple[ContractEntry, ...]
     whole: bool
 
 
@@ -99,11 +107,11 @@ def list_contracts(workspace: Workspace) -> Iterator[Contract]:
         if path not in files:
             continue
         every = list(walk([path], list_included))
-        entries = tuple((roles[one.section], file, one) for file in every for one in files[file].endpoints)
+        entries = (ContractEntry(roles[one.section], file, one) for file in every for one in files[file].endpoints)
         missing = {each for file in every for each in files[file].includes if resolve(file, each) not in files}
         strange = {each for each in missing if each.removeprefix("nodl://").partition("/")[0] not in _FRAMEWORKS}
         whole = not strange and not any(files[file].problems for file in every)
-        yield Contract(path, package, program, entries, whole)
+        yield Contract(path, package, program, tuple(entries), whole)
 
 
 def _list_documents(package: Package) -> Iterator[tuple[str, str]]:

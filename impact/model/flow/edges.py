@@ -21,7 +21,7 @@ from .workspace import get_flow
 _RUNNING = frozenset(("executable", "script", "component", "nodelet"))
 # A type of a package outside of the workspace may be a class that stands for a message.
 _INTERFACES = ("_msgs", "_interfaces", "_srvs", "_actions", "turtlesim", "dynamic_reconfigure")
-_SURE = frozenset(("literal", "given", "launch"))
+SURE = frozenset(("literal", "given", "launch"))
 OTHER_SIDE = {
     "publisher": "subscriber", "subscriber": "publisher", "server": "client", "client": "server",
     "action server": "action client", "action client": "action server",
@@ -88,7 +88,7 @@ class Flow:
         if node is not None and node.kind == "plugin":
             runs = begins(one, "/") and one.how == "literal"
         alone = (one.node, one.role, one.path, one.line, one.written) in self._alone
-        return bool(runs and one.topic and one.how in _SURE and alone)
+        return bool(runs and one.topic and one.how in SURE and alone)
 
     def find_type(self, endpoint: Endpoint) -> str:
         """The type of an endpoint, empty where it is not known to be a message's (or a service's, or an action's)."""

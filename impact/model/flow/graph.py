@@ -76,6 +76,7 @@ class Endpoint(msgspec.Struct, frozen=True):
     it (a transform listener, a diagnostic updater), not by a call that names the topic. only_if: on what it depends
     whether the node makes it: the condition of the preprocessor under which the code is compiled, a flag that is down
     as far as is known, or that something calls a function which nothing is seen to call; empty for nothing of these.
+    guards: those around the call that makes it, in its function, outermost first.
     """
 
     role: Role
@@ -95,6 +96,7 @@ class Endpoint(msgspec.Struct, frozen=True):
     framework: str = ""
     only_if: str = ""
     code_name: str = ""
+    guards: tuple[GuardAt, ...] = ()
 
 
 class GuardAt(msgspec.Struct, frozen=True):

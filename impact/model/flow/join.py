@@ -461,6 +461,7 @@ class Join:
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
             use.row.framework, only_if, _make_code_name(site, value.text or "") if topic else "",
+            self.list_guards(use.fn, use.call.guard),
         )  # fmt: skip
 
     def _describe_condition(self, use: FrameworkCall, owner: Owner) -> str:

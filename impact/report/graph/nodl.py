@@ -7,6 +7,7 @@ from typing import Any
 
 from ....edges.console import UserError
 from ....edges.groups import group_pairs
+from ...model.flow.connections import format_conditions
 from ...model.flow.contracts import INTERFACE_FOLDERS, SECTIONS, is_of_framework, is_parameter_of_framework
 from ...model.flow.graph import Endpoint, Graph, Node, ParameterUse, Qos
 
@@ -20,6 +21,8 @@ _NOT_IN_A_FILE_NAME = re.compile(r"[^\w.-]+")
 _UNKNOWN = "SYSTEM_DEFAULT"
 _SCALARS = {bool: "bool", int: "int", float: "double", str: "string"}
 _WRAPPED = re.compile(r"(?:rclcpp::ParameterValue|std::string)\s*[({](.*)[)}]\Z", re.DOTALL)
+_VECTOR = re.compile(r"std::vector<([\w:]+)>\((.*)\)\Z", re.DOTALL)
+_ELEMENTS = {"std::string": "string", "double": "double", "int64_t": "int", "std::int64_t": "int", "bool": "bool"}
 _DECLARED_TYPE = re.compile(r"(?:\w+(?:::|\.))*(?:PARAMETER_|Type\.)(\w+)\Z")
 _TYPES = {
     "BOOL": "bool", "INTEGER": "int", "DOUBLE": "double", "STRING": "string", "BYTE_ARRAY": "byte_array",
@@ -82,7 +85,7 @@ def _make_rows(node: Node, endpoints: Iterable[Endpoint], left_out: list[str]) -
         name = one.topic if node.started or not _NAME.match(one.code_name) else one.code_name
         type_ = _TYPE.match(one.type)
         if not one.topic or not _NAME.match(name):
-            reason = one.reason or (f"its name is known in part ({one.topic})" if one.topic else "")
+            reason = f"its name is known in part ({one.topic})" if one.topic else one.reason
             left_out.append(f"{what}: {reason or 'its name is not known'}")
         elif type_ is None:
             left_out.append(f"{what}: NoDL has no such type")
@@ -91,7 +94,8 @@ def _make_rows(node: Node, endpoints: Iterable[Endpoint], left_out: list[str]) -
             row: dict[str, Any] = {"name": name, "type": f"{type_[1]}/{INTERFACE_FOLDERS[one.role]}/{type_[2]}"}
             if one.role in ("publisher", "subscriber"):
                 row["qos"] = make_qos(one.qos or Qos())
-            conditions = [f"only if {one.only_if}"] if one.only_if else []
+            condition = one.only_if or format_conditions(one.guards)
+            conditions = [f"only if {condition}"] if condition else []
             conditions += ["the name is the default of a parameter"] if one.how == "default" else []
             if conditions:
                 row["description"] = "; ".join(" ".join(each.split()) for each in conditions)
@@ -120,7 +124,7 @@ def _make_parameters(parameters: Iterable[ParameterUse], left_out: list[str]) ->
     for one in sorted(parameters, key=lambda each: each.name):
         if one.kind != "declared" or one.name in found or is_parameter_of_framework(one.name):
             continue
-        made = _make_parameter(one.default)
+        made = make_parameter(one.default)
         if made is None or "<" in one.name:
             left_out.append(f"parameter {one.name} at {one.path}:{one.line}: its type is not known")
         else:
@@ -128,7 +132,7 @@ def _make_parameters(parameters: Iterable[ParameterUse], left_out: list[str]) ->
     return found
 
 
-def _make_parameter(default: str) -> dict[str, Any] | None:
+def make_parameter(default: str) -> dict[str, Any] | None:
     """The type, and the value where the source writes it out, that a declaration gives to a parameter."""
     text = default.strip()
     declared = _DECLARED_TYPE.match(text)
@@ -136,6 +140,15 @@ def _make_parameter(default: str) -> dict[str, Any] | None:
         return {"type": _TYPES[declared[1]]} if declared[1] in _TYPES else None
     while wrapped := _WRAPPED.match(text):
         text = wrapped[1].strip()
+    vector = _VECTOR.match(text)
+    if vector is not None and not vector[2]:
+        return {"type": f"{_ELEMENTS[vector[1]]}_array", "default_value": []} if vector[1] in _ELEMENTS else None
+    if vector is not None:
+        text = vector[2]
+    if vector is not None or text.startswith("{"):
+        text = f"[{text.removeprefix('{').removesuffix('}')}]"
+    if len(text) > 1 and text[0] == text[-1] == '"' and '"' not in text[1:-1]:
+        return {"type": "string", "default_value": text[1:-1]}
     if text in ("true", "false"):
         return {"type": "bool", "default_value": text == "true"}
     number = re.fullmatch(r"(-?[\d.]+(?:[eE][-+]?\d+)?)[fF]?", text)

@@ -15,7 +15,7 @@ _SHOWN = 20
 _HANG, _NODES = 6, 14
 _SIGN = {"added": "+ ", "removed": "- ", "changed": "~ ", "": "  "}
 _ROLES = {"added": "good", "removed": "error", "changed": "warning", "": ""}
-_VERBS = {
+VERBS = {
     "publisher": "publishes", "subscriber": "subscribes", "server": "serves", "client": "asks",
     "action server": "serves", "action client": "asks",
 }  # fmt: skip
@@ -89,7 +89,7 @@ def _make_edge_key(edge: Edge) -> tuple:
 def _render_edge(same: Sequence[Edge], names: dict[str, str], style: Style, room: int) -> Iterator[str]:
     edge, mark = same[0], _ROLES[same[0].mark]
     who = ", ".join(dict.fromkeys(names.get(each.node, each.node) or "(no node)" for each in same))
-    line = [LinePart(f"{_SIGN[edge.mark]}{_VERBS[edge.role]:10s}", mark), LinePart(who, mark, hang=_NODES)]
+    line = [LinePart(f"{_SIGN[edge.mark]}{VERBS[edge.role]:10s}", mark), LinePart(who, mark, hang=_NODES)]
     for endpoint in _remove_duplicates(edge.endpoints):
         line.append(LinePart("", path=f"{endpoint.path}:{endpoint.line}"))
         beside = _format_note(endpoint, edge, style)

@@ -35,7 +35,7 @@ from ...model.flow.contracts import Contract, is_of_framework, list_contracts
 from ...model.flow.edges import Flow, build_whole_flow, get_label
 from ...model.flow.escape_analysis import EscapeAnalysis
 from ...model.flow.graph import Endpoint, Node, Qos, Role
-from ...model.flow.join import Join, Running
+from ...model.flow.join import Running
 from ...model.flow.names import NameRefused, resolve_ros2_name
 from ...model.flow.workspace import get_flow
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
@@ -82,7 +82,7 @@ def contract_mismatch(workspace: Workspace):
             compared = _Compared(contract, one.node, flow, made.get(one.node.id, []), launched)
             if not escapes.find_unknown_reasons(one).names and not _has_unread(one, flow):
                 yield from compared.find_missing()
-            yield from compared.find_extra(_list_conditional(join))
+            yield from compared.find_extra()
             yield from compared.find_different()
 
 
@@ -101,12 +101,6 @@ def _find_program(contract: Contract, running: list[Running]) -> Running | None:
 
 def _has_unread(one: Running, flow: Flow) -> bool:
     return not {fn.source.path for fn in one.functions}.isdisjoint(flow.graph.coverage.unread)
-
-
-def _list_conditional(join: Join) -> set[tuple[str, int]]:
-    """Places where endpoints are created under a condition."""
-    uses = (site.use for site in join.sites.endpoints)
-    return {(use.fn.source.path, use.call.line) for use in uses if use.call.guard >= 0}
 
 
 _Made = tuple[Role, str, int, str]
@@ -175,16 +169,16 @@ class _Compared:
             if not any(one.type in ("", "*", entry.type) for one in unsure):
                 yield self._report(entry, "missing")
 
-    def find_extra(self, conditional: set[tuple[str, int]]) -> Iterator[Diagnostic]:
+    def find_extra(self) -> Iterator[Diagnostic]:
         """Endpoints that the code creates for certain and that the contract lacks."""
         reported = set()
         for one in self.made if self.contract.whole else ():
-            certain = self.flow.is_sure(one) and not one.only_if and not one.implied
-            if not certain or (one.path, one.line) in conditional or is_of_framework(one.role, one.topic, one.type):
+            certain = self.flow.is_sure(one) and not one.only_if and not one.guards and not one.implied
+            if not certain or is_of_framework(one.role, one.topic, one.type):
                 continue
             if self.flow.find_type(one) and not any(self._fits(entry, one) for entry in self.entries):
                 if (one.role, one.topic) not in reported:
-                    data = {"program": self.program, "role": one.role, "file": self.contract.path}
+                    data = {"program": self.program, "role": _describe_role(one.role), "file": self.contract.path}
                     yield Diagnostic(At(one.path, one.line), one.topic, self.node.package, data, "extra")
                 reported.add((one.role, one.topic))
 
@@ -212,8 +206,12 @@ class _Compared:
                 yield self._report(entry, "qos", **data, written=written, made=made)
 
     def _report(self, entry: _Entry, kind: str, **data: str) -> Diagnostic:
-        data |= {"program": self.program, "role": entry.role}
+        data |= {"program": self.program, "role": _describe_role(entry.role)}
         return Diagnostic(At(entry.path, entry.written.line), entry.written.name, self.contract.package, data, kind)
+
+
+def _describe_role(role: Role) -> str:
+    return f"service {role}" if role in ("server", "client") else role
 
 
 def _list_policies(qos: Qos | None) -> dict[str, object]:
