@@ -6,6 +6,7 @@ import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
+from itertools import chain, islice
 from typing import Literal, NamedTuple
 
 from ....edges.groups import group_pairs
@@ -24,6 +25,8 @@ from .workspace import get_flow
 
 _SETTINGS = frozenset(("launch_xml", "launch_yaml", "params", "xacro"))
 _SHARED = re.compile(r"\$\(find ([\w.-]+)\)/([\w./-]+)")
+# As many new lines are searched for what makes a value what it is.
+_MOST_LINES = 1_000
 _BESIDE = re.compile(r"filename\s*=\s*[\x22\x27]([\w./-]+)[\x22\x27]")
 _COMMENT = re.compile(r"(?m)^\s*#.*$")
 _XML_COMMENT = re.compile(r"(?s)<!--.*?-->")
@@ -39,14 +42,15 @@ class StartValue(NamedTuple):
 
 
 class StartedNode(NamedTuple):
-    """A node as a launch file starts it, or an include of a launch file of another package; without a program, a node
-    that only a parameter file names, as the costmap within a server; without a name, what is set for all nodes on
-    ROS 1's parameter server.
+    """A node as a launch file starts it, or what is given parameters like one.
 
-    node: its id in the graph of the launch, empty for a program of another package. remaps: by the old name,
+    kind: `node`; `include`, of a launch file of another package; `inner`, a node that only a parameter file names, as
+    the costmap within a server; `server`, what is set for all nodes on ROS 1's parameter server, without a name. node:
+    its id in the graph of the launch, empty for all but a program of the workspace. remaps: by the old name,
     parameters: by name; files: texts that name files of the workspace, by the parameter that is made from them.
     """
 
+    kind: Literal["node", "include", "inner", "server"]
     name: str
     node: str
     program: str
@@ -70,6 +74,13 @@ class StartDifference(NamedTuple):
     path: str
     line: int
 
+    def may_cause(self, old: str, new: str) -> bool:
+        """Whether it is a value from which a name comes."""
+        if self.what not in ("remapping", "parameter"):
+            return False
+        values = [text.partition(" if ")[0].strip("~/") for text in (self.old, self.new)]
+        return any(value and name.endswith(f"/{value}") for value, name in zip(values, (old, new), strict=True))
+
 
 class NodeChange(NamedTuple):
     """A node that is started otherwise, or is started only now (before is None) or only at the base (now is None).
@@ -79,6 +90,12 @@ class NodeChange(NamedTuple):
     now: StartedNode | None
     differences: tuple[StartDifference, ...]
     made_of: tuple[str, ...] = ()
+
+    def find_cause(self, old: str, new: str) -> StartDifference | None:
+        """The difference that gives an endpoint of the node another name. old, new: its names, empty for none."""
+        fitting = (one for one in self.differences if one.may_cause(old, new))
+        named = (one for one in self.differences if one.what == "name")
+        return next(chain(fitting, named, self.differences), None)
 
 
 class LaunchChange(NamedTuple):
@@ -187,22 +204,24 @@ class _Side:
         known = {id(one.instance.started): one for one in running if one.instance is not None}
         names: list[str] = []
         inner: dict[str, dict[str, LaunchParameter]] = {}
+        read: set[int] = set()
         for started in (*launched.started, *launched.outside):
             if started.kind != "process":
                 found = self._describe_start(launched, started, known.get(id(started)))
                 names.append(found.name)
                 yield found
-                for name, given in _list_inner_parameters(started):
+                for name, given in _list_inner_parameters(started, read):
                     inner.setdefault(name, {}).update(given)
         for name in sorted(inner.keys() - set(names)):
             first = next(iter(inner[name].values()))
             at = self._locate("", first.source or first.at)
-            yield StartedNode(name, "", "", "", "", at.path, at.line, {}, *self._describe_parameters(inner[name]))
+            given = self._describe_parameters(inner[name])
+            yield StartedNode("inner", name, "", "", "", "", at.path, at.line, {}, *given)
         below = tuple(f"{name}/" for name in names)
         shared = {key: value for key, value in launched.server.items() if not key.startswith(below)}
         if shared:
             at = self._locate("", next(iter(shared.values())).at)
-            yield StartedNode("", "", "", "", "", at.path, at.line, {}, *self._describe_parameters(shared))
+            yield StartedNode("server", "", "", "", "", "", at.path, at.line, {}, *self._describe_parameters(shared))
 
     def _describe_start(self, launched: Launched, started: Started, one: Running | None) -> StartedNode:
         what = started.plugin.shown or started.executable.shown
@@ -226,8 +245,9 @@ class _Side:
         place = self._locate("", started.at)
         package = started.package.shown
         return StartedNode(
-            instance.name, one.node.id if one is not None else "", f"{package}/{what}" if package else what,
-            " and ".join(started.conditions), arguments, place.path, place.line, remaps, parameters, files,
+            "include" if started.kind == "include" else "node", instance.name, one.node.id if one is not None else "",
+            f"{package}/{what}" if package else what, " and ".join(started.conditions), arguments, place.path,
+            place.line, remaps, parameters, files,
         )  # fmt: skip
 
     def _describe_parameters(
@@ -242,12 +262,13 @@ class _Side:
         return StartValue(text, path or f"{at.package}/{at.path}", at.line)
 
 
-def _list_inner_parameters(started: Started) -> Iterator[tuple[str, dict[str, LaunchParameter]]]:
+def _list_inner_parameters(started: Started, read: set[int]) -> Iterator[tuple[str, dict[str, LaunchParameter]]]:
     """Full names of nodes that the parameter files of a start name, and the parameters: they are for all nodes of the
-    process. Names that are patterns are left out."""
+    process. Names that are patterns are left out. read: the id() of entries that were read before, and now."""
     for setting in started.settings:
-        if not isinstance(setting, SettingFile) or setting.plain:
+        if not isinstance(setting, SettingFile) or setting.plain or id(setting.entries) in read:
             continue
+        read.add(id(setting.entries))
         found: dict[str, dict[str, LaunchParameter]] = {}
         for entry in setting.entries or ():
             if "ros__parameters" in entry.path and "*" not in "".join(entry.path):
@@ -334,7 +355,7 @@ class _Comparison:
         ]
         if not nodes:
             return None
-        others = any(one.program and not one.node for each in starts for one in each)
+        others = any(one.kind in ("node", "include") and not one.node for each in starts for one in each)
         return LaunchChange(
             path or old_path, not before, not now, self.before.build_graph(before), self.now.build_graph(now),
             tuple(nodes), others,
@@ -386,12 +407,13 @@ class _Comparison:
             return place.path, place.line
         words = set(re.split(r"[^\w.-]+", place.text)) - set(re.split(r"[^\w.-]+", old))
         order = dict.fromkeys((place.path, *(path for path in files if find_kind(path) != "xacro")))
-        lines = [(path, line, text) for path in order for line, text in sorted(self._list_new(path).items())]
-        named = next(((path, line) for path, line, text in lines if any(word in text for word in words if word)), None)
-        if named is not None:
-            return named
-        own = place.path in self.changed or not lines
-        return (place.path, place.line) if own else lines[0][:2]
+        lines = ((path, line, text) for path in order for line, text in self._list_new(path).items())
+        first = None if place.path in self.changed else next(lines, None)
+        again = (first,) if first is not None else ()
+        for path, line, text in islice(chain(again, lines), _MOST_LINES) if words - {""} else ():
+            if any(word in text for word in words if word):
+                return path, line
+        return first[:2] if first is not None else (place.path, place.line)
 
     def _list_new(self, path: str) -> dict[int, str]:
         """The lines of a file that it did not have at the base."""
@@ -415,16 +437,15 @@ def _pair_starts(
     before: Iterable[StartedNode], now: Iterable[StartedNode]
 ) -> Iterator[tuple[StartedNode | None, StartedNode | None]]:
     """Nodes of two launches that are the same: of one name and program, of one name, or else of one program."""
-    old, new = list(before), list(now)
-    keys = (lambda one: (one.name, one.program), lambda one: one.name, lambda one: one.program)
+    old, new = ({id(one): one for one in side} for side in (before, now))
+    keys = (lambda one: (one.kind, one.name, one.program), lambda one: (one.kind, one.name), lambda one: one.program)
     for key in keys:
-        waiting = group_pairs((key(one), one) for one in old)
-        for one in [*new]:
-            fitting = waiting.get(key(one))
+        waiting = group_pairs((key(one), one) for one in reversed(old.values()))
+        for one in [*new.values()]:
+            fitting = waiting.get(key(one)) if key(one) else None
             if fitting:
-                first = fitting.pop(0)
-                old.remove(first)
-                new.remove(one)
+                first = fitting.pop()
+                del old[id(first)], new[id(one)]
                 yield first, one
-    yield from ((one, None) for one in old)
-    yield from ((None, one) for one in new)
+    yield from ((one, None) for one in old.values())
+    yield from ((None, one) for one in new.values())
