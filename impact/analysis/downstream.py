@@ -2,7 +2,7 @@
 downstream."""
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
 from itertools import product
@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from ...edges import processes
 from ...edges.memory import cache_method
 from ..facts.extract import ExtractedFacts
 from ..facts.flow import FlowFile
@@ -54,6 +55,12 @@ def compute_impact(workspace: Workspace, base: Workspace) -> Impact:
     """What the changes since the base reach, message by message, topic by topic, statement by statement."""
     reading = _Reading(workspace, base)
     return reading.build_impact() if reading.has_flow_changes() else NOTHING
+
+
+def use_processes(workspaces: Iterable[Workspace], jobs: int | None) -> None:
+    """Lets as many processes make the graphs of workspaces, one for each processor where jobs is None."""
+    for workspace in workspaces:
+        get_flow(workspace).jobs = jobs or processes.count_cores()
 
 
 class _Reading:
@@ -445,8 +452,9 @@ def analyze_impact(
         old_tree, notes = open_base_tree(tree, tuple(base))
         now = link_flow(path, tree, store, jobs, progress)
         before = link_for_flow(old_tree, store, jobs)
+        use_processes((now, before), jobs)
         if packages or topics or nodes:
-            graphs = [get_flow(workspace).graph for workspace in (now, before)]
+            graphs = [get_flow(workspace).system for workspace in (now, before)]
             known = now.packages.keys() | before.packages.keys()
             check_names(graphs, nodes=nodes, topics=topics, packages=packages, known=known)
         impact = select_effects(compute_impact(now, before), packages, topics, nodes)

@@ -259,7 +259,8 @@ def impact(
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
-    """Show which nodes are affected by changes since a base: of messages, topics, publish conditions and callbacks."""
+    """Show which nodes are affected by changes since a base: of messages, topics, publish conditions, callbacks, launch
+    files and parameters."""
 
 
 @_add_command(app)

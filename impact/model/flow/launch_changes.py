@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
 from itertools import chain, islice
 from typing import Literal, NamedTuple
@@ -17,7 +17,7 @@ from ..launch.text import wrap
 from ..package import find_folder_role
 from ..workspace import Workspace
 from .graph import Graph
-from .join import Running
+from .join import Join, Running
 from .launches import follow_launch_files, is_launch
 from .names import normalise
 from .started import InWorkspace, follow_workspace_launch, make_instance
@@ -127,7 +127,14 @@ NO_CHANGES = LaunchChanges((), (), ())
 @lru_cache(maxsize=2)
 def compare_launches(workspace: Workspace, base: Workspace) -> LaunchChanges:
     """What the launch files of a workspace start otherwise than at the base."""
-    sides = _Side(workspace), _Side(base)
+    flow, old_flow = get_flow(workspace), get_flow(base)
+
+    def find_old_code() -> Join:
+        if flow.key == old_flow.key:
+            old_flow.code = flow.code
+        return old_flow.code
+
+    sides = _Side(workspace, lambda: flow.code), _Side(base, find_old_code)
     ids = [side.settings for side in sides]
     changed = {path for path in ids[0].keys() | ids[1].keys() if ids[0].get(path) != ids[1].get(path)}
     return _Comparison(*sides, changed).compare() if changed else NO_CHANGES
@@ -136,8 +143,8 @@ def compare_launches(workspace: Workspace, base: Workspace) -> LaunchChanges:
 class _Side:
     """A workspace as its launch files start it."""
 
-    def __init__(self, workspace: Workspace):
-        self.workspace, self.sources = workspace, InWorkspace(workspace)
+    def __init__(self, workspace: Workspace, code: Callable[[], Join]):
+        self.workspace, self.sources, self.find_code = workspace, InWorkspace(workspace), code
         self._descriptions: dict[str, frozenset[str]] = {}
 
     @cached_property
@@ -193,14 +200,13 @@ class _Side:
         found += [self.sources.find_workspace_path(*place) for place in _SHARED.findall(text)]
         return [each for each in found if each in self.settings]
 
-    def build_graph(self, launched: Launched | None) -> Graph:
-        code = get_flow(self.workspace).code
-        return code.build(launch=launched or Launched((), {}, ()))
+    def start(self, launched: Launched | None) -> tuple[list[StartedNode], Graph]:
+        """What a launch starts, and its graph."""
+        launched = launched or Launched((), {}, ())
+        return list(self._list_starts(launched)), self.find_code().build(launch=launched)
 
-    def list_starts(self, launched: Launched | None) -> Iterator[StartedNode]:
-        if launched is None:
-            return
-        running, _ = get_flow(self.workspace).code.find_started(launched)
+    def _list_starts(self, launched: Launched) -> Iterator[StartedNode]:
+        running, _ = self.find_code().find_started(launched)
         known = {id(one.instance.started): one for one in running if one.instance is not None}
         names: list[str] = []
         inner: dict[str, dict[str, LaunchParameter]] = {}
@@ -269,14 +275,18 @@ def _list_inner_parameters(started: Started, read: set[int]) -> Iterator[tuple[s
         if not isinstance(setting, SettingFile) or setting.plain or id(setting.entries) in read:
             continue
         read.add(id(setting.entries))
-        found: dict[str, dict[str, LaunchParameter]] = {}
+        found: dict[tuple[str, ...], dict[str, LaunchParameter]] = {}
         for entry in setting.entries or ():
-            if "ros__parameters" in entry.path and "*" not in "".join(entry.path):
-                split = entry.path.index("ros__parameters")
-                name, key = normalise("/" + "/".join(entry.path[:split])), ".".join(entry.path[split + 1 :])
+            path = entry.path
+            if "ros__parameters" in path:
+                split = path.index("ros__parameters")
+                key = ".".join(path[split + 1 :])
                 source = ShareLine(*setting.source, entry.line) if setting.source is not None else None
-                found.setdefault(name, {})[key] = LaunchParameter(key, wrap(str(entry.value)), setting.at, (), source)
-        yield from found.items()
+                given = LaunchParameter(key, wrap(str(entry.value)), setting.at, (), source)
+                found.setdefault(path[:split], {})[key] = given
+        yield from (
+            (normalise("/" + "/".join(keys)), given) for keys, given in found.items() if "*" not in "".join(keys)
+        )
 
 
 def _list_texts(launched: Launched, started: Started) -> Iterator[str]:
@@ -347,19 +357,16 @@ class _Comparison:
         if not here:
             return None
         order = [path, *(place for place in sorted(here) if place != path)]
-        starts = [list(side.list_starts(each)) for side, each in ((self.before, before), (self.now, now))]
+        (old, old_graph), (new, graph) = self.before.start(before), self.now.start(now)
         nodes = [
-            NodeChange(old, new, differences, tuple(self._list_all_made_of(new)))
-            for old, new in _pair_starts(*starts)
-            if (differences := tuple(self._list_differences(old, new, order))) or old is None or new is None
+            NodeChange(one, other, differences, tuple(self._list_all_made_of(other)))
+            for one, other in _pair_starts(old, new)
+            if (differences := tuple(self._list_differences(one, other, order))) or one is None or other is None
         ]
         if not nodes:
             return None
-        others = any(one.kind in ("node", "include") and not one.node for each in starts for one in each)
-        return LaunchChange(
-            path or old_path, not before, not now, self.before.build_graph(before), self.now.build_graph(now),
-            tuple(nodes), others,
-        )  # fmt: skip
+        others = any(one.kind in ("node", "include") and not one.node for one in (*old, *new))
+        return LaunchChange(path or old_path, not before, not now, old_graph, graph, tuple(nodes), others)
 
     def _list_differences(
         self, old: StartedNode | None, new: StartedNode | None, files: Sequence[str]
