@@ -263,7 +263,7 @@ class _Reading:
             change = "changed" if had and has else "added" if has else "removed"
             why = "no launch file of the workspace is known to use it"
             if path in self.launches.without_effect:
-                why = "all that launch files are known to start is as it was"
+                why = "what launch files are known to start is as it was"
             elif is_launch(path):
                 why = "nothing is known that it starts"
             yield Effect("launch", change, path, self.find_package(path), path, 1, (), (), why)

@@ -78,7 +78,10 @@ class LaunchEffects:
             if names and difference.what in ("remapping", "parameter"):
                 subject = ", ".join(names)
             change = "renamed" if difference.what == "name" or edges else "changed"
-            why = "; ".join(dict.fromkeys([_describe_difference(difference), *map(_describe_edge, edges)]))
+            clauses = [_describe_difference(difference), *map(_describe_edge, edges)]
+            if now.condition and difference.what != "condition":
+                clauses.append(f"started only if {now.condition}")
+            why = "; ".join(dict.fromkeys(clauses))
             yield self.make_effect(change, subject, at, ids, edges, why)
         for (path, _), group in settings.items():
             yield self.describe_settings(now, path, group)
@@ -89,6 +92,7 @@ class LaunchEffects:
         if node.kind in ("node", "include"):
             edges = self.list_edges((node.node,), not gone)
             why = f"`{node.program}` is {'no longer started' if gone else 'started'}"
+            why += f" only if {node.condition}" * bool(node.condition and not gone)
             return self.make_effect(change, node.name, at, ids, edges, why)
         count = format_count(len(node.parameters), "parameter")
         why = f"{count} {'no longer' if gone else 'now'} set for a node of this name"
@@ -100,7 +104,9 @@ class LaunchEffects:
         ids = (node.name,)
         if not node.name:
             asked = {one.name for one in group}
-            ids = tuple(sorted({use.node for use in self.launch.now.parameters if use.name in asked}))
+            names = {one.id: one.name for one in self.launch.now.nodes}
+            uses = self.launch.now.parameters
+            ids = tuple(sorted({u.node for u in uses if resolve_ros1_name(u.name, names.get(u.node, "")) in asked}))
         edges = [edge for edge in self.list_edges(ids, True) if edge.role in SENDING]
         names = [one.name for one in group]
         subject = ", ".join(names[:3]) + f" and {len(names) - 3} more" * (len(names) > 3)
@@ -134,6 +140,8 @@ class LaunchEffects:
         texts = [(text or default).partition(" if ")[0] for text in (difference.old, difference.new)]
         pairs = zip(texts, (before, now), strict=True)
         old, new = (resolve_ros1_name(text, one.name) if text else "" for text, one in pairs)
+        if old == new:
+            return
         if difference.what == "remapping" or any(name in side for name in (old, new) if name for side in self.named):
             yield _NamedEdge("publisher", old, new)
 

@@ -91,6 +91,12 @@ class NodeChange(NamedTuple):
     differences: tuple[StartDifference, ...]
     made_of: tuple[str, ...] = ()
 
+    def list_files(self) -> Iterator[str]:
+        """The files whose lines are told of it."""
+        yield from (difference.path for difference in self.differences)
+        yield from (node.path for node in (self.before, self.now) if node is not None)
+        yield from self.made_of
+
     def find_cause(self, old: str, new: str) -> StartDifference | None:
         """The difference that gives an endpoint of the node another name. old, new: its names, empty for none."""
         fitting = (one for one in self.differences if one.may_cause(old, new))
@@ -171,8 +177,10 @@ class _Side:
         """The text of a launch file or the like; None where there is none."""
         return self.workspace.read(path).decode("utf-8", "replace") if path in self.settings else None
 
-    def follow(self, path: str) -> Launched | None:
-        """What a launch file starts; None where there is none."""
+    def follow(self, path: str, undecided: bool) -> Launched | None:
+        """What a launch file starts; None where there is none. undecided: as for follow()."""
+        if undecided:
+            return follow_workspace_launch(self.workspace, path, {}, undecided) if path in self.settings else None
         if path not in self.launches and path in self.settings:
             self.launches[path] = follow_workspace_launch(self.workspace, path, {})
         return self.launches.get(path)
@@ -307,12 +315,19 @@ class _Comparison:
 
     def compare(self) -> LaunchChanges:
         used: set[str] = set()
-        found = [one for pair in self._pair_launches() if (one := self._compare_launch(*pair, used)) is not None]
-        told = {difference.path for one in found for node in one.nodes for difference in node.differences}
-        told |= {path for one in found for node in one.nodes for path in node.made_of}
-        told |= {place.path for one in found for node in one.nodes for place in (node.before, node.now) if place}
-        unused, silent = self.changed - used - self._find_moved(), used - told - self._find_moved()
-        return LaunchChanges(tuple(found), *(tuple(sorted(filter(self._differs, each))) for each in (unused, silent)))
+        pairs = list(self._pair_launches())
+        found = [one for pair in pairs if (one := self._compare_launch(*pair, self.changed, used)) is not None]
+        told = {path for one in found for node in one.nodes for path in node.list_files()}
+        left = set(filter(self._differs, self.changed - told - self._find_moved()))
+        if left:
+            # What the defaults of arguments leave out.
+            rest = (self._compare_launch(*pair, left, used, undecided=True) for pair in pairs)
+            for one in filter(None, rest):
+                nodes = tuple(node for node in one.nodes if not left.isdisjoint(node.list_files()))
+                if nodes:
+                    found.append(one._replace(nodes=nodes))
+                    told.update(path for node in nodes for path in node.list_files())
+        return LaunchChanges(tuple(found), tuple(sorted(left - used)), tuple(sorted(left & used - told)))
 
     def _find_moved(self) -> set[str]:
         """Files that only have another path."""
@@ -348,11 +363,15 @@ class _Comparison:
         for path in sorted(self.before.launches.keys() - self.now.launches.keys() - set(moved.values())):
             yield path if path in now else "", path
 
-    def _compare_launch(self, path: str, old_path: str, used: set[str]) -> LaunchChange | None:
-        now, before = self.now.follow(path), self.before.follow(old_path)
+    def _compare_launch(
+        self, path: str, old_path: str, changed: set[str], used: set[str], undecided: bool = False
+    ) -> LaunchChange | None:  # fmt: skip
+        """What a launch file starts otherwise; None where it uses none of the files that changed, which are added to
+        those used, or starts what it did. path, old_path: now and at the base."""
+        now, before = self.now.follow(path, undecided), self.before.follow(old_path, undecided)
         files = {*self.now.list_files(now)} if now is not None else set()
         files |= {*self.before.list_files(before)} if before is not None else set()
-        here = files & self.changed
+        here = files & changed
         used |= here
         if not here:
             return None

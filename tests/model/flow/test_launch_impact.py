@@ -62,6 +62,8 @@ LAUNCH = """<launch>
   <include file="$(find-pkg-share nav2_bringup)/launch/navigation_launch.py">
     <arg name="params_file" value="$(find-pkg-share harbour)/config/nav.yaml"/>
   </include>
+  <arg name="loud" default="false"/>
+  <node pkg="harbour" exec="horn" name="loud" if="$(var loud)"><remap from="alarm" to="horn_alarm"/></node>
 </launch>
 """
 FILES = {
@@ -169,7 +171,7 @@ EDITS: dict[str, tuple[dict[str, str], list[Told]]] = {
     ),
     "a second node": (
         edited(XML, ("</launch>", '  <node pkg="harbour" exec="watch" name="second" namespace="north"/>\n</launch>')),
-        [Told("launch", "added", "/north/second", "harbour.launch.xml:21", "`harbour/watch` is started", ["/horn"])],
+        [Told("launch", "added", "/north/second", "harbour.launch.xml:23", "`harbour/watch` is started", ["/horn"])],
     ),
     "a remapping of a program of another package": (
         edited(XML, ('"scan" to="north/level"', '"scan" to="north/alarm"')),
@@ -208,6 +210,16 @@ EDITS: dict[str, tuple[dict[str, str], list[Told]]] = {
               "remapping `cmd_vel` is new: `north/level`; the name `/cmd_vel` is now `/north/level`",
               ["/horn", "/north/watch"])],
     ),
+    "a remapping to the name itself": (
+        edited(XML, ('"scan" to="north/level"/>', '"scan" to="north/level"/><remap from="map" to="/map"/>')),
+        [Told("launch", "changed", "map:=/map", "harbour.launch.xml:14", "remapping `map` is new: `/map`")],
+    ),
+    "a remapping of what the defaults leave out": (
+        {XML: LAUNCH.replace("horn_alarm", "siren")},
+        [Told("launch", "renamed", "/siren", "harbour.launch.xml:22",
+              "remapping `alarm` is `siren`, was `horn_alarm`; the subscriber `/horn_alarm` is now `/siren`; "
+              "started only if $(arg loud)")],
+    ),
     "a file that nothing uses": (
         {"harbour/config/spare.yaml": "a: 2\n"},
         [Told("launch", "changed", "harbour/config/spare.yaml", "spare.yaml:1",
@@ -216,7 +228,7 @@ EDITS: dict[str, tuple[dict[str, str], list[Told]]] = {
     "an argument that nothing uses": (
         edited(XML, ("<group>", '<arg name="other" default="1"/><group>')),
         [Told("launch", "changed", XML, "harbour.launch.xml:1",
-              "all that launch files are known to start is as it was")],
+              "what launch files are known to start is as it was")],
     ),
     "a launch file that was moved": ({XML: "", "harbour/launch/pier.launch.xml": LAUNCH}, []),
     "a launch file that is gone": (
@@ -236,6 +248,36 @@ def test_what_each_edit_reaches(edits: dict[str, str], told: list[Told], between
     found = tell(between(edits))
     assert [one._replace(why=one.why if want.why else "") for one, want in zip(found, told, strict=False)] == told
     assert len(found) == len(told)
+
+
+ROS1 = {
+    "quay/package.xml": manifest("quay", "catkin"),
+    "quay/CMakeLists.txt": "project(quay)\ncatkin_package()\n"
+    "catkin_install_python(PROGRAMS crane.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n",
+    "quay/crane.py": "#!/usr/bin/env python\nimport rospy\nfrom std_msgs.msg import Bool\nrospy.init_node('crane')\n"
+    "rope = rospy.get_param('limits/rope')\npub = rospy.Publisher(rospy.get_param('~out', 'load'), Bool)\n"
+    "pub.publish(True)\n",
+    "quay/launch/quay.launch": '<launch>\n  <group ns="$(env SIDE)">\n    <rosparam file="$(find quay)/quay.yaml"/>\n'
+    '    <node pkg="quay" type="crane.py" name="crane"/>\n  </group>\n</launch>\n',
+    "quay/quay.yaml": "limits: {rope: 3}\ncrane: {out: load}\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("rope: 3", "rope: 4", ("parameter", "changed", "/<$SIDE>/limits/rope", ("/<$SIDE>/crane",))),
+        ("out: load", "out: weight", ("launch", "renamed", "/<$SIDE>/weight", ("/<$SIDE>/crane",))),
+    ],
+)
+def test_parameters_of_ros1_in_a_namespace_that_is_not_known(tmp_path: Path, old: str, new: str, told: tuple):
+    write(tmp_path / "base", ROS1)
+    write(tmp_path / "now", {**ROS1, "quay/quay.yaml": ROS1["quay/quay.yaml"].replace(old, new)})
+    with Store(tmp_path / "cache") as store:
+        base, now = (link_for_flow(WorkingTree(tmp_path / folder), store, 1) for folder in ("base", "now"))
+        (found,) = compute_impact(now, base).effects
+    assert (found.kind, found.change, found.subject, found.nodes) == told
+    assert found.path == "quay/quay.yaml"
 
 
 def test_a_change_of_code_is_told_as_one_under_the_names_of_the_launch(between: Between):
