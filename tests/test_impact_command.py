@@ -168,3 +168,21 @@ def test_what_fails_there_does_not_take_the_findings_along(ws: Path, say, monkey
 
 def test_a_page_without_a_base_has_no_such_section(ws: Path, say):
     assert '"impact":null' in say("check", ws, "-t", "jazzy", "-f", "html").out
+
+
+def test_check_says_what_a_launch_file_changes(ws: Path, say):
+    (ws / "bell/bell/ring.py").write_text(RING)
+    launch = ws / "bell/launch/bell.launch.xml"
+    launch.parent.mkdir()
+    launch.write_text('<launch><node pkg="bell" exec="ring"/><node pkg="bell" exec="hear"/></launch>\n')
+    settings = ["-c", "user.name=a", "-c", "user.email=a@b.org"]
+    for arguments in (("add", "-A"), ("commit", "-m", "second")):
+        subprocess.run(["git", *settings, *arguments], cwd=ws, check=True, capture_output=True)
+    text = launch.read_text().replace('exec="hear"/>', 'exec="hear"><remap from="bell" to="gong"/></node>')
+    launch.write_text(text)
+    out = say("check", ws, "--base", "HEAD", "-t", "jazzy").out
+    assert "renamed  /gong  (/hear)  bell/launch/bell.launch.xml:1" in out
+    assert "nothing in the workspace subscribes to /bell of /ring any more" in out
+    assert "1 launch setting changed" in out
+    out = say("check", ws, "--base", "HEAD", "-t", "jazzy", "--preview", "--select", "lost-edge").out
+    assert "nothing subscribes to `/bell` any more; `/hear` did at the base, and now reads `/gong`" in out

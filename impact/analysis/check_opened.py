@@ -77,7 +77,7 @@ def check_opened(
         old = run_and_merge(before, chosen, settings, SourceLines(make_reader(base_tree)), crashed, jobs=options.jobs)
         now = run_and_merge(opened, chosen, settings, sources, crashed, before.workspace, options.jobs)
         found: Sequence[Finding] = mark_new(now.kept, old.kept)
-        reached = _find_impact(workspace, before.workspace, crashed)
+        reached = _find_impact(workspace, before.workspace, crashed, options.jobs)
     else:
         now = run_and_merge(opened, chosen, settings, sources, crashed, jobs=options.jobs)
         found = now.kept
@@ -144,11 +144,12 @@ def _find_splits(
     return suppress(configured, allows, rules=rules, ran=()).kept
 
 
-def _find_impact(workspace: Workspace, base: Workspace, crashed: Crashes) -> Impact | None:
+def _find_impact(workspace: Workspace, base: Workspace, crashed: Crashes, jobs: int | None) -> Impact | None:
     """What the changes since the base reach; None where that failed, which is noted as a rule's failure is."""
-    from .downstream import compute_impact
+    from .downstream import compute_impact, use_processes
 
     try:
+        use_processes((workspace, base), jobs)
         return compute_impact(workspace, base)
     except Exception as error:
         crashed.setdefault(("impact", describe_unforeseen(error)), [])

@@ -2,7 +2,7 @@
 downstream."""
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
 from itertools import product
@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from ...edges import processes
 from ...edges.memory import cache_method
 from ..facts.extract import ExtractedFacts
 from ..facts.flow import FlowFile
@@ -38,6 +39,7 @@ from .effects import (
     Hop,
     Impact,
     Outgoing,
+    group_by_name,
     list_left_alone,
     merge_effects,
 )
@@ -53,6 +55,12 @@ def compute_impact(workspace: Workspace, base: Workspace) -> Impact:
     """What the changes since the base reach, message by message, topic by topic, statement by statement."""
     reading = _Reading(workspace, base)
     return reading.build_impact() if reading.has_flow_changes() else NOTHING
+
+
+def use_processes(workspaces: Iterable[Workspace], jobs: int | None) -> None:
+    """Lets as many processes make the graphs of workspaces, one for each processor where jobs is None."""
+    for workspace in workspaces:
+        get_flow(workspace).jobs = jobs or processes.count_cores()
 
 
 class _Reading:
@@ -109,6 +117,11 @@ class _Reading:
     @cached_property
     def packages(self) -> dict[str, str]:
         return {node.id: node.package for node in self.nodes.values()}
+
+    @cached_property
+    def named(self) -> list[dict[str, list[Endpoint]]]:
+        """Endpoints of the base and now, by name."""
+        return [group_by_name(self.before), group_by_name(self.now)]
 
     @cached_property
     def downstream(self) -> DownstreamLister:
@@ -170,13 +183,25 @@ class _Reading:
             nodes = tuple(sorted({one.node for one in here if one.node})) or tuple(
                 node for node in change.node.split(", ") if node
             )
-            topics = tuple(sorted({one.topic for one in here if one.topic} | {*change.topics}))
+            topics = {name for topic in change.topics for name in self.find_started_names(topic, change.path)}
+            topics = tuple(sorted({one.topic for one in here if one.topic} | topics))
             sent = tuple((topic, "publisher") for topic in topics)
             yield Effect(
                 "trigger" if change.kind == "trigger changed" else "condition", change.kind,
                 ", ".join(topics) or change.topic, change.package, change.path, change.line, nodes, topics, change.why,
                 self.downstream.list_downstream(nodes, [Outgoing(node, sent) for node in nodes or ("",)], reach),
+                tuple(one for one in list_left_alone(self.named, topics) if one.node not in nodes),
             )  # fmt: skip
+
+    @cache_method
+    def find_started_names(self, topic: str, path: str) -> set[str]:
+        """What a topic that the code of a file names is called where launch files start the code."""
+        found: set[str] = set()
+        for workspace, graph in ((self.base, self.before), (self.workspace, self.now)):
+            code = get_flow(workspace).graph
+            places = {one.line for one in code.endpoints if one.topic == topic and one.path == path}
+            found |= {one.topic for one in graph.endpoints if one.path == path and one.line in places and one.topic}
+        return found or {topic}
 
     def compare_topics(self, reported: Sequence[Effect]) -> Iterator[Effect]:
         """What is new, gone or of another type or quality at either end of a topic, save what was told already."""
@@ -226,7 +251,7 @@ class _Reading:
             "topic", edge.mark, edge.name, self.packages.get(edge.node, ""), endpoint.path, endpoint.line,
             (edge.node,) if edge.node else (), (edge.name,), says.format(edge.role),
             self.downstream.list_downstream((edge.node,), [Outgoing(edge.node, sent)], reach, first),
-            tuple(list_left_alone(self.before, self.now, {edge.name})) if gone else (),
+            tuple(list_left_alone(self.named, {edge.name})) if gone else (),
         )  # fmt: skip
 
     def describe_launches(self) -> Iterator[Effect]:
@@ -238,7 +263,7 @@ class _Reading:
             change = "changed" if had and has else "added" if has else "removed"
             why = "no launch file of the workspace is known to use it"
             if path in self.launches.without_effect:
-                why = "all that launch files are known to start is as it was"
+                why = "what launch files are known to start is as it was"
             elif is_launch(path):
                 why = "nothing is known that it starts"
             yield Effect("launch", change, path, self.find_package(path), path, 1, (), (), why)
@@ -275,7 +300,8 @@ class _Reading:
                 running.setdefault(one.path, set()).add(one.node)
         reported: dict[tuple[str, str], set[str]] = {}
         for change in compare_publishing(self.workspace, self.base):
-            reported.setdefault((change.path, change.function), set()).update((change.topic, *change.topics))
+            names = (name for topic in change.topics for name in self.find_started_names(topic, change.path))
+            reported.setdefault((change.path, change.function), set()).update((change.topic, *names))
         for function in self.functions:
             place = (function.path, function.name, function.line)
             led = [one for one in get_flow(self.workspace).callers.list_triggers(*place) if one.trigger.kind in EVENTS]
@@ -426,8 +452,9 @@ def analyze_impact(
         old_tree, notes = open_base_tree(tree, tuple(base))
         now = link_flow(path, tree, store, jobs, progress)
         before = link_for_flow(old_tree, store, jobs)
+        use_processes((now, before), jobs)
         if packages or topics or nodes:
-            graphs = [get_flow(workspace).graph for workspace in (now, before)]
+            graphs = [get_flow(workspace).system for workspace in (now, before)]
             known = now.packages.keys() | before.packages.keys()
             check_names(graphs, nodes=nodes, topics=topics, packages=packages, known=known)
         impact = select_effects(compute_impact(now, before), packages, topics, nodes)

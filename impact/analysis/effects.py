@@ -1,10 +1,11 @@
 """What an impact is made of: changes, the nodes that they reach, and what they leave without a partner."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 import msgspec
 
+from ...edges.groups import group_pairs
 from ...edges.memory import cache_method
 from ..model.flow.edges import OTHER_SIDE
 from ..model.flow.graph import Coverage, Endpoint, Graph, Node
@@ -127,23 +128,24 @@ class DownstreamLister:
         return Hop(step.node, self.packages.get(step.node, ""), came, step.kind, step.name, step.path, step.line)
 
 
-def list_left_alone(before: Graph, now: Graph, names: Collection[str]) -> Iterator[LeftEndpoint]:
-    """Endpoints of some names that had the other side at the base, and have it no more."""
-    sides = []
-    for graph in (before, now):
-        found: dict[tuple[str, str], list[Endpoint]] = {}
-        for one in graph.endpoints:
-            if one.topic in names:
-                found.setdefault((one.role, one.topic), []).append(one)
-        sides.append(found)
-    had, has = sides
-    for (role, name), endpoints in has.items():
-        other = (OTHER_SIDE[role], name)
-        if other in had and other not in has:
-            nodes = {one.node for one in had.get((role, name), ())}
-            for one in dict.fromkeys(endpoints):
-                if one.node in nodes and not one.implied:
-                    yield LeftEndpoint(one.node, role, name, one.path, one.line)
+def group_by_name(graph: Graph) -> dict[str, list[Endpoint]]:
+    """Endpoints by the name of their topic, service or action."""
+    return group_pairs((one.topic, one) for one in graph.endpoints)
+
+
+def list_left_alone(
+    sides: Sequence[Mapping[str, Sequence[Endpoint]]], names: Iterable[str]
+) -> Iterator[LeftEndpoint]:  # fmt: skip
+    """Endpoints of some names that had the other side at the base, and have it no more. sides: endpoints of the base
+    and now, by name."""
+    before, now = sides
+    for name in sorted(names):
+        had = {(one.role, one.node) for one in before.get(name, ())}
+        had_roles, has_roles = {role for role, _ in had}, {one.role for one in now.get(name, ())}
+        for one in now.get(name, ()):
+            other = OTHER_SIDE[one.role]
+            if other in had_roles - has_roles and (one.role, one.node) in had and not one.implied:
+                yield LeftEndpoint(one.node, one.role, name, one.path, one.line)
 
 
 def merge_effects(effects: Iterable[Effect]) -> list[Effect]:

@@ -13,7 +13,7 @@ from ..model.flow.launch_changes import LaunchChange, NodeChange, StartDifferenc
 from ..model.flow.names import resolve_ros1_name
 from ..model.flow.reach import EVERYWHERE, DownstreamSearch, Step
 from ..model.flow.select import get_kind
-from .effects import ASKS, RECEIVING, DownstreamLister, Effect, Hop, Outgoing, list_left_alone
+from .effects import ASKS, RECEIVING, DownstreamLister, Effect, Hop, Outgoing, group_by_name, list_left_alone
 
 SENDING = frozenset(("publisher", "client", "action client"))
 # A value of a parameter that is longer is cut.
@@ -38,12 +38,13 @@ class LaunchEffects:
         self.launch, self.downstream, self.find_package = launch, downstream, find_package
         self.sides = [(graph, DownstreamSearch(graph)) for graph in (launch.before, launch.now)]
         self.endpoints = [group_pairs((one.node, one) for one in graph.endpoints) for graph, _ in self.sides]
+        self.named = [group_by_name(graph) for graph, _ in self.sides]
 
     def describe(self) -> Iterator[Effect]:
         launch = self.launch
         if launch.added or launch.removed:
             nodes = [one.now or one.before for one in launch.nodes]
-            ids = tuple(dict.fromkeys(one.node or one.name for one in nodes if one is not None and one.name))
+            ids = tuple(dict.fromkeys(one.name for one in nodes if one is not None and one.kind == "node"))
             edges = self.list_edges(ids, launch.added)
             why = "a new launch file starts" if launch.added else "the launch file is gone; it started"
             change = "added" if launch.added else "removed"
@@ -58,15 +59,14 @@ class LaunchEffects:
         one = now or before
         if one is None:
             return
-        ids = (one.node or one.name,) if one.name else ()
+        ids = (one.name,) if one.name else ()
         if before is None or now is None:
             yield self.describe_new(one, now is None)
             return
-        renamed = list(self.list_renamed(before, now))
+        renamed = group_pairs((pair.find_cause(edge.before, edge.now), edge) for edge in self.list_renamed(before, now))
         settings: dict[tuple[str, str], list[StartDifference]] = {}
         for difference in pair.differences:
-            edges = [edge for edge in renamed if _is_cause(difference, edge, pair.differences)]
-            renamed = [edge for edge in renamed if edge not in edges]
+            edges = renamed.get(difference, [])
             at = (difference.path, difference.line)
             if not edges and not now.node:
                 edges = list(self.list_named(difference, before, now))
@@ -78,22 +78,21 @@ class LaunchEffects:
             if names and difference.what in ("remapping", "parameter"):
                 subject = ", ".join(names)
             change = "renamed" if difference.what == "name" or edges else "changed"
-            why = "; ".join(dict.fromkeys([_describe_difference(difference), *map(_describe_edge, edges)]))
+            clauses = [_describe_difference(difference), *map(_describe_edge, edges)]
+            if now.condition and difference.what != "condition":
+                clauses.append(f"started only if {now.condition}")
+            why = "; ".join(dict.fromkeys(clauses))
             yield self.make_effect(change, subject, at, ids, edges, why)
-        for edge in renamed:
-            difference = pair.differences[0]
-            why = f"{_describe_difference(difference)}; {_describe_edge(edge)}"
-            at = (difference.path, difference.line)
-            yield self.make_effect("renamed", edge.now or edge.before, at, ids, [edge], why)
         for (path, _), group in settings.items():
             yield self.describe_settings(now, path, group)
 
     def describe_new(self, node: StartedNode, gone: bool) -> Effect:
         """What is started only now, or, gone, only at the base."""
         change, at, ids = "removed" if gone else "added", (node.path, node.line), (node.name,) if node.name else ()
-        if node.program:
+        if node.kind in ("node", "include"):
             edges = self.list_edges((node.node,), not gone)
             why = f"`{node.program}` is {'no longer started' if gone else 'started'}"
+            why += f" only if {node.condition}" * bool(node.condition and not gone)
             return self.make_effect(change, node.name, at, ids, edges, why)
         count = format_count(len(node.parameters), "parameter")
         why = f"{count} {'no longer' if gone else 'now'} set for a node of this name"
@@ -102,10 +101,12 @@ class LaunchEffects:
 
     def describe_settings(self, node: StartedNode, path: str, group: Sequence[StartDifference]) -> Effect:
         """Parameters that a file sets otherwise, which change no name."""
-        ids = (node.node or node.name,)
+        ids = (node.name,)
         if not node.name:
             asked = {one.name for one in group}
-            ids = tuple(sorted({use.node for use in self.launch.now.parameters if use.name in asked}))
+            names = {one.id: one.name for one in self.launch.now.nodes}
+            uses = self.launch.now.parameters
+            ids = tuple(sorted({u.node for u in uses if resolve_ros1_name(u.name, names.get(u.node, "")) in asked}))
         edges = [edge for edge in self.list_edges(ids, True) if edge.role in SENDING]
         names = [one.name for one in group]
         subject = ", ".join(names[:3]) + f" and {len(names) - 3} more" * (len(names) > 3)
@@ -139,8 +140,9 @@ class LaunchEffects:
         texts = [(text or default).partition(" if ")[0] for text in (difference.old, difference.new)]
         pairs = zip(texts, (before, now), strict=True)
         old, new = (resolve_ros1_name(text, one.name) if text else "" for text, one in pairs)
-        topics = {one.topic for graph, _ in self.sides for one in graph.endpoints}
-        if difference.what == "remapping" or {old, new} & topics:
+        if old == new:
+            return
+        if difference.what == "remapping" or any(name in side for name in (old, new) if name for side in self.named):
             yield _NamedEdge("publisher", old, new)
 
     def list_edges(self, ids: Iterable[str], now: bool) -> list[_NamedEdge]:
@@ -157,7 +159,7 @@ class LaunchEffects:
         why: str,
     ) -> Effect:  # fmt: skip
         hops: dict[str, Hop] = {}
-        for side, (graph, reach) in enumerate(self.sides):
+        for side, (_, reach) in enumerate(self.sides):
             out: list[Outgoing] = []
             first: list[Hop] = []
             for edge in edges:
@@ -169,32 +171,19 @@ class LaunchEffects:
                     out.append(Outgoing(endpoint.node, tuple(sent)))
                     first += [
                         self.downstream.make_hop(Step(get_kind(one), name, one.node, one.path, one.line))
-                        for one in graph.endpoints
-                        if one.role == ASKS.get(edge.role) and one.topic == name and one.node
+                        for one in self.named[side].get(name, ())
+                        if one.role == ASKS.get(edge.role) and one.node
                     ]
                 elif edge.role in SENDING:
                     out.append(Outgoing(endpoint.node if endpoint is not None else "", ((name, edge.role),)))
             for hop in self.downstream.list_downstream(ids, list(dict.fromkeys(out)), reach, first):
                 hops.setdefault(hop.node, hop)
         names = {name for edge in edges for name in (edge.before, edge.now) if name}
-        graphs = self.launch.before, self.launch.now
-        alone = tuple(one for one in list_left_alone(*graphs, names) if one.node not in ids)
+        alone = tuple(one for one in list_left_alone(self.named, names) if one.node not in ids)
         return Effect(
             "launch", change, subject, self.find_package(at[0]), *at, ids, tuple(sorted(names)), why,
             tuple(hops.values()), alone,
         )  # fmt: skip
-
-
-def _is_cause(difference: StartDifference, edge: _NamedEdge, others: Sequence[StartDifference]) -> bool:
-    """Whether a difference of how a node is started is why an endpoint has another name."""
-    if len(others) == 1:
-        return True
-    if difference.what in ("remapping", "parameter"):
-        values = [text.partition(" if ")[0].strip("~/") for text in (difference.old, difference.new)]
-        pairs = zip(values, (edge.before, edge.now), strict=True)
-        return any(value and name.endswith(f"/{value}") for value, name in pairs)
-    settings = (one for one in others if one.what in ("remapping", "parameter"))
-    return difference.what == "name" and not any(_is_cause(one, edge, others) for one in settings)
 
 
 def _format_remap(difference: StartDifference) -> str:

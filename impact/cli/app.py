@@ -254,8 +254,8 @@ def graph(
 ) -> None:
     """Show which nodes are connected by topics, services and actions, without building or running anything.
 
-    Exit status: 0 done, 1 with --strict where not all names are known, or with --observed if the system differs from the
-    sources, 2 the tool failed.
+    Exit status: 0 done, 1 with --strict where not all names are known, or with --observed if the system differs from
+    the sources, 2 the tool failed.
     """
 
 
@@ -277,7 +277,8 @@ def impact(
     jobs: _Jobs = None,
     quiet: _Quiet = False,
 ) -> None:
-    """Show which nodes are affected by changes since a base: of messages, topics, publish conditions and callbacks."""
+    """Show which nodes are affected by changes since a base: of messages, topics, publish conditions, callbacks, launch
+    files and parameters."""
 
 
 @_add_command(app)

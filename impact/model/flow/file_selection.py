@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from ...facts.extract import ExtractedFacts
 from ...facts.kinds import FLOW, find_kind
@@ -14,6 +14,10 @@ from ..workspace import Workspace
 
 _READ = frozenset(("cpp", "python", "script", "launch_xml", "launch_yaml", "params", "xml", "manifest", "cmake"))
 _MANIFESTS = ("manifest", "manifest_variant")
+BUILD = frozenset(
+    (*_MANIFESTS, "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action")
+)  # fmt: skip
+"""Kinds of files that tell what is built of the code, and which interfaces there are."""
 
 
 def make_code_selector(tree: Tree) -> Callable[[str], str | None]:
@@ -55,14 +59,25 @@ def is_code(path: str, start: int) -> bool:
     return "/." not in f"/{path[start:]}" and find_folder_role(path[start:], module) != "test"
 
 
-def compute_stamp(workspace: Workspace, second: ExtractedFacts | None = None) -> bytes:
-    """Differs whenever something does that message flow, or what launch files start, is joined from. second: the flow
-    facts alone, for what is joined of nothing else."""
-    found = hashlib.sha1(workspace.identity + compute_code_stamp().encode())
+def compute_stamp(workspace: Workspace) -> bytes:
+    """Differs whenever something does that message flow, or what launch files start, is joined from."""
     main = workspace.extraction
-    for extraction in filter(None, (second,) if second is not None else (main, main.second)):
-        for path in sorted(extraction.kinds):
-            if extraction is not main or extraction.kinds[path] in _READ:
+    return _hash_files(workspace.identity, ((main, _READ), (main.second, None)))
+
+
+def compute_code_key(workspace: Workspace, second: ExtractedFacts) -> bytes:
+    """Differs whenever the code does, or what is built of it; not with what launch files start. second: its flow
+    facts."""
+    packages = [(package.name, package.path, package.build_type) for package in workspace]
+    return _hash_files(repr((workspace.ros, packages)).encode(), ((second, None), (workspace.extraction, BUILD)))
+
+
+def _hash_files(first: bytes, chosen: Iterable[tuple[ExtractedFacts | None, frozenset[str] | None]]) -> bytes:
+    """A digest of paths and contents of files. chosen: which kinds of which, all where there are none."""
+    found = hashlib.sha1(first + compute_code_stamp().encode())
+    for extraction, kinds in chosen:
+        for path in sorted(extraction.kinds if extraction is not None else ()):
+            if extraction is not None and (kinds is None or extraction.kinds[path] in kinds):
                 row = f"{path} {extraction.ids.get(path, '')} {extraction.kinds[path]}\n"
                 found.update(row.encode("utf-8", "surrogateescape"))
     return found.digest()

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import posixpath
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, lru_cache
+from itertools import chain, islice
 from typing import Literal, NamedTuple
 
 from ....edges.groups import group_pairs
@@ -16,7 +17,7 @@ from ..launch.text import wrap
 from ..package import find_folder_role
 from ..workspace import Workspace
 from .graph import Graph
-from .join import Running
+from .join import Join, Running
 from .launches import follow_launch_files, is_launch
 from .names import normalise
 from .started import InWorkspace, follow_workspace_launch, make_instance
@@ -24,6 +25,8 @@ from .workspace import get_flow
 
 _SETTINGS = frozenset(("launch_xml", "launch_yaml", "params", "xacro"))
 _SHARED = re.compile(r"\$\(find ([\w.-]+)\)/([\w./-]+)")
+# As many new lines are searched for what makes a value what it is.
+_MOST_LINES = 1_000
 _BESIDE = re.compile(r"filename\s*=\s*[\x22\x27]([\w./-]+)[\x22\x27]")
 _COMMENT = re.compile(r"(?m)^\s*#.*$")
 _XML_COMMENT = re.compile(r"(?s)<!--.*?-->")
@@ -39,14 +42,15 @@ class StartValue(NamedTuple):
 
 
 class StartedNode(NamedTuple):
-    """A node as a launch file starts it, or an include of a launch file of another package; without a program, a node
-    that only a parameter file names, as the costmap within a server; without a name, what is set for all nodes on
-    ROS 1's parameter server.
+    """A node as a launch file starts it, or what is given parameters like one.
 
-    node: its id in the graph of the launch, empty for a program of another package. remaps: by the old name,
+    kind: `node`; `include`, of a launch file of another package; `inner`, a node that only a parameter file names, as
+    the costmap within a server; `server`, what is set for all nodes on ROS 1's parameter server, without a name. node:
+    its id in the graph of the launch, empty for all but a program of the workspace. remaps: by the old name,
     parameters: by name; files: texts that name files of the workspace, by the parameter that is made from them.
     """
 
+    kind: Literal["node", "include", "inner", "server"]
     name: str
     node: str
     program: str
@@ -70,6 +74,13 @@ class StartDifference(NamedTuple):
     path: str
     line: int
 
+    def may_cause(self, old: str, new: str) -> bool:
+        """Whether it is a value from which a name comes."""
+        if self.what not in ("remapping", "parameter"):
+            return False
+        values = [text.partition(" if ")[0].strip("~/") for text in (self.old, self.new)]
+        return any(value and name.endswith(f"/{value}") for value, name in zip(values, (old, new), strict=True))
+
 
 class NodeChange(NamedTuple):
     """A node that is started otherwise, or is started only now (before is None) or only at the base (now is None).
@@ -79,6 +90,18 @@ class NodeChange(NamedTuple):
     now: StartedNode | None
     differences: tuple[StartDifference, ...]
     made_of: tuple[str, ...] = ()
+
+    def list_files(self) -> Iterator[str]:
+        """The files whose lines are told of it."""
+        yield from (difference.path for difference in self.differences)
+        yield from (node.path for node in (self.before, self.now) if node is not None)
+        yield from self.made_of
+
+    def find_cause(self, old: str, new: str) -> StartDifference | None:
+        """The difference that gives an endpoint of the node another name. old, new: its names, empty for none."""
+        fitting = (one for one in self.differences if one.may_cause(old, new))
+        named = (one for one in self.differences if one.what == "name")
+        return next(chain(fitting, named, self.differences), None)
 
 
 class LaunchChange(NamedTuple):
@@ -110,7 +133,14 @@ NO_CHANGES = LaunchChanges((), (), ())
 @lru_cache(maxsize=2)
 def compare_launches(workspace: Workspace, base: Workspace) -> LaunchChanges:
     """What the launch files of a workspace start otherwise than at the base."""
-    sides = _Side(workspace), _Side(base)
+    flow, old_flow = get_flow(workspace), get_flow(base)
+
+    def find_old_code() -> Join:
+        if flow.key == old_flow.key:
+            old_flow.code = flow.code
+        return old_flow.code
+
+    sides = _Side(workspace, lambda: flow.code), _Side(base, find_old_code)
     ids = [side.settings for side in sides]
     changed = {path for path in ids[0].keys() | ids[1].keys() if ids[0].get(path) != ids[1].get(path)}
     return _Comparison(*sides, changed).compare() if changed else NO_CHANGES
@@ -119,8 +149,8 @@ def compare_launches(workspace: Workspace, base: Workspace) -> LaunchChanges:
 class _Side:
     """A workspace as its launch files start it."""
 
-    def __init__(self, workspace: Workspace):
-        self.workspace, self.sources = workspace, InWorkspace(workspace)
+    def __init__(self, workspace: Workspace, code: Callable[[], Join]):
+        self.workspace, self.sources, self.find_code = workspace, InWorkspace(workspace), code
         self._descriptions: dict[str, frozenset[str]] = {}
 
     @cached_property
@@ -147,8 +177,10 @@ class _Side:
         """The text of a launch file or the like; None where there is none."""
         return self.workspace.read(path).decode("utf-8", "replace") if path in self.settings else None
 
-    def follow(self, path: str) -> Launched | None:
-        """What a launch file starts; None where there is none."""
+    def follow(self, path: str, undecided: bool) -> Launched | None:
+        """What a launch file starts; None where there is none. undecided: as for follow()."""
+        if undecided:
+            return follow_workspace_launch(self.workspace, path, {}, undecided) if path in self.settings else None
         if path not in self.launches and path in self.settings:
             self.launches[path] = follow_workspace_launch(self.workspace, path, {})
         return self.launches.get(path)
@@ -176,33 +208,34 @@ class _Side:
         found += [self.sources.find_workspace_path(*place) for place in _SHARED.findall(text)]
         return [each for each in found if each in self.settings]
 
-    def build_graph(self, launched: Launched | None) -> Graph:
-        code = get_flow(self.workspace).code
-        return code.build(launch=launched or Launched((), {}, ()))
+    def start(self, launched: Launched | None) -> tuple[list[StartedNode], Graph]:
+        """What a launch starts, and its graph."""
+        launched = launched or Launched((), {}, ())
+        return list(self._list_starts(launched)), self.find_code().build(launch=launched)
 
-    def list_starts(self, launched: Launched | None) -> Iterator[StartedNode]:
-        if launched is None:
-            return
-        running, _ = get_flow(self.workspace).code.find_started(launched)
+    def _list_starts(self, launched: Launched) -> Iterator[StartedNode]:
+        running, _ = self.find_code().find_started(launched)
         known = {id(one.instance.started): one for one in running if one.instance is not None}
         names: list[str] = []
         inner: dict[str, dict[str, LaunchParameter]] = {}
+        read: set[int] = set()
         for started in (*launched.started, *launched.outside):
             if started.kind != "process":
                 found = self._describe_start(launched, started, known.get(id(started)))
                 names.append(found.name)
                 yield found
-                for name, given in _list_inner_parameters(started):
+                for name, given in _list_inner_parameters(started, read):
                     inner.setdefault(name, {}).update(given)
         for name in sorted(inner.keys() - set(names)):
             first = next(iter(inner[name].values()))
             at = self._locate("", first.source or first.at)
-            yield StartedNode(name, "", "", "", "", at.path, at.line, {}, *self._describe_parameters(inner[name]))
+            given = self._describe_parameters(inner[name])
+            yield StartedNode("inner", name, "", "", "", "", at.path, at.line, {}, *given)
         below = tuple(f"{name}/" for name in names)
         shared = {key: value for key, value in launched.server.items() if not key.startswith(below)}
         if shared:
             at = self._locate("", next(iter(shared.values())).at)
-            yield StartedNode("", "", "", "", "", at.path, at.line, {}, *self._describe_parameters(shared))
+            yield StartedNode("server", "", "", "", "", "", at.path, at.line, {}, *self._describe_parameters(shared))
 
     def _describe_start(self, launched: Launched, started: Started, one: Running | None) -> StartedNode:
         what = started.plugin.shown or started.executable.shown
@@ -226,8 +259,9 @@ class _Side:
         place = self._locate("", started.at)
         package = started.package.shown
         return StartedNode(
-            instance.name, one.node.id if one is not None else "", f"{package}/{what}" if package else what,
-            " and ".join(started.conditions), arguments, place.path, place.line, remaps, parameters, files,
+            "include" if started.kind == "include" else "node", instance.name, one.node.id if one is not None else "",
+            f"{package}/{what}" if package else what, " and ".join(started.conditions), arguments, place.path,
+            place.line, remaps, parameters, files,
         )  # fmt: skip
 
     def _describe_parameters(
@@ -242,20 +276,25 @@ class _Side:
         return StartValue(text, path or f"{at.package}/{at.path}", at.line)
 
 
-def _list_inner_parameters(started: Started) -> Iterator[tuple[str, dict[str, LaunchParameter]]]:
+def _list_inner_parameters(started: Started, read: set[int]) -> Iterator[tuple[str, dict[str, LaunchParameter]]]:
     """Full names of nodes that the parameter files of a start name, and the parameters: they are for all nodes of the
-    process. Names that are patterns are left out."""
+    process. Names that are patterns are left out. read: the id() of entries that were read before, and now."""
     for setting in started.settings:
-        if not isinstance(setting, SettingFile) or setting.plain:
+        if not isinstance(setting, SettingFile) or setting.plain or id(setting.entries) in read:
             continue
-        found: dict[str, dict[str, LaunchParameter]] = {}
+        read.add(id(setting.entries))
+        found: dict[tuple[str, ...], dict[str, LaunchParameter]] = {}
         for entry in setting.entries or ():
-            if "ros__parameters" in entry.path and "*" not in "".join(entry.path):
-                split = entry.path.index("ros__parameters")
-                name, key = normalise("/" + "/".join(entry.path[:split])), ".".join(entry.path[split + 1 :])
+            path = entry.path
+            if "ros__parameters" in path:
+                split = path.index("ros__parameters")
+                key = ".".join(path[split + 1 :])
                 source = ShareLine(*setting.source, entry.line) if setting.source is not None else None
-                found.setdefault(name, {})[key] = LaunchParameter(key, wrap(str(entry.value)), setting.at, (), source)
-        yield from found.items()
+                given = LaunchParameter(key, wrap(str(entry.value)), setting.at, (), source)
+                found.setdefault(path[:split], {})[key] = given
+        yield from (
+            (normalise("/" + "/".join(keys)), given) for keys, given in found.items() if "*" not in "".join(keys)
+        )
 
 
 def _list_texts(launched: Launched, started: Started) -> Iterator[str]:
@@ -276,12 +315,19 @@ class _Comparison:
 
     def compare(self) -> LaunchChanges:
         used: set[str] = set()
-        found = [one for pair in self._pair_launches() if (one := self._compare_launch(*pair, used)) is not None]
-        told = {difference.path for one in found for node in one.nodes for difference in node.differences}
-        told |= {path for one in found for node in one.nodes for path in node.made_of}
-        told |= {place.path for one in found for node in one.nodes for place in (node.before, node.now) if place}
-        unused, silent = self.changed - used - self._find_moved(), used - told - self._find_moved()
-        return LaunchChanges(tuple(found), *(tuple(sorted(filter(self._differs, each))) for each in (unused, silent)))
+        pairs = list(self._pair_launches())
+        found = [one for pair in pairs if (one := self._compare_launch(*pair, self.changed, used)) is not None]
+        told = {path for one in found for node in one.nodes for path in node.list_files()}
+        left = set(filter(self._differs, self.changed - told - self._find_moved()))
+        if left:
+            # What the defaults of arguments leave out.
+            rest = (self._compare_launch(*pair, left, used, undecided=True) for pair in pairs)
+            for one in filter(None, rest):
+                nodes = tuple(node for node in one.nodes if not left.isdisjoint(node.list_files()))
+                if nodes:
+                    found.append(one._replace(nodes=nodes))
+                    told.update(path for node in nodes for path in node.list_files())
+        return LaunchChanges(tuple(found), tuple(sorted(left - used)), tuple(sorted(left & used - told)))
 
     def _find_moved(self) -> set[str]:
         """Files that only have another path."""
@@ -317,28 +363,29 @@ class _Comparison:
         for path in sorted(self.before.launches.keys() - self.now.launches.keys() - set(moved.values())):
             yield path if path in now else "", path
 
-    def _compare_launch(self, path: str, old_path: str, used: set[str]) -> LaunchChange | None:
-        now, before = self.now.follow(path), self.before.follow(old_path)
+    def _compare_launch(
+        self, path: str, old_path: str, changed: set[str], used: set[str], undecided: bool = False
+    ) -> LaunchChange | None:  # fmt: skip
+        """What a launch file starts otherwise; None where it uses none of the files that changed, which are added to
+        those used, or starts what it did. path, old_path: now and at the base."""
+        now, before = self.now.follow(path, undecided), self.before.follow(old_path, undecided)
         files = {*self.now.list_files(now)} if now is not None else set()
         files |= {*self.before.list_files(before)} if before is not None else set()
-        here = files & self.changed
+        here = files & changed
         used |= here
         if not here:
             return None
         order = [path, *(place for place in sorted(here) if place != path)]
-        starts = [list(side.list_starts(each)) for side, each in ((self.before, before), (self.now, now))]
+        (old, old_graph), (new, graph) = self.before.start(before), self.now.start(now)
         nodes = [
-            NodeChange(old, new, differences, tuple(self._list_all_made_of(new)))
-            for old, new in _pair_starts(*starts)
-            if (differences := tuple(self._list_differences(old, new, order))) or old is None or new is None
+            NodeChange(one, other, differences, tuple(self._list_all_made_of(other)))
+            for one, other in _pair_starts(old, new)
+            if (differences := tuple(self._list_differences(one, other, order))) or one is None or other is None
         ]
         if not nodes:
             return None
-        others = any(one.program and not one.node for each in starts for one in each)
-        return LaunchChange(
-            path or old_path, not before, not now, self.before.build_graph(before), self.now.build_graph(now),
-            tuple(nodes), others,
-        )  # fmt: skip
+        others = any(one.kind in ("node", "include") and not one.node for one in (*old, *new))
+        return LaunchChange(path or old_path, not before, not now, old_graph, graph, tuple(nodes), others)
 
     def _list_differences(
         self, old: StartedNode | None, new: StartedNode | None, files: Sequence[str]
@@ -386,12 +433,13 @@ class _Comparison:
             return place.path, place.line
         words = set(re.split(r"[^\w.-]+", place.text)) - set(re.split(r"[^\w.-]+", old))
         order = dict.fromkeys((place.path, *(path for path in files if find_kind(path) != "xacro")))
-        lines = [(path, line, text) for path in order for line, text in sorted(self._list_new(path).items())]
-        named = next(((path, line) for path, line, text in lines if any(word in text for word in words if word)), None)
-        if named is not None:
-            return named
-        own = place.path in self.changed or not lines
-        return (place.path, place.line) if own else lines[0][:2]
+        lines = ((path, line, text) for path in order for line, text in self._list_new(path).items())
+        first = None if place.path in self.changed else next(lines, None)
+        again = (first,) if first is not None else ()
+        for path, line, text in islice(chain(again, lines), _MOST_LINES) if words - {""} else ():
+            if any(word in text for word in words if word):
+                return path, line
+        return first[:2] if first is not None else (place.path, place.line)
 
     def _list_new(self, path: str) -> dict[int, str]:
         """The lines of a file that it did not have at the base."""
@@ -415,16 +463,15 @@ def _pair_starts(
     before: Iterable[StartedNode], now: Iterable[StartedNode]
 ) -> Iterator[tuple[StartedNode | None, StartedNode | None]]:
     """Nodes of two launches that are the same: of one name and program, of one name, or else of one program."""
-    old, new = list(before), list(now)
-    keys = (lambda one: (one.name, one.program), lambda one: one.name, lambda one: one.program)
+    old, new = ({id(one): one for one in side} for side in (before, now))
+    keys = (lambda one: (one.kind, one.name, one.program), lambda one: (one.kind, one.name), lambda one: one.program)
     for key in keys:
-        waiting = group_pairs((key(one), one) for one in old)
-        for one in [*new]:
-            fitting = waiting.get(key(one))
+        waiting = group_pairs((key(one), one) for one in reversed(old.values()))
+        for one in [*new.values()]:
+            fitting = waiting.get(key(one)) if key(one) else None
             if fitting:
-                first = fitting.pop(0)
-                old.remove(first)
-                new.remove(one)
+                first = fitting.pop()
+                del old[id(first)], new[id(one)]
                 yield first, one
-    yield from ((one, None) for one in old)
-    yield from ((None, one) for one in new)
+    yield from ((one, None) for one in old.values())
+    yield from ((None, one) for one in new.values())

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from ....edges import processes
+from ....edges.memory import cache_in_derived
 from ...facts.kinds import find_kind
 from ...facts.store import recall
 from ..launch.fill import ChangedFiles
@@ -93,15 +94,20 @@ def list_launches(workspace: Workspace, code: Callable[[], Join], jobs: int = 1)
     return recall(store, "launches", key, tuple[Launch, ...], lambda: tuple(_find_launches(workspace, code, jobs)))
 
 
+@cache_in_derived
 def follow_launch_files(workspace: Workspace) -> list[tuple[str, Launched]]:
     """Path and what it starts of each launch file that no other includes, with the defaults of its arguments."""
-    return _follow(workspace, list(islice(_list_files(workspace), _MOST)))
+    return _follow(workspace, _list_first_files(workspace))
+
+
+def _list_first_files(workspace: Workspace) -> list[tuple[str, str, str]]:
+    return list(islice(_list_files(workspace), _MOST))
 
 
 def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) -> Iterator[Launch]:
-    files = list(islice(_list_files(workspace), _MOST))
+    files = _list_first_files(workspace)
     if jobs < 2 or len(files) < _ALONE or not processes.may_fork():
-        followed = _select_starting(_follow(workspace, files))
+        followed = _select_starting(follow_launch_files(workspace))
         yield from _start(workspace, code(), followed) if followed else ()
         return
     workspace.extraction.store.close()  # another process opens it for itself

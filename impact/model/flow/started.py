@@ -69,14 +69,18 @@ def classify_launch_file(path: str) -> str:
     return "launch_xml" if name.endswith((".launch", ".xml", ".test")) else ""
 
 
-def follow_workspace_launch(workspace: Workspace, path: str, arguments: Mapping[str, str]) -> Launched:
-    """All that a launch file of the workspace starts. path: relative to the workspace's root."""
+def follow_workspace_launch(
+    workspace: Workspace, path: str, arguments: Mapping[str, str], undecided: bool = False
+) -> Launched:  # fmt: skip
+    """All that a launch file of the workspace starts. path: relative to the workspace's root. undecided: as for
+    follow()."""
     owner = workspace.discovered.find_owner(path)
     package, inner = "", path
     for name, each in workspace.packages.items():
         if owner is not None and each.path == owner.path:
             package, inner = name, path[len(each.path) :].lstrip("/")
-    return follow(package, inner, InWorkspace(workspace), arguments, generation=workspace.ros)
+    sources = InWorkspace(workspace)
+    return follow(package, inner, sources, arguments, generation=workspace.ros, undecided=undecided)
 
 
 class Instance(NamedTuple):

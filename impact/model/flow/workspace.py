@@ -18,7 +18,7 @@ from ..package import Watched
 from ..workspace import Package, Workspace, link
 from .callers import Callers, build_callers
 from .defined import DefinedInterfaces
-from .file_selection import compute_stamp, is_code, make_code_selector
+from .file_selection import BUILD, compute_code_key, is_code, make_code_selector
 from .graph import Graph
 from .join import Join
 from .launches import Launch
@@ -27,10 +27,7 @@ from .plugins import assign_plugins, list_plugin_loads
 from .system import ChosenLaunch, join_launched, merge_launches
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
-_BUILD = frozenset((
-    "manifest", "manifest_variant", "cmake", "setup_py", "setup_cfg", "plugin_xml", "xml", "msg", "srv", "action",
-    "launch_xml", "launch_yaml", "params", "xacro",
-))  # fmt: skip
+_STARTED = frozenset(("launch_xml", "launch_yaml", "params", "xacro"))
 
 Progress = Callable[[int, int], None]
 
@@ -49,6 +46,11 @@ class WorkspaceFlow:
         return join_code(self._workspace)
 
     @cached_property
+    def key(self) -> bytes:
+        """Differs whenever the code does, or what is built of it."""
+        return compute_code_key(self._workspace, get_facts(self._workspace))
+
+    @cached_property
     def graph(self) -> Graph:
         """The message-flow graph of its code, without a launch file."""
         found = make_graph(self._workspace, self._store, code_alone=True)
@@ -65,7 +67,7 @@ class WorkspaceFlow:
     @cached_property
     def callers(self) -> Callers:
         """Who calls whom in its code, and what triggers it."""
-        return recall(self._store, "callers", _make_key(self._workspace), Callers, lambda: build_callers(self.code))
+        return recall(self._store, "callers", self.key, Callers, lambda: build_callers(self.code))
 
     @cached_property
     def launches(self) -> tuple[Launch, ...]:
@@ -97,7 +99,7 @@ def link_for_flow(tree: Tree, store: Store, jobs: int | None = None, progress: P
 
     def select_build(path: str) -> str | None:
         kind = find_kind(path)
-        return kind if kind in _BUILD else None
+        return kind if kind in BUILD or kind in _STARTED else None
 
     extraction = extract_all(
         tree, store, jobs=jobs, progress=progress, kind_of=select_build, second=make_code_selector(tree)
@@ -227,13 +229,9 @@ def make_graph(
 
     flow = get_flow(workspace)
     flow.jobs = jobs
-    graph = recall(store, "graph", _make_key(workspace), Graph, make) if code_alone else flow.system
+    graph = recall(store, "graph", flow.key, Graph, make) if code_alone else flow.system
     return msgspec.structs.replace(graph, root=root, rev=rev)
 
 
 def _list_unread(join: Join) -> list[str]:
     return [source.path for source in join.code.sources if source.facts.unread]
-
-
-def _make_key(workspace: Workspace) -> bytes:
-    return compute_stamp(workspace, get_facts(workspace))

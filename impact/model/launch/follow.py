@@ -17,7 +17,7 @@ from ....edges.dispatch import collect_methods
 from ...facts.launch.actions import Action, ActionCondition, find_literal, make_literal
 from ...facts.launch.parameter_files import ParameterEntry
 from ...facts.launch.parameter_files import extract as parameters
-from ..flow.names import normalise, parse_ros2_rule
+from ..flow.names import make_open_part, normalise, parse_ros2_rule
 from .fill import OF_RUNNING, ActionScope, ChangedFiles, Filling
 from .result import EMPTY, Launched, LaunchParameter, LaunchSources, Remap, SettingFile, ShareLine, Started
 from .text import (
@@ -42,15 +42,17 @@ def follow(
     generation: int = 0,
     most: int = MOST_ACTIONS,
     changed: ChangedFiles | None = None,
+    undecided: bool = False,
 ) -> Launched:
     """All that the launch file `$(find package)/path` starts.
 
     arguments: as given on the command line. environment: variables that are known. generation: of the workspace, for
     files that could be of either. most: how many actions are done. changed: shared by launches of the same sources.
+    undecided: no condition is decided, so that what the defaults of arguments leave out is there too.
     """
     given = {name: wrap(value) for name, value in (arguments or {}).items()}
     variables = {name: wrap(value) for name, value in (environment or {}).items()}
-    launch = _Launch(sources, given, variables, generation, most, changed or ChangedFiles())
+    launch = _Launch(sources, given, variables, generation, most, changed or ChangedFiles(), undecided)
     with contextlib.suppress(RecursionError):  # what is nested too deeply is not followed
         launch.include((package, posixpath.normpath(path).lstrip("/")))
     files, done = tuple(dict.fromkeys(launch.files)), most - max(0, launch.budget)
@@ -69,12 +71,14 @@ class _Launch(Filling):
         generation: int,
         most: int,
         changed: ChangedFiles,
+        undecided: bool,
     ):
         super().__init__(sources, ActionScope(arguments, environment, 0), generation or 2, changed)
         # The files whose includes lead to what is read.
         self.chain: list[tuple[str, str]] = []
         self.open: list[str] = []
         self.budget = most
+        self.undecided = undecided
         self.started: list[Started] = []
         self.outside: list[Started] = []
         self.server: dict[str, LaunchParameter] = {}
@@ -147,7 +151,8 @@ class _Launch(Filling):
         for condition in conditions:
             if condition.kind == "after":
                 continue  # an event or a time
-            truth = parse_truth(self.fill(condition.value)) if condition.kind != "each" else None
+            asked = condition.kind != "each" and not self.undecided
+            truth = parse_truth(self.fill(condition.value)) if asked else None
             if truth is None:
                 open_.append(show_condition(condition))
             elif truth == (condition.kind == "unless"):
@@ -332,14 +337,14 @@ class _Launch(Filling):
         if name.value is not None and name.value[:1] == "~":
             name = wrap(name.value[1:])
         full = resolve(namespace if namespace.value != "" else wrap("/"), name)
-        if full.value is None:
+        if name.value is None:
             return
         given = next((key for key in OF_RUNNING if action.get(key) is not None), "")
         if not given:
             text = self.read_field(action, "value")
         else:
             text = make_unknown(self.read_field(action, given).shown, f"it is {OF_RUNNING[given]}")
-        self.put(full.value, text, action.line)
+        self.put(_fill_open(full), text, action.line)
 
     def put(self, name: str, text: LaunchText, line: int, source: ShareLine | None = None) -> None:
         before = self.server.pop(name, None)
@@ -353,12 +358,12 @@ class _Launch(Filling):
         base = namespace if namespace.value != "" else wrap("/")
         if below.value is not None and below.value[:1] == "~":
             below = wrap(below.value[1:].lstrip("/"))
-        full = base if below.value == "" else resolve(base, below)
-        if full.value is None:
+        full = _fill_open(base if below.value == "" else resolve(base, below))
+        if below.value is None:
             return
         command = find_literal(action.get("command")) or "load"
         if command == "delete":
-            self.forget(full.value or "/")
+            self.forget(full or "/")
         if command != "load":
             return
         substitute = action.get("substitute")
@@ -372,7 +377,7 @@ class _Launch(Filling):
             # What is filled in may be any piece of YAML, so that it comes before reading.
             entries, fill = parameters(self.fill(content or make_literal("")).shown).entries, False
         for entry in self.substitute_entries(entries or ()) if fill else entries or ():
-            key = "/".join(part.strip("/") for part in (full.value or "/", *entry.path) if part.strip("/"))
+            key = "/".join(part.strip("/") for part in (full or "/", *entry.path) if part.strip("/"))
             source = ShareLine(*place, entry.line) if place is not None else None
             self.put(f"/{key}", wrap(str(entry.value)), action.line, source)
 
@@ -570,6 +575,11 @@ class _Launch(Filling):
 _INSTALLED = re.compile(r"\$\(prefix ([\w.-]+)\)/lib/\1/([^/]+)\Z")
 _OF_NODE = frozenset(("remap", "parameter", "parameter-file"))
 _DOING = collect_methods(_Launch, "do_")
+
+
+def _fill_open(name: LaunchText) -> str:
+    """A name; what is not known of it stands in brackets, as in the names of nodes."""
+    return name.value if name.value is not None else make_open_part(name.shown)
 
 
 def _drop_earlier(remaps: list[Remap]) -> list[Remap]:
