@@ -6,11 +6,15 @@ import posixpath
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
+from ....edges.groups import group_pairs
 from ....edges.reach import walk
 from ...facts.nodl import NodlEndpoint, NodlFile
 from ..package import find_folder_role
 from ..workspace import Package, Workspace
-from .graph import Role
+from .graph import Endpoint, Node, Qos, Role
+from .join import Running
+from .names import NameRefused, resolve_ros2_name
+from .workspace import get_flow
 
 SECTIONS: dict[Role, str] = {
     "publisher": "publishers", "subscriber": "subscriptions", "server": "service_servers",
@@ -134,3 +138,92 @@ def _list_registered(
                 document = posixpath.normpath(posixpath.join(posixpath.dirname(path), file))
                 if document in known:
                     yield document, words[0]
+
+
+def find_program(contract: Contract, running: list[Running]) -> Running | None:
+    """The only program, or the only node of one, that a file may be about."""
+
+    def list_names(one: Running) -> set[str]:
+        program, plugin = one.program.executable, one.program.plugin
+        return {program, program.removesuffix(".py"), plugin.rpartition("::")[2], one.node.name.rpartition("/")[2]}
+
+    named = [one for one in running if contract.program in list_names(one)]
+    by_node = [one for one in named if one.node.name.rpartition("/")[2] == contract.program]
+    found = named if len(named) == 1 else by_node
+    return found[0] if len(found) == 1 and found[0].program.kind != "plugin" else None
+
+
+MadeKey = tuple[Role, str, int, str]
+
+
+def collect_launched_names(workspace: Workspace) -> dict[MadeKey, list[str]]:
+    """The names that an endpoint has in launch files."""
+    launches = get_flow(workspace).launches
+    return group_pairs((_identify(one), one.topic) for launch in launches for one in launch.graph.endpoints)
+
+
+def _identify(one: Endpoint) -> MadeKey:
+    return one.role, one.path, one.line, one.code_name
+
+
+class FullEntry(NamedTuple):
+    """An endpoint of a contract. name: in full, where the node has the name that its code gives; type: without the
+    folder."""
+
+    role: Role
+    path: str
+    written: NodlEndpoint
+    name: str
+    type: str
+
+
+class ContractOfNode:
+    """A contract beside the endpoints of its node."""
+
+    def __init__(
+        self, contract: Contract, node: Node, made: list[Endpoint], launched: dict[MadeKey, list[str]]
+    ):
+        self.contract, self.node, self.made, self.launched = contract, node, made, launched
+        self.entries = list(self._list_entries())
+
+    def _list_entries(self) -> Iterator[FullEntry]:
+        namespace, _, own = self.node.name.rpartition("/")
+        for role, path, one in self.contract.entries:
+            package, _, rest = one.type.partition("/")
+            type_ = f"{package}/{rest.rpartition('/')[2]}"
+            try:
+                name = resolve_ros2_name(one.name, own, namespace or "/")
+            except NameRefused:
+                continue
+            if not is_of_framework(role, name, type_):
+                yield FullEntry(role, path, one, name, type_)
+
+    def fits(self, entry: FullEntry, one: Endpoint) -> bool:
+        """Whether an endpoint of the code is meant by an entry, which may have the name that a launch gives it."""
+        if entry.role != one.role or not one.topic:
+            return False
+        if entry.name == one.topic or entry.name in self.launched.get(_identify(one), ()):
+            return True
+        relative = one.code_name.removeprefix("~/")
+        absolute = entry.written.name.startswith("/")
+        return absolute and bool(relative) and relative[0] != "/" and entry.name.endswith(f"/{relative}")
+
+
+OPEN_POLICIES = ("SYSTEM_DEFAULT", "BEST_AVAILABLE")
+"""Values of NoDL that leave a policy to the middleware."""
+_POLICIES = ("reliability", "durability", "history", "liveliness")
+
+
+def list_policies(qos: Qos | None) -> dict[str, object]:
+    """What the code fixes of a quality of service, by the names of NoDL."""
+    if qos is None:
+        return {}
+    found: dict[str, object] = {name: getattr(qos, name).upper() for name in _POLICIES}
+    found = {name: value for name, value in found.items() if value and value not in OPEN_POLICIES}
+    if qos.history == "keep_last" and qos.depth >= 0:
+        found["depth"] = qos.depth
+    if qos.deadline is not None:
+        found["deadline_ns"] = round(qos.deadline * 1e9)
+    if qos.lease is not None:
+        found["liveliness_lease_duration_ns"] = round(qos.lease * 1e9)
+    return found
