@@ -103,10 +103,10 @@ class Flow:
         """The other side of an endpoint's topic, service or action, sure or not."""
         return self._of_role.get((_OTHER_SIDE[endpoint.role], endpoint.topic), [])
 
-    def may_have(self, role: str, type_: str) -> bool:
+    def may_have(self, role: str, type_: str, *, typed: bool = False) -> bool:
         """Whether something in the workspace of this role and type has a name that is not known or not certain, or
-        publishes what is not known."""
-        return bool(self._unsure.get(role, set()) & {type_, "", "*"})
+        publishes what is not known. typed: only if it is known to have the type."""
+        return bool(self._unsure.get(role, set()) & ({type_} if typed else {type_, "", "*"}))
 
     @cached_property
     def _unsure(self) -> dict[str, set[str]]:

@@ -68,6 +68,12 @@ class WorkspaceFlow:
         with processes.run_meanwhile(self._prepare_graph()):
             return list_launches(self._workspace, lambda: self.code, self.jobs)
 
+    @cached_property
+    def system(self) -> Graph:
+        """The graph of all that its launch files start, and of the programs that none of them does."""
+        launches = self.launches
+        return merge_launches(self.graph, launches)
+
     def _prepare_graph(self) -> Iterator[None]:
         """The graph, which most that ask for launches ask for too, made while other processes follow them."""
         if "code" in self.__dict__:

@@ -24,7 +24,7 @@ Not reported
 
 from ...model.flow.launches import GivenRemapping, LaunchedNode
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
-from .launch_settings import group_by_line
+from .launch_settings import find_owning_package, group_by_line
 
 _COMMON = frozenset(("/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/diagnostics"))
 
@@ -52,7 +52,7 @@ def dead_remap(workspace: Workspace):
             continue
         programs = sorted({start.program.partition("/")[2] for start, _ in rows})
         data = {"programs": tuple(programs), "names": rows[0][0].names}
-        yield Diagnostic(At(path, line), written, _find_package(workspace, path), data)
+        yield Diagnostic(At(path, line), written, find_owning_package(workspace, path), data)
 
 
 def _may_apply(start: LaunchedNode, renamed: GivenRemapping, ros: int) -> bool:
@@ -66,8 +66,3 @@ def _may_apply(start: LaunchedNode, renamed: GivenRemapping, ros: int) -> bool:
     if any(name == old or name.startswith(f"{old}/") for name in start.names):
         return True
     return any(old.startswith(f"{name}/") and old[len(name) + 1 :].partition("/")[0] in _BELOW for name in start.names)
-
-
-def _find_package(workspace: Workspace, path: str) -> str:
-    owner = workspace.discovered.find_owner(path)
-    return next((name for name, each in workspace.packages.items() if owner and each.path == owner.path), "")

@@ -1,8 +1,9 @@
 """lost-edge: a publisher and a subscriber that were connected at the base are no longer connected.
 
 What it does
-    Compares the message flow with the base. Reports topics that had a publisher and a subscriber, and have only one of
-    them now: the other was removed, or uses another name.
+    Compares the message flow with the base, as launch files start it. Reports topics that had a publisher and a
+    subscriber, and have only one of them now: the other was removed, or uses another name. Reports a node, too, that
+    publishes or reads another topic than at the base, if nobody is at the other side of that one.
 
 Why it breaks
     The subscriber's callback no longer runs, or nothing receives the messages. ROS prints no warning.
@@ -53,10 +54,21 @@ _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
             "nothing subscribes to `{subject}` any more; `{node}` did at the base, and now reads `{replacement}`",
             help="publish `{replacement}`",
         ),
+        "publisher moved": Text(
+            "nothing subscribes to `{subject}`, which `{node}` publishes; at the base it published `{replacement}`, "
+            "which is still read",
+            help="publish `{replacement}`, or subscribe to `{subject}`",
+        ),
+        "subscriber moved": Text(
+            "nothing publishes `{subject}`, which `{node}` reads; at the base it read `{replacement}`, which is still "
+            "published",
+            help="subscribe to `{replacement}`, or publish `{subject}`",
+        ),
     },
 )
 def lost_edge(workspace: Workspace, base: Workspace):
-    now, before = (Flow(get_flow(each).graph, {}) for each in (workspace, base))
+    now, before = (Flow(get_flow(each).system, {}) for each in (workspace, base))
+    yield from _find_moved(now, before)
     for topic in sorted({topic for kind, topic in before.known if kind == "topic"}):
         had, has = _list_sides(before, topic), _list_sides(now, topic)
         for role, gone in _OTHER.items():
@@ -77,6 +89,29 @@ def lost_edge(workspace: Workspace, base: Workspace):
                 kind=f"{gone} renamed" if renamed else f"no {gone}",
                 doubts=(Doubt.CHANGED,) if role == "publisher" and not successors else (),
             )
+
+
+def _find_moved(now: Flow, before: Flow) -> Iterator[Diagnostic]:
+    """Endpoints that had another side at the base and have none under their new name, while the old name has both."""
+    reported = set()
+    for old in before.graph.endpoints:
+        if old.role not in _OTHER or not old.topic or not before.list_others(old) or not now.list_others(old):
+            continue
+        if old.implied or now.list_alternatives(old) or not before.is_sure(old):
+            continue
+        has = now.known.get(("topic", old.topic), ())
+        successors = {one.topic: one for one in _find_successors(now, before, old)}
+        if len(successors) != 1 or not any(one.role == old.role for one in has):
+            continue
+        (one,) = successors.values()
+        other = _OTHER[old.role]
+        if now.list_others(one) or not now.is_sure(one) or _count_unknown(now, other) > _count_unknown(before, other):
+            continue
+        if (one.path, one.line, one.topic) not in reported:
+            reported.add((one.path, one.line, one.topic))
+            node = now.nodes[one.node]
+            data = {"node": node.executable or node.id, "replacement": old.topic}
+            yield Diagnostic(At(one.path, one.line), one.topic, node.package, data, kind=f"{old.role} moved")
 
 
 def _count_unknown(flow: Flow, role: str) -> int:

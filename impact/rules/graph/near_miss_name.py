@@ -17,12 +17,12 @@ Use instead
     self.create_subscription(Odometry, "wheel_odom", self.on_odom, 10)
 
 Not reported
-    Names that differ in digits or sides (`camera1`, `left`); topics that a publisher whose name is not known may
-    publish.
+    Names that differ in digits or sides (`camera1`, `left`); topics of a type that a publisher whose name is not known
+    has.
 """
 
 from ...model.flow.edges import Flow, Sure, build_unstarted_flow, get_label, list_flows
-from ...model.flow.misspelling import NearNames
+from ...model.flow.misspelling import NearNames, is_slip_of_name
 from ...model.flow.workspace import get_flow
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
@@ -66,11 +66,13 @@ def _find_near_pairs(flow: Flow, closed: bool):
     for taker in flow.list_sure("subscriber"):
         one = taker.endpoint
         type_ = flow.find_type(one)
-        if not type_ or one.implied or flow.list_others(one) or flow.may_have("publisher", type_):
+        if not type_ or one.implied or flow.list_others(one) or flow.may_have("publisher", type_, typed=True):
             continue
+        open_ = flow.may_have("publisher", type_)
         found: dict[str, Sure] = {}
         for giver in near[type_].find_near(one.topic) if type_ in near else ():
-            if giver.node.id != taker.node.id:
+            slip = is_slip_of_name(one.topic, giver.endpoint.topic)
+            if giver.node.id != taker.node.id and (slip or not open_):
                 found.setdefault(giver.endpoint.topic, giver)
         if len(found) == 1:
             yield taker, next(iter(found.values()))
