@@ -59,6 +59,13 @@ def _is_alone(name: str, place: int) -> bool:
     return before and after
 
 
+def has_added_words(one: str, other: str) -> bool:
+    """Whether one of two names is the other with words before or after its last part: `scan` and `narrow_scan`."""
+    a, b = sorted((one.strip("/").split("/"), other.strip("/").split("/")), key=lambda parts: len(parts[-1]))
+    short, long = a[-1], b[-1]
+    return a[:-1] == b[:-1] and (long.startswith(f"{short}_") or long.endswith(f"_{short}"))
+
+
 class NearNames(Generic[T]):
     """Things by their names, asked for those whose name is a misspelling of another, or within a namespace of it: as
     is_slip_of_name() and is_in_namespace() say, without comparing every name with every other. Very long names are no

@@ -2,7 +2,8 @@
 
 What it does
     Reports a subscriber without a publisher if a publisher without a subscriber uses nearly the same name: it differs
-    by a letter, a plural, an underscore, or upper and lower case. Both have the same type, and both names are known. If
+    by a letter, a plural, an underscore, or upper and lower case; or, if a launch file gives one of the names, by a word
+    (`scan`, `narrow_scan`). Both have the same type, and both names are known. If
     a launch file starts both, and only nodes whose code is in the workspace, a namespace that one of them lacks counts
     too.
 
@@ -21,10 +22,14 @@ Not reported
     has.
 """
 
-from ...model.flow.edges import Flow, Sure, build_unstarted_flow, get_label, list_flows
-from ...model.flow.misspelling import NearNames, is_slip_of_name
+from collections.abc import Iterator
+
+from ...model.flow.edges import Flow, Sure, build_system_flow, get_label, list_flows
+from ...model.flow.misspelling import NearNames, has_added_words, is_slip_of_name
 from ...model.flow.workspace import get_flow
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
+
+_MOST = 1000
 
 
 @rule(
@@ -41,7 +46,7 @@ def near_miss_name(workspace: Workspace):
     closed = {launch.path for launch in get_flow(workspace).launches if not launch.missing}
     reported = set()
     for path, flow in list_flows(workspace):
-        for taker, giver in _find_near_pairs(flow if path else build_unstarted_flow(workspace), path in closed):
+        for taker, giver in _find_near_pairs(flow if path else build_system_flow(workspace), path in closed):
             one, other = taker.endpoint, giver.endpoint
             if (one.path, one.line) in reported:
                 continue
@@ -66,13 +71,23 @@ def _find_near_pairs(flow: Flow, closed: bool):
     for taker in flow.list_sure("subscriber"):
         one = taker.endpoint
         type_ = flow.find_type(one)
-        if not type_ or one.implied or flow.list_others(one) or flow.may_have("publisher", type_, typed=True):
+        if not type_ or one.implied or flow.list_others(one):
+            continue
+        if flow.may_have("publisher", type_, one.topic, typed=True):
             continue
         open_ = flow.may_have("publisher", type_)
         found: dict[str, Sure] = {}
-        for giver in near[type_].find_near(one.topic) if type_ in near else ():
-            slip = is_slip_of_name(one.topic, giver.endpoint.topic)
+        alike = [*near[type_].find_near(one.topic), *_list_extended(taker, unread[type_])] if type_ in near else ()
+        for giver in alike:
+            slip = is_slip_of_name(one.topic, giver.endpoint.topic) or has_added_words(one.topic, giver.endpoint.topic)
             if giver.node.id != taker.node.id and (slip or not open_):
                 found.setdefault(giver.endpoint.topic, giver)
         if len(found) == 1:
             yield taker, next(iter(found.values()))
+
+
+def _list_extended(taker: Sure, givers: list[tuple[str, Sure]]) -> Iterator[Sure]:
+    """Those whose name has a word more or less, if a launch file chose one of the two names: nobody else has it."""
+    for topic, giver in givers[:_MOST]:
+        if "launch" in (taker.endpoint.how, giver.endpoint.how) and has_added_words(taker.endpoint.topic, topic):
+            yield giver
