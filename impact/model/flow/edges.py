@@ -124,10 +124,20 @@ class Flow:
             if not self.is_sure(one):
                 head = _ABSOLUTE.match(one.written) if not one.topic else None
                 found.setdefault(one.role, {}).setdefault(one.type, set()).add(head[1] if head else "")
-        # What publishes through something that is not seen to be made anywhere, as a wrapper that is not followed.
-        if any(one.what == "publish" and "which publisher" in one.reason for one in self.graph.coverage.unresolved):
+        if self._unclear:
             found.setdefault("publisher", {}).setdefault("", set()).add("")
         return found
+
+    @cached_property
+    def _unclear(self) -> set[str]:
+        """Files that publish through something that is not seen to be made anywhere, as a wrapper that is not
+        followed."""
+        unresolved = self.graph.coverage.unresolved
+        return {one.path for one in unresolved if one.what == "publish" and "which publisher" in one.reason}
+
+    def may_publish_more(self, path: str) -> bool:
+        """Whether a file publishes what is not known, too."""
+        return path in (self.around or self)._unclear
 
     def list_alternatives(self, one: Endpoint) -> list[Endpoint]:
         """Everything of the same node and role at the same name: code may choose among several."""

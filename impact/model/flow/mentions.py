@@ -16,6 +16,7 @@ from ..package import find_folder_role
 from ..workspace import Workspace
 
 SETTINGS = frozenset(("launch_xml", "launch_yaml", "xacro", "params"))
+_GIVEN = SETTINGS - {"xacro"}
 _CODE = frozenset(("cpp", "python", "script"))
 _NAME = r"[~/]?[A-Za-z]\w*(?:/\w+)*/?"
 _IN_SETTINGS = re.compile(rf"(?<![\w/~.$@:(){{}}<-])({_NAME})(?![\w/.$(){{}}=:-])")
@@ -34,7 +35,7 @@ class ReplacedName(NamedTuple):
     kind: str
 
 
-class Mention(NamedTuple):
+class NameMention(NamedTuple):
     """A place that has a name. whole: not only as the end of a longer one."""
 
     path: str
@@ -75,9 +76,23 @@ def _pair_lines(old: list[str], new: list[str]) -> Iterator[tuple[int, str, str]
                 yield first + place + 1, old[start + place], new[first + place]
 
 
-def find_mentions(workspace: Workspace, names: Collection[str]) -> dict[str, list[Mention]]:
+def list_settings_names(workspace: Workspace) -> Iterator[tuple[str, tuple[NameMention, str]]]:
+    """Names of several parts, and words in remappings, that launch files and parameter files have: each with its place
+    and the text of its line. Arguments of programs are left out."""
+    for path, kind in sorted(workspace.extraction.kinds.items()):
+        if kind in _GIVEN and find_folder_role(path) != "test":
+            for number, line in enumerate(_read_lines(workspace, path), 1):
+                if "/" in line and not _COMMENT.match(line) and "args=" not in line:
+                    remaps = "<remap" in line
+                    for match in _IN_SETTINGS.finditer(line):
+                        name = normalise_mention(match[1])
+                        if remaps or "/" in name:
+                            yield name, (NameMention(path, number, True), line.strip())
+
+
+def find_mentions(workspace: Workspace, names: Collection[str]) -> dict[str, list[NameMention]]:
     """Where the text of a workspace has names: as they are, absolute or private, or at the end of longer ones."""
-    found: dict[str, list[Mention]] = {name: [] for name in names}
+    found: dict[str, list[NameMention]] = {name: [] for name in names}
     patterns = [(name, *_compile_search(name)) for name in names]
     for path, kind in sorted(workspace.extraction.kinds.items()) if names else ():
         if kind not in SETTINGS | _CODE or find_folder_role(path) == "test":
@@ -90,7 +105,7 @@ def find_mentions(workspace: Workspace, names: Collection[str]) -> dict[str, lis
                 for number, line in enumerate(lines, 1):
                     if name in line and not _COMMENT.match(line):
                         found[name] += (
-                            Mention(path, number, match[1].strip("~/") == "") for match in pattern.finditer(line)
+                            NameMention(path, number, match[1].strip("~/") == "") for match in pattern.finditer(line)
                         )
     return found
 

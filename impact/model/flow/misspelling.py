@@ -17,6 +17,7 @@ _SIDES = (
     ("left", "right"), ("front", "rear"), ("front", "back"), ("in", "on"), ("up", "down"), ("upper", "lower"),
     ("min", "max"), ("row", "col"), ("input", "output"),
 )  # fmt: skip
+_SIDE_WORDS = frozenset(word for pair in _SIDES for word in pair) | {"center", "middle", "top", "bottom"}
 
 
 def is_slip_of_name(one: str, other: str) -> bool:
@@ -59,11 +60,16 @@ def _is_alone(name: str, place: int) -> bool:
     return before and after
 
 
-def has_added_words(one: str, other: str) -> bool:
-    """Whether one of two names is the other with words before or after its last part: `scan` and `narrow_scan`."""
-    a, b = sorted((one.strip("/").split("/"), other.strip("/").split("/")), key=lambda parts: len(parts[-1]))
-    short, long = a[-1], b[-1]
-    return a[:-1] == b[:-1] and (long.startswith(f"{short}_") or long.endswith(f"_{short}"))
+def differs_in_words(one: str, other: str) -> bool:
+    """Whether two names differ in a single part, which one of them has more words in: none that is a side or a number,
+    which tell things apart."""
+    a, b = one.strip("/").split("/"), other.strip("/").split("/")
+    apart = [(x, y) for x, y in zip(a, b, strict=False) if x != y]
+    if len(a) != len(b) or len(apart) != 1:
+        return False
+    short, long = sorted((set(part.split("_")) for part in apart[0]), key=len)
+    more = long - short
+    return short < long and not any(len(word) < 3 or not word.isalpha() or word in _SIDE_WORDS for word in more)
 
 
 class NearNames(Generic[T]):

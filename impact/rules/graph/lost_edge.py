@@ -10,7 +10,7 @@ Why it breaks
 
 Severity
     warning when the subscriber is left, or when the removed side now uses another name; note when the subscriber was
-    removed and the publisher is left.
+    removed and the publisher is left, or when a publisher has a new name that nobody reads.
 
 Example
     self.create_publisher(LaserScan, "scan_front", 10)           # was: scan; the planner still reads scan
@@ -55,13 +55,13 @@ _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
             help="publish `{replacement}`",
         ),
         "publisher moved": Text(
-            "nothing subscribes to `{subject}`, which `{node}` publishes; at the base it published `{replacement}`, "
-            "which is still read",
+            "nothing in the workspace subscribes to `{subject}`, which `{node}` publishes; at the base it published "
+            "`{replacement}`, which is still read",
             help="publish `{replacement}`, or subscribe to `{subject}`",
         ),
         "subscriber moved": Text(
-            "nothing publishes `{subject}`, which `{node}` reads; at the base it read `{replacement}`, which is still "
-            "published",
+            "nothing in the workspace publishes `{subject}`, which `{node}` reads; at the base it read "
+            "`{replacement}`, which is still published",
             help="subscribe to `{replacement}`, or publish `{subject}`",
         ),
     },
@@ -69,6 +69,7 @@ _OTHER = {"publisher": "subscriber", "subscriber": "publisher"}
 def lost_edge(workspace: Workspace, base: Workspace):
     now, before = (Flow(get_flow(each).system, {}) for each in (workspace, base))
     yield from _find_moved(now, before)
+    reported = set()
     for topic in sorted({topic for kind, topic in before.known if kind == "topic"}):
         had, has = _list_sides(before, topic), _list_sides(now, topic)
         for role, gone in _OTHER.items():
@@ -78,6 +79,9 @@ def lost_edge(workspace: Workspace, base: Workspace):
             if _count_unknown(now, gone) > _count_unknown(before, gone):
                 continue
             at, old = left[0], had[gone][0]
+            if (at.path, at.line) in reported:
+                continue
+            reported.add((at.path, at.line))
             successors = sorted({one.topic for one in _find_successors(now, before, old)})
             renamed = len(successors) == 1
             node = now.nodes[old.node].executable if renamed and old.node in now.nodes else old.node.rpartition("/")[2]
@@ -110,8 +114,14 @@ def _find_moved(now: Flow, before: Flow) -> Iterator[Diagnostic]:
         if (one.path, one.line, one.topic) not in reported:
             reported.add((one.path, one.line, one.topic))
             node = now.nodes[one.node]
-            data = {"node": node.executable or node.id, "replacement": old.topic}
-            yield Diagnostic(At(one.path, one.line), one.topic, node.package, data, kind=f"{old.role} moved")
+            yield Diagnostic(
+                At(one.path, one.line),
+                one.topic,
+                node.package,
+                {"node": node.executable or node.id, "replacement": old.topic},
+                kind=f"{old.role} moved",
+                doubts=(Doubt.CHANGED,) if old.role == "publisher" else (),
+            )
 
 
 def _count_unknown(flow: Flow, role: str) -> int:

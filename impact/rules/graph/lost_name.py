@@ -51,6 +51,7 @@ def lost_name(workspace: Workspace, base: Workspace):
         return
     endpoints, formerly = ([one for one in get_flow(each).system.endpoints if one.topic] for each in (workspace, base))
     topics = group_pairs((normalise_mention(one.topic), one.path) for one in endpoints)
+    coded = group_pairs((normalise_mention(one.topic), one.path) for one in endpoints if one.how != "launch")
     former = {normalise_mention(one.topic) for one in formerly}
     own = {(one.path, one.line) for one in endpoints}
     replaced = [
@@ -65,7 +66,7 @@ def lost_name(workspace: Workspace, base: Workspace):
         kept = {mention.path for mention in now[old] if mention.whole} & {mention.path for mention in before[old]}
         kept |= set(topics.get(old, ())) if old in former else set()
         others = any((mention.path, mention.line) != (one.path, one.line) for mention in now[new])
-        others = others or any(path != one.path for path in topics.get(new, ()))
+        others = others or any(path != one.path for path in coded.get(new, ()))
         at = At(one.path, one.line)
         if not others and kept - {one.path}:
             data = {"old": one.old, "places": tuple(sorted(kept - {one.path}))}

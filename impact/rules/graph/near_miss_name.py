@@ -2,8 +2,7 @@
 
 What it does
     Reports a subscriber without a publisher if a publisher without a subscriber uses nearly the same name: it differs
-    by a letter, a plural, an underscore, or upper and lower case; or, if a launch file gives one of the names, by a word
-    (`scan`, `narrow_scan`). Both have the same type, and both names are known. If
+    by a letter, a plural, an underscore, or upper and lower case. Both have the same type, and both names are known. If
     a launch file starts both, and only nodes whose code is in the workspace, a namespace that one of them lacks counts
     too.
 
@@ -19,17 +18,13 @@ Use instead
 
 Not reported
     Names that differ in digits or sides (`camera1`, `left`); topics of a type that a publisher whose name is not known
-    has.
+    has; files that publish more, of which nothing is known.
 """
 
-from collections.abc import Iterator
-
 from ...model.flow.edges import Flow, Sure, build_system_flow, get_label, list_flows
-from ...model.flow.misspelling import NearNames, has_added_words, is_slip_of_name
+from ...model.flow.misspelling import NearNames, is_slip_of_name
 from ...model.flow.workspace import get_flow
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
-
-_MOST = 1000
 
 
 @rule(
@@ -77,17 +72,10 @@ def _find_near_pairs(flow: Flow, closed: bool):
             continue
         open_ = flow.may_have("publisher", type_)
         found: dict[str, Sure] = {}
-        alike = [*near[type_].find_near(one.topic), *_list_extended(taker, unread[type_])] if type_ in near else ()
-        for giver in alike:
-            slip = is_slip_of_name(one.topic, giver.endpoint.topic) or has_added_words(one.topic, giver.endpoint.topic)
-            if giver.node.id != taker.node.id and (slip or not open_):
-                found.setdefault(giver.endpoint.topic, giver)
+        for giver in near[type_].find_near(one.topic) if type_ in near else ():
+            other = giver.endpoint
+            likely = is_slip_of_name(one.topic, other.topic) and not flow.may_publish_more(other.path)
+            if giver.node.id != taker.node.id and (likely or not open_):
+                found.setdefault(other.topic, giver)
         if len(found) == 1:
             yield taker, next(iter(found.values()))
-
-
-def _list_extended(taker: Sure, givers: list[tuple[str, Sure]]) -> Iterator[Sure]:
-    """Those whose name has a word more or less, if a launch file chose one of the two names: nobody else has it."""
-    for topic, giver in givers[:_MOST]:
-        if "launch" in (taker.endpoint.how, giver.endpoint.how) and has_added_words(taker.endpoint.topic, topic):
-            yield giver

@@ -28,6 +28,8 @@ from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
 _READS = frozenset(("getParam", "getParamCached", "param", "get_parameter", "get_parameter_or"))
 
+_TEXT = re.compile(r'"[^"]*"')
+
 
 @rule(
     scope="flow",
@@ -60,5 +62,5 @@ def _list_reads(function: FlowFunction) -> Iterator[FlowCall]:
 
 def _is_only_declared(variable: str, lines: list[str]) -> bool:
     """Whether a function names a variable twice: where it is declared, and where the parameter is read into it."""
-    named = [line for line in lines for _ in re.finditer(rf"\b{variable}\b", line)]
-    return len(named) == 2 and bool(re.match(rf"\s*[\w:<>, ]+\s{variable}\s*(?:;|=|\{{|\()", named[0]))
+    named = [line for line in lines for _ in re.finditer(rf"\b{variable}\b", _TEXT.sub("", line))]
+    return len(named) == 2 and bool(re.match(rf"\s*[A-Za-z_][\w:<>, ]*[\w>]\s+{variable}\s*[;={{(]", named[0]))
