@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -26,6 +27,8 @@ OTHER_SIDE = {
     "publisher": "subscriber", "subscriber": "publisher", "server": "client", "client": "server",
     "action server": "action client", "action client": "action server",
 }  # fmt: skip
+# The written name begins with a text, to which more is added.
+_ABSOLUTE = re.compile(r'"(/[\w/]+)" *\+')
 # Pairs that are looked at under one name: publishers times subscribers, which hostile code has by the ten thousand.
 _MOST_PAIRS = 10_000
 _MOST_PAIRS_IN_ALL = 100_000
@@ -103,23 +106,38 @@ class Flow:
         """The other side of an endpoint's topic, service or action, sure or not."""
         return self._of_role.get((OTHER_SIDE[endpoint.role], endpoint.topic), [])
 
-    def may_have(self, role: str, type_: str) -> bool:
+    def may_have(self, role: str, type_: str, topic: str = "", *, typed: bool = False) -> bool:
         """Whether something in the workspace of this role and type has a name that is not known or not certain, or
-        publishes what is not known."""
-        return bool(self._unsure.get(role, set()) & {type_, "", "*"})
+        publishes what is not known. topic: only if the name may be this, as far as its beginning is known. typed: only
+        if it is known to have the type."""
+        unsure = self._unsure.get(role, {})
+        types = (type_,) if typed else (type_, "", "*")
+        return any(not topic or topic.startswith(head) for each in types for head in unsure.get(each, ()))
 
     @cached_property
-    def _unsure(self) -> dict[str, set[str]]:
+    def _unsure(self) -> dict[str, dict[str, set[str]]]:
+        """By role and type, how the names begin: empty where that is not known."""
         if self.around is not None:
             return self.around._unsure
-        found: dict[str, set[str]] = {}
+        found: dict[str, dict[str, set[str]]] = {}
         for one in self.graph.endpoints:
             if not self.is_sure(one):
-                found.setdefault(one.role, set()).add(one.type)
-        # What publishes through something that is not seen to be made anywhere, as a wrapper that is not followed.
-        if any(one.what == "publish" and "which publisher" in one.reason for one in self.graph.coverage.unresolved):
-            found.setdefault("publisher", set()).add("")
+                head = _ABSOLUTE.match(one.written) if not one.topic else None
+                found.setdefault(one.role, {}).setdefault(one.type, set()).add(head[1] if head else "")
+        if self._unclear:
+            found.setdefault("publisher", {}).setdefault("", set()).add("")
         return found
+
+    @cached_property
+    def _unclear(self) -> set[str]:
+        """Files that publish through something that is not seen to be made anywhere, as a wrapper that is not
+        followed."""
+        unresolved = self.graph.coverage.unresolved
+        return {one.path for one in unresolved if one.what == "publish" and "which publisher" in one.reason}
+
+    def may_publish_more(self, path: str) -> bool:
+        """Whether a file publishes what is not known, too."""
+        return path in (self.around or self)._unclear
 
     def list_alternatives(self, one: Endpoint) -> list[Endpoint]:
         """Everything of the same node and role at the same name: code may choose among several."""
@@ -181,6 +199,14 @@ def build_launched_flow(whole: Flow, launch: Launch) -> Flow:
     """The flow of what a launch file surely starts."""
     surely = {start.node for start in launch.starts if not start.uncertain}
     return Flow(launch.graph, whole.interfaces, surely, whole)
+
+
+@cache_in_derived
+def build_system_flow(workspace: Workspace) -> Flow:
+    """The flow of all that launch files start, and of the programs that none of them does."""
+    whole = build_whole_flow(workspace)
+    graph = get_flow(workspace).system
+    return Flow(graph, whole.interfaces, {node.id for node in graph.nodes if not node.uncertain}, whole)
 
 
 @cache_in_derived

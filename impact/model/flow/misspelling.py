@@ -17,6 +17,7 @@ _SIDES = (
     ("left", "right"), ("front", "rear"), ("front", "back"), ("in", "on"), ("up", "down"), ("upper", "lower"),
     ("min", "max"), ("row", "col"), ("input", "output"),
 )  # fmt: skip
+_SIDE_WORDS = frozenset(word for pair in _SIDES for word in pair) | {"center", "middle", "top", "bottom"}
 
 
 def is_slip_of_name(one: str, other: str) -> bool:
@@ -57,6 +58,18 @@ def _is_alone(name: str, place: int) -> bool:
     before = place == 0 or not name[place - 1].isalpha()
     after = place == len(name) - 1 or not name[place + 1].isalpha()
     return before and after
+
+
+def differs_in_words(one: str, other: str) -> bool:
+    """Whether two names differ in a single part, which one of them has more words in: none that is a side or a number,
+    which tell things apart."""
+    a, b = one.strip("/").split("/"), other.strip("/").split("/")
+    apart = [(x, y) for x, y in zip(a, b, strict=False) if x != y]
+    if len(a) != len(b) or len(apart) != 1:
+        return False
+    short, long = sorted((set(part.split("_")) for part in apart[0]), key=len)
+    more = long - short
+    return short < long and not any(len(word) < 3 or not word.isalpha() or word in _SIDE_WORDS for word in more)
 
 
 class NearNames(Generic[T]):

@@ -27,7 +27,7 @@ def group_by_line(
     return ((place, rows) for place, rows in found.items() if f"{place[0]}:{place[1]}" not in elsewhere)
 
 
-def find_package(workspace: Workspace, path: str) -> str:
-    """The package that a file lies in, empty for none."""
+def find_owning_package(workspace: Workspace, path: str) -> str:
+    """The name of the package that a file belongs to, empty for none."""
     owner = workspace.discovered.find_owner(path)
     return next((name for name, each in workspace.packages.items() if owner and each.path == owner.path), "")

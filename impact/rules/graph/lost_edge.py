@@ -3,7 +3,8 @@
 What it does
     Compares the message flow with the base: that of the code, and that of each launch file that starts something
     otherwise, with its namespaces, remappings and parameters. Reports topics that had a publisher and a subscriber, and
-    have only one of them now: the other was removed, or uses another name; and services and actions whose server was
+    have only one of them now: the other was removed, or uses another name; a node that publishes or reads another
+    topic than at the base, if nobody is at the other side of that one; and services and actions whose server was
     removed, or whose client asks under a name that nothing serves. The place is the line of the launch or parameter
     file where that is the cause.
 
@@ -12,8 +13,9 @@ Why it breaks
 
 Severity
     warning when the subscriber or client is left, or when the removed side now uses another name; note when the
-    subscriber was removed and the publisher is left, when the subscriber reads another topic that something publishes,
-    and in launches that also start programs of other packages, which may be the other side.
+    subscriber was removed and the publisher is left, when a publisher has a new name that nobody reads, when the
+    subscriber reads another topic that something publishes, and in launches that also start programs of other packages,
+    which may be the other side.
 
 Example
     self.create_publisher(LaserScan, "scan_front", 10)           # was: scan; the planner still reads scan
@@ -35,7 +37,9 @@ from ...model.flow.launch_changes import LaunchChange, NodeChange, compare_launc
 from ...model.flow.select import get_kind
 from ...model.flow.workspace import get_flow
 from ..vocabulary import At, Diagnostic, Doubt, Text, Workspace, rule
-from .launch_settings import find_package
+from .launch_settings import find_owning_package
+
+_TOPICS = frozenset(("publisher", "subscriber"))  # roles at which a name may lose its other side without a word
 
 
 @rule(
@@ -71,6 +75,16 @@ from .launch_settings import find_package
             "`{node}` asked for `{subject}` at the base, and now asks for `{replacement}`, which nothing serves",
             help="serve `{replacement}`",
         ),
+        "publisher moved": Text(
+            "nothing in the workspace subscribes to `{subject}`, which `{node}` publishes; at the base it published "
+            "`{replacement}`, which is still read",
+            help="publish `{replacement}`, or subscribe to `{subject}`",
+        ),
+        "subscriber moved": Text(
+            "nothing in the workspace publishes `{subject}`, which `{node}` reads; at the base it read "
+            "`{replacement}`, which is still published",
+            help="subscribe to `{replacement}`, or publish `{subject}`",
+        ),
     },
 )
 def lost_edge(workspace: Workspace, base: Workspace):
@@ -84,6 +98,7 @@ def lost_edge(workspace: Workspace, base: Workspace):
                 if (one.kind, one.subject) not in found:
                     found[one.kind, one.subject] = one
                     yield one
+    yield from _find_moved(*(Flow(get_flow(each).system, {}) for each in (workspace, base)))
 
 
 def _changes_others(launch: LaunchChange) -> bool:
@@ -151,7 +166,36 @@ def _find_place(
         path, line = launch.path, 1
     if (path, line) == (left.path, left.line):
         return At(path, line), now.nodes[left.node].package if left.node in now.nodes else ""
-    return At(path, line), find_package(workspace, path)
+    return At(path, line), find_owning_package(workspace, path)
+
+
+def _find_moved(now: Flow, before: Flow) -> Iterator[Diagnostic]:
+    """Endpoints that had another side at the base and have none under their new name, while the old name has both."""
+    reported = set()
+    for old in before.graph.endpoints:
+        if old.role not in _TOPICS or not old.topic or not before.list_others(old) or not now.list_others(old):
+            continue
+        if old.implied or now.list_alternatives(old) or not before.is_sure(old):
+            continue
+        has = now.known.get(("topic", old.topic), ())
+        successors = {one.topic: one for one in _find_successors(now, before, old, {old.node})}
+        if len(successors) != 1 or not any(one.role == old.role for one in has):
+            continue
+        (one,) = successors.values()
+        other = OTHER_SIDE[old.role]
+        if now.list_others(one) or not now.is_sure(one) or _count_unknown(now, other) > _count_unknown(before, other):
+            continue
+        if (one.path, one.line, one.topic) not in reported:
+            reported.add((one.path, one.line, one.topic))
+            node = now.nodes[one.node]
+            yield Diagnostic(
+                At(one.path, one.line),
+                one.topic,
+                node.package,
+                {"node": node.executable or node.id, "replacement": old.topic},
+                kind=f"{old.role} moved",
+                doubts=(Doubt.CHANGED,) if old.role == "publisher" else (),
+            )
 
 
 def _count_unknown(flow: Flow, role: str) -> int:

@@ -17,12 +17,12 @@ Use instead
     self.create_subscription(Odometry, "wheel_odom", self.on_odom, 10)
 
 Not reported
-    Names that differ in digits or sides (`camera1`, `left`); topics that a publisher whose name is not known may
-    publish.
+    Names that differ in digits or sides (`camera1`, `left`); topics of a type that a publisher whose name is not known
+    has; files that publish more, of which nothing is known.
 """
 
-from ...model.flow.edges import Flow, Sure, build_unstarted_flow, get_label, list_flows
-from ...model.flow.misspelling import NearNames
+from ...model.flow.edges import Flow, Sure, build_system_flow, get_label, list_flows
+from ...model.flow.misspelling import NearNames, is_slip_of_name
 from ...model.flow.workspace import get_flow
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
 
@@ -41,7 +41,7 @@ def near_miss_name(workspace: Workspace):
     closed = {launch.path for launch in get_flow(workspace).launches if not launch.missing}
     reported = set()
     for path, flow in list_flows(workspace):
-        for taker, giver in _find_near_pairs(flow if path else build_unstarted_flow(workspace), path in closed):
+        for taker, giver in _find_near_pairs(flow if path else build_system_flow(workspace), path in closed):
             one, other = taker.endpoint, giver.endpoint
             if (one.path, one.line) in reported:
                 continue
@@ -66,11 +66,16 @@ def _find_near_pairs(flow: Flow, closed: bool):
     for taker in flow.list_sure("subscriber"):
         one = taker.endpoint
         type_ = flow.find_type(one)
-        if not type_ or one.implied or flow.list_others(one) or flow.may_have("publisher", type_):
+        if not type_ or one.implied or flow.list_others(one):
             continue
+        if flow.may_have("publisher", type_, one.topic, typed=True):
+            continue
+        open_ = flow.may_have("publisher", type_)
         found: dict[str, Sure] = {}
         for giver in near[type_].find_near(one.topic) if type_ in near else ():
-            if giver.node.id != taker.node.id:
-                found.setdefault(giver.endpoint.topic, giver)
+            other = giver.endpoint
+            likely = is_slip_of_name(one.topic, other.topic) and not flow.may_publish_more(other.path)
+            if giver.node.id != taker.node.id and (likely or not open_):
+                found.setdefault(other.topic, giver)
         if len(found) == 1:
             yield taker, next(iter(found.values()))
