@@ -64,7 +64,8 @@ def lost_name(workspace: Workspace, base: Workspace):
     for one in replaced:
         old, new = normalise_mention(one.old), normalise_mention(one.new)
         kept = {mention.path for mention in now[old] if mention.whole} & {mention.path for mention in before[old]}
-        kept |= set(topics.get(old, ())) if old in former else set()
+        if not kept - {one.path} and old in former:  # the text has it in pieces, if at all
+            kept |= set(topics.get(old, ()))
         others = any((mention.path, mention.line) != (one.path, one.line) for mention in now[new])
         others = others or any(path != one.path for path in coded.get(new, ()))
         at = At(one.path, one.line)
