@@ -18,7 +18,7 @@ from ..package import find_folder_role
 from ..workspace import Workspace
 from .graph import Graph
 from .join import Join, Running
-from .launches import follow_launch_files, is_launch
+from .launches import follow_launch_files, list_launch_files
 from .names import normalise
 from .started import InWorkspace, follow_workspace_launch, make_instance
 from .workspace import get_flow
@@ -156,16 +156,16 @@ class _Side:
     @cached_property
     def settings(self) -> dict[str, str]:
         """Contents of launch files, parameter files and robot descriptions, by path; those of tests are left out."""
-        main = self.workspace.extraction
-        found: dict[str, str] = {}
+        found = {path: "" for _, path, _ in list_launch_files(self.workspace)}
         for package in self.workspace:
             start = len(package.path) + 1 if package.path else 0
             for path in package.linked.files:
-                inner = path[start:]
-                if (find_kind(path) in _SETTINGS or is_launch(inner)) and find_folder_role(inner) != "test":
-                    looks = (main, main.second) if main.second is not None else (main,)
-                    content = next((each.ids[path] for each in looks if path in each.ids), "")
-                    found[path] = content
+                if find_kind(path) in _SETTINGS and find_folder_role(path[start:]) != "test":
+                    found[path] = ""
+        main = self.workspace.extraction
+        looks = (main, main.second) if main.second is not None else (main,)
+        for path in found:
+            found[path] = next((each.ids[path] for each in looks if path in each.ids), "")
         return found
 
     @cached_property

@@ -101,7 +101,7 @@ def follow_launch_files(workspace: Workspace) -> list[tuple[str, Launched]]:
 
 
 def _list_first_files(workspace: Workspace) -> list[tuple[str, str, str]]:
-    return list(islice(_list_files(workspace), _MOST))
+    return list(islice(list_launch_files(workspace), _MOST))
 
 
 def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) -> Iterator[Launch]:
@@ -162,7 +162,7 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
 
 
 def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list[_Followed]:
-    """Each launch file that no other includes, followed. files: as _list_files() gives them."""
+    """Each launch file that no other includes, followed. files: as list_launch_files() gives them."""
     sources, changed = InWorkspace(workspace), ChangedFiles()
     found: list[_Followed] = []
     included: set[str] = set()
@@ -177,7 +177,7 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
     return [row for row in found if row[0] not in included]
 
 
-def _list_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
+def list_launch_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:
     """(package, path, path within the package) of launch files; last those in XML and YAML outside of all packages.
     Those of tests are left out."""
     for package in workspace:
