@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import UserError, escape
+from ...edges.documents import load_json
 from ...edges.files import open_regular, read_file
 from ..model.flow.graph import Role
 from ..model.flow.observed import Observation, SeenEndpoint
@@ -76,7 +76,7 @@ def _read_safely(read: Callable[[Path], Rows], file: Path) -> Rows:
 
 def _parse_text(text: str, name: str) -> Observation:
     if text.lstrip()[:1] in ("{", "["):
-        return _parse_dump(json.loads(text))
+        return _parse_dump(load_json(text))
     lines = text.splitlines()
     if any(_ROS1_NODE.match(line) for line in lines) or any(line.strip() == "Subscribers:" for line in lines):
         return _parse_info(lines)

@@ -166,7 +166,7 @@ class FlowValues:
                 yield FlowValue(None, "unresolved", "an argument of the command line")
             else:
                 given = self.arguments[max(places.start, 1) - 1 : places.stop - 1]
-                if len(given) == 1 or places.stop - places.start == 1:
+                if len(given) == 1 or places.stop - places.start == 1 or self._runs_over_all(fn, line):
                     yield from (FlowValue(argument, "given") for argument in given)
                 else:
                     yield FlowValue(None, "unresolved", "one of several arguments of the command line")
@@ -295,8 +295,7 @@ class FlowValues:
         own = [each for writer, each in rows if writer is fn and each.operator == "="]
         if variable.kind != "local" or not line or len(own) < 2:
             return rows
-        here = next((call.guard for call in fn.facts.calls if call.line == line), -1)
-        around = self._list_guards_around(fn, here)
+        around = self._list_guards_around(fn, _find_guard(fn, line))
         before = [each for each in own if each.line < line and (each.guard < 0 or each.guard in around)]
         if not before:
             return rows
@@ -308,6 +307,11 @@ class FlowValues:
             for writer, each in rows
             if writer is not fn or (each.line >= last.line and (again or each.line < line or each.operator == "for"))
         ]
+
+    def _runs_over_all(self, fn: Fn, line: int) -> bool:
+        """Whether a loop does what stands on a line in every turn, not only for options that it recognises."""
+        around = self._list_guards_around(fn, _find_guard(fn, line))
+        return bool(around) and fn.facts.guards[around[0]].kind in _LOOPS
 
     @staticmethod
     def _list_guards_around(fn: Fn, guard: int) -> list[int]:
@@ -522,3 +526,8 @@ def _take_first(values: Iterator[FlowValue]) -> list[FlowValue]:
         if len(found) == _MOST:
             break
     return list(found)
+
+
+def _find_guard(fn: Fn, line: int) -> int:
+    """The place of the guard that calls on a line of a function are under, -1 for none."""
+    return next((call.guard for call in fn.facts.calls if call.line == line), -1)

@@ -20,6 +20,22 @@ RELAY = """
       ros::Subscriber sub = n.subscribe(std::string(argv[1]), 10, heard);
     }
 """
+SEVERAL = """
+    std::vector<std::string> names;
+    void heard(const std_msgs::String& message) {}
+    int main(int argc, char** argv) {
+      ros::init(argc, argv, "several");
+      ros::NodeHandle n;
+      for (int i = 1; i < argc; i++) {
+        if (std::string(argv[i]) == "--out")
+          n.advertise<std_msgs::String>(argv[i + 1], 1);
+      }
+      for (int at = 2; at < argc; at++)
+        names.push_back(argv[at]);
+      for (auto& name : names)
+        n.subscribe(name, 10, heard);
+    }
+"""
 ARGPARSE = """
     #!/usr/bin/env python3
     import argparse, rospy, roslib.message
@@ -64,6 +80,11 @@ def ends(files, command, **more) -> set[tuple[str, str, str, str]]:
     """(role, topic, type, how) of the endpoints that a command has, what every node has left out."""
     found = joined(files, 1, **more).build(launch=rosrun(*command))
     return {(e.role, e.topic, e.type, e.how) for e in found.endpoints if not e.implied}
+
+
+def test_a_loop_over_all_arguments_has_each_and_options_are_not_told_apart():
+    found = ends({"p/several.cpp": SEVERAL}, ("p", "several", ("--out", "/a", "/b")))
+    assert {(role, topic) for role, topic, _, _ in found} == {("publisher", ""), ("subscriber", "/a"), ("subscriber", "/b")}
 
 
 @pytest.mark.parametrize(
