@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+import zstandard
 
 from ..edges.files import write_file
 from ..impact.targets.platform import normalize_library_name
@@ -188,7 +189,8 @@ def main(arguments: list[str] | None = None) -> None:
         + "\n}"
         for channel, libraries in table.items()
     )
-    write_file(DATA / "conda.json", ("{\n" + ",\n".join(lines) + "\n}\n").encode())
+    text = "{\n" + ",\n".join(lines) + "\n}\n"
+    write_file(DATA / "conda.json.zst", zstandard.ZstdCompressor(level=19).compress(text.encode()))
     print(f"{len(table)} channels, {sum(map(len, table.values()))} libraries")
 
 

@@ -1,11 +1,11 @@
-"""Builds data/libraries.sqlite, changes_debian.json and uses_debian.json: what versions of system libraries have, and
-what they no longer have, or take.
+"""Builds data/libraries.sqlite, changes_debian.json.zst and uses_debian.json: what versions of system libraries have,
+and what they no longer have, or take.
 
     python -P -m rosimpact.databuild.debian WORK --suite bullseye=APT_CONF --suite bookworm=APT_CONF ... --clones CLONES
 
 Libraries are read as libraries.py has it, written by library_file.py, and consecutive versions compared. CLONES holds
 git clones (`OWNER+NAME`); versions before the first packaged one are read at their release tags there, into
-changes_library_tags.json. Only names and versions are kept.
+changes_library_tags.json.zst. Only names and versions are kept.
 
 A header is gone when no package of that release, or of a later one, has it. A name is gone when its last part is not
 even a word in any header of its library in that version or a later one: then no macro, alias, specialisation or
@@ -22,6 +22,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
+
+import zstandard
 
 from ..edges.files import write_file
 from ..impact.facts.surface import CLASSES, Entity, HeaderSurface, list_offered
@@ -488,10 +490,11 @@ def _has_shrunk(versions: Sequence[LibraryVersion]) -> bool:
 
 
 def write(file: Path, key: str, rows: Iterable[dict]) -> None:
-    """Writes a table, a line for each group."""
+    """Writes a table, a line for each group; compressed where the file's name ends so."""
     text = ",\n".join(json.dumps(row) for row in rows)
     more = ',\n"transitive": []' if key == "changes" else ""
-    write_file(file, f'{{"{key}": [\n{text}\n]{more}}}\n'.encode())
+    data = f'{{"{key}": [\n{text}\n]{more}}}\n'.encode()
+    write_file(file, zstandard.ZstdCompressor(level=19).compress(data) if file.suffix == ".zst" else data)
 
 
 def derive(suites: Suites, texts: Texts, clones: Path | None, output: Path) -> None:
@@ -516,10 +519,10 @@ def derive(suites: Suites, texts: Texts, clones: Path | None, output: Path) -> N
         if not _has_shrunk(versions):
             reported = group_rows(library, versions, reviewed, elsewhere=everywhere.has)
             changes += [group for key, group in reported if key == "changes"]
-    write(output / "changes_debian.json", "changes", changes)
+    write(output / "changes_debian.json.zst", "changes", changes)
     write(output / "uses_debian.json", "uses", uses)
     if clones is not None:
-        write(output / "changes_library_tags.json", "changes", early)
+        write(output / "changes_library_tags.json.zst", "changes", early)
 
 
 def main(arguments: list[str] | None = None) -> None:

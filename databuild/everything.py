@@ -185,8 +185,9 @@ STEPS = (
     BuildStep("fields", ("fields.json.zst",), ("manifests",),
          lambda sources, data, own: _call("databuild.fields", sources.clones, "--output", data / "fields.json.zst")
          if sources.clones else None),
-    BuildStep("conda", ("conda.json",), (), _read_clones("databuild.conda")),
-    BuildStep("libraries", ("libraries.sqlite", "changes_debian.json", "uses_debian.json", "changes_library_tags.json"),
+    BuildStep("conda", ("conda.json.zst",), (), _read_clones("databuild.conda")),
+    BuildStep("libraries",
+         ("libraries.sqlite", "changes_debian.json.zst", "uses_debian.json", "changes_library_tags.json.zst"),
          ("surfaces", "providers"), _build_libraries),
     BuildStep("includes", ("includes.json.zst",), ("surfaces",), _build_includes),
     BuildStep("pypi", ("changes_pypi.json.zst",), (),

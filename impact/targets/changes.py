@@ -3,9 +3,9 @@ no longer in a call, or does differently.
 
 The facts are in `data/changes*.json` (names), `uses*.json` (calls and members that only some versions take) and
 `behaviour.json` (the name and the call stay, and another result comes out), reviewed, each with its source; those of
-changes_debian.json and changes_pypi.json are read from packages (databuild/debian.py, pypi.py), and count where no
-other file treats the name, or none says of which versions it is gone. A change is judged on a target by versions; for
-headers of ROS packages whose source trees are in the provider table, by what the very release has.
+changes_debian.json.zst and changes_pypi.json.zst are read from packages (databuild/debian.py, pypi.py), and count where
+no other file treats the name, or none says of which versions it is gone. A change is judged on a target by versions;
+for headers of ROS packages whose source trees are in the provider table, by what the very release has.
 """
 
 from __future__ import annotations
@@ -139,7 +139,8 @@ def _load_files() -> list[_File]:
     it is taken from the other. What was read from packages comes last, since nobody reviewed it; before it the general
     table, since the others were compared with headers and tags."""
     return _read(
-        "changes*.json*", "changes.json", "changes_debian.json", "changes_library_tags.json", "changes_pypi.json.zst"
+        "changes*.json*", "changes.json", "changes_debian.json.zst", "changes_library_tags.json.zst",
+        "changes_pypi.json.zst",
     )
 
 

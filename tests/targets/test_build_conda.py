@@ -4,6 +4,7 @@ import json
 
 import pygit2
 import pytest
+import zstandard
 from rosimpact.databuild import conda
 from rosimpact.databuild.git import BuildError
 
@@ -79,7 +80,7 @@ def test_the_table_by_channel_and_day(tmp_path, monkeypatch):
     monkeypatch.setattr(conda, "DATA", tmp_path / "out")
     monkeypatch.setattr(conda, "build", lambda clones: table)
     conda.main([str(tmp_path)])
-    assert json.loads((tmp_path / "out/conda.json").read_text()) == table
+    assert json.loads(zstandard.decompress((tmp_path / "out/conda.json.zst").read_bytes())) == table
 
 
 def test_without_the_pins_nothing_is_written(tmp_path):

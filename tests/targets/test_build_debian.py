@@ -6,6 +6,7 @@ import lzma
 import tarfile
 
 import pytest
+import zstandard
 from rosimpact.databuild import debian
 from rosimpact.databuild.libraries import Packaged, Run, read_packages
 from rosimpact.impact.targets.changes import find_row_version, iterate_in_force, load_rows, load_uses
@@ -96,7 +97,7 @@ def archive(tmp_path, monkeypatch):
 def built(folder, tmp_path):
     """The tables that are made of a folder, by kind: names of each group."""
     debian.main([str(folder), "--output", str(tmp_path)])
-    changes = json.loads((tmp_path / "changes_debian.json").read_text())["changes"]
+    changes = json.loads(zstandard.decompress((tmp_path / "changes_debian.json.zst").read_bytes()))["changes"]
     uses = json.loads((tmp_path / "uses_debian.json").read_text())["uses"]
     return changes, uses
 
@@ -160,13 +161,13 @@ def test_versions_before_the_first_packaged_one_are_read_at_their_tags(archive, 
         },
     )
     debian.main([str(archive), "--clones", str(clones), "--output", str(tmp_path)])
-    rows = json.loads((tmp_path / "changes_library_tags.json").read_text())["changes"]
+    rows = json.loads(zstandard.decompress((tmp_path / "changes_library_tags.json.zst").read_bytes()))["changes"]
     # `Holder` is there in a package later on.
     assert [(row["last_in"], row["removed_in"], row["names"]) for row in rows] == [
         ("1.0.1", "1.2.0", {"yaml-cpp/lost.h": ""}),
         ("1.0.1", "1.2.0", {"YAML::Ancient": ""}),
     ]
-    packaged = json.loads((tmp_path / "changes_debian.json").read_text())["changes"]
+    packaged = json.loads(zstandard.decompress((tmp_path / "changes_debian.json.zst").read_bytes()))["changes"]
     assert packaged and all("Debian" in row["source"] for row in packaged)
 
 

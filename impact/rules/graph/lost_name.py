@@ -19,7 +19,7 @@ Use instead
 
 Not reported
     Lines that differ in more than names; names that were replaced in all files; words that are no topic in the
-    workspace.
+    workspace; a file that names the old and the new one, as a server of both does.
 """
 
 from ....edges.groups import group_pairs
@@ -72,6 +72,6 @@ def lost_name(workspace: Workspace, base: Workspace):
         if not others and kept - {one.path}:
             data = {"old": one.old, "places": tuple(sorted(kept - {one.path}))}
             yield Diagnostic(at, one.new, find_owning_package(workspace, one.path), data, "alone")
-        elif others and len(kept) == 1 and one.path not in kept and "/" in old:
+        elif others and len(kept) == 1 and "/" in old and kept.isdisjoint((one.path, *(each.path for each in now[new]))):
             data = {"new": one.new, "places": tuple(kept)}
             yield Diagnostic(at, one.old, find_owning_package(workspace, one.path), data, "left", (Doubt.CHANGED,))

@@ -16,7 +16,8 @@ Use instead
 
 Not reported
     Remappings, but for those of a publisher whose name nobody reads while somebody reads the other, or the reverse;
-    names that differ in sides and numbers (`left`, `camera2`); names that are close to several topics.
+    names that differ in sides and numbers (`left`, `camera2`); names that are close to several topics; names that a
+    file gives beside the other one, and so tells apart.
 """
 
 from ....edges.groups import group_pairs
@@ -46,11 +47,13 @@ def stray_name(workspace: Workspace):
     }  # fmt: skip
     by_parts = group_pairs((name.count("/"), name) for name in topics)
     near: dict[str, tuple[set[tuple[str, int]], str]] = {}
-    for name, found in group_pairs(list_settings_names(workspace)).items():
+    settings = group_pairs(list_settings_names(workspace))
+    files = {name: {place.path for place, _ in found} for name, found in settings.items()}
+    for name, found in settings.items():
         if len({line for _, line in found}) > 1 or _has_other_side(flow, name):
             continue
         alike = [known for known in by_parts.get(name.count("/"), ()) if known != name and _is_near(name, known)]
-        if len(alike) != 1:
+        if len(alike) != 1 or not files[name].isdisjoint(files.get(alike[0], ())):
             continue
         remapped = any("remap" in line for _, line in found)
         if _lacks_each_other(flow, name, alike[0]) if remapped else _has_publisher(flow, alike[0]):

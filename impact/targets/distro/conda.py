@@ -1,4 +1,4 @@
-"""The versions of libraries that conda-forge and RoboStack build against, by day: data/conda.json, see DATA.md."""
+"""The versions of libraries that conda-forge and RoboStack build against, by day: data/conda.json.zst, see DATA.md."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _Rows = dict[str, dict[str, str]]
 
 @cache
 def _load_table() -> dict[str, _Rows]:
-    return read_table(DATA / "conda.json", dict[str, _Rows])
+    return read_table(DATA / "conda.json.zst", dict[str, _Rows])
 
 
 def find_libraries(platform: str, distro: str, day: str) -> dict[str, tuple[str, str]]:
