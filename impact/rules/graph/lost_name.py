@@ -72,6 +72,6 @@ def lost_name(workspace: Workspace, base: Workspace):
         if not others and kept - {one.path}:
             data = {"old": one.old, "places": tuple(sorted(kept - {one.path}))}
             yield Diagnostic(at, one.new, find_owning_package(workspace, one.path), data, "alone")
-        elif others and len(kept) == 1 and "/" in old and kept.isdisjoint((one.path, *(each.path for each in now[new]))):
+        elif others and len(kept) == 1 and "/" in old and kept.isdisjoint({one.path, *(it.path for it in now[new])}):
             data = {"new": one.new, "places": tuple(kept)}
             yield Diagnostic(at, one.old, find_owning_package(workspace, one.path), data, "left", (Doubt.CHANGED,))
