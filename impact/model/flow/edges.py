@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
 
@@ -105,6 +105,10 @@ class Flow:
     def list_others(self, endpoint: Endpoint) -> list[Endpoint]:
         """The other side of an endpoint's topic, service or action, sure or not."""
         return self._of_role.get((OTHER_SIDE[endpoint.role], endpoint.topic), [])
+
+    def count_unknown(self, role: str) -> int:
+        """How many endpoints of a role have no name that is known, or in part only."""
+        return sum(one.role == role and (not one.topic or one.how == "partly") for one in self.graph.endpoints)
 
     def may_have(self, role: str, type_: str, topic: str = "", *, typed: bool = False) -> bool:
         """Whether something in the workspace of this role and type has a name that is not known or not certain, or
@@ -282,3 +286,12 @@ def begins(endpoint: Endpoint, with_: str) -> bool:
 def get_label(node: Node) -> str:
     """A node as a message names it: its name in a running system where a launch tells it, else what is started."""
     return node.name if node.started else node.executable or node.plugin or node.id
+
+
+def list_successors(now: Flow, before: Flow, old: Endpoint, nodes: Collection[str]) -> Iterator[Endpoint]:
+    """What the same node has now, of the same role and type, that it did not have at the base. nodes: its ids."""
+    for one in now.graph.endpoints:
+        if one.node in nodes and one.role == old.role and one.type == old.type and one.topic:
+            known = before.known.get((get_kind(old), one.topic), ())
+            if not any(each.node in nodes and each.role == one.role for each in known):
+                yield one

@@ -3,8 +3,7 @@
 What it does
     Compares the message flow with the base: that of the code, and that of each launch file that starts something
     otherwise, with its namespaces, remappings and parameters. Reports topics that had a publisher and a subscriber, and
-    have only one of them now: the other was removed, or uses another name; a node that publishes or reads another
-    topic than at the base, if nobody is at the other side of that one; and services and actions whose server was
+    have only one of them now: the other was removed, or uses another name; and services and actions whose server was
     removed, or whose client asks under a name that nothing serves. The place is the line of the launch or parameter
     file where that is the cause.
 
@@ -29,17 +28,14 @@ Not reported
     clients that were removed.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 
-from ...model.flow.edges import OTHER_SIDE, Flow
+from ...model.flow.edges import OTHER_SIDE, Flow, list_successors
 from ...model.flow.graph import Endpoint
 from ...model.flow.launch_changes import LaunchChange, NodeChange, compare_launches
-from ...model.flow.select import get_kind
 from ...model.flow.workspace import get_flow
 from ..vocabulary import At, Diagnostic, Doubt, Text, Workspace, rule
 from .launch_settings import find_owning_package
-
-_TOPICS = frozenset(("publisher", "subscriber"))  # roles at which a name may lose its other side without a word
 
 
 @rule(
@@ -75,16 +71,6 @@ _TOPICS = frozenset(("publisher", "subscriber"))  # roles at which a name may lo
             "`{node}` asked for `{subject}` at the base, and now asks for `{replacement}`, which nothing serves",
             help="serve `{replacement}`",
         ),
-        "publisher moved": Text(
-            "nothing in the workspace subscribes to `{subject}`, which `{node}` publishes; at the base it published "
-            "`{replacement}`, which is still read",
-            help="publish `{replacement}`, or subscribe to `{subject}`",
-        ),
-        "subscriber moved": Text(
-            "nothing in the workspace publishes `{subject}`, which `{node}` reads; at the base it read "
-            "`{replacement}`, which is still published",
-            help="subscribe to `{replacement}`, or publish `{subject}`",
-        ),
     },
 )
 def lost_edge(workspace: Workspace, base: Workspace):
@@ -98,7 +84,6 @@ def lost_edge(workspace: Workspace, base: Workspace):
                 if (one.kind, one.subject) not in found:
                     found[one.kind, one.subject] = one
                     yield one
-    yield from _find_moved(*(Flow(get_flow(each).system, {}) for each in (workspace, base)))
 
 
 def _changes_others(launch: LaunchChange) -> bool:
@@ -118,14 +103,14 @@ def _compare(workspace: Workspace, now: Flow, before: Flow, launch: LaunchChange
             lost = [one for one in had[1] if _counts(before, one, launch)]
             if not had[0] or not lost or not left or any(one.role == gone for one in every):
                 continue
-            if _count_unknown(now, gone) > _count_unknown(before, gone):
+            if now.count_unknown(gone) > before.count_unknown(gone):
                 continue
             old = lost[0]
             pair = pairs.get(old.node)
             if pair is not None and pair.now is None and pair.before and _is_started(workspace, pair.before.program):
                 continue  # by another launch file, which may belong to the same system
             nodes = {old.node, pair.now.node} if pair is not None and pair.now is not None else {old.node}
-            successors = sorted({one.topic for one in _find_successors(now, before, old, nodes)})
+            successors = sorted({one.topic for one in list_successors(now, before, old, nodes)})
             new = successors[0] if len(successors) == 1 else ""
             met = bool(new) and any(one.role == role for one in now.known.get((kind, new), ()))
             if role in ("server", "action server") and (not new or met):
@@ -167,46 +152,3 @@ def _find_place(
     if (path, line) == (left.path, left.line):
         return At(path, line), now.nodes[left.node].package if left.node in now.nodes else ""
     return At(path, line), find_owning_package(workspace, path)
-
-
-def _find_moved(now: Flow, before: Flow) -> Iterator[Diagnostic]:
-    """Endpoints that had another side at the base and have none under their new name, while the old name has both."""
-    reported = set()
-    for old in before.graph.endpoints:
-        if old.role not in _TOPICS or not old.topic or not before.list_others(old) or not now.list_others(old):
-            continue
-        if old.implied or now.list_alternatives(old) or not before.is_sure(old):
-            continue
-        has = now.known.get(("topic", old.topic), ())
-        successors = {one.topic: one for one in _find_successors(now, before, old, {old.node})}
-        if len(successors) != 1 or not any(one.role == old.role for one in has):
-            continue
-        (one,) = successors.values()
-        other = OTHER_SIDE[old.role]
-        if now.list_others(one) or not now.is_sure(one) or _count_unknown(now, other) > _count_unknown(before, other):
-            continue
-        if (one.path, one.line, one.topic) not in reported:
-            reported.add((one.path, one.line, one.topic))
-            node = now.nodes[one.node]
-            yield Diagnostic(
-                At(one.path, one.line),
-                one.topic,
-                node.package,
-                {"node": node.executable or node.id, "replacement": old.topic},
-                kind=f"{old.role} moved",
-                doubts=(Doubt.CHANGED,) if old.role == "publisher" else (),
-            )
-
-
-def _count_unknown(flow: Flow, role: str) -> int:
-    """How many endpoints of a role have no name that is known, or in part only."""
-    return sum(one.role == role and (not one.topic or one.how == "partly") for one in flow.graph.endpoints)
-
-
-def _find_successors(now: Flow, before: Flow, old: Endpoint, nodes: Collection[str]) -> Iterator[Endpoint]:
-    """What the same node has now, of the same role and type, that it did not have at the base. nodes: its ids."""
-    for one in now.graph.endpoints:
-        if one.node in nodes and one.role == old.role and one.type == old.type and one.topic:
-            known = before.known.get((get_kind(old), one.topic), ())
-            if not any(each.node in nodes and each.role == one.role for each in known):
-                yield one
