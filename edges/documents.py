@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from typing import Any
 
 from .limits import get_limits
@@ -30,9 +31,14 @@ def load_yaml(data: bytes | str) -> Any:
 
     Mappings whose keys are no plain values, and values that Python cannot build (a date in month 13), are errors.
     """
+    return next(iter(load_yaml_documents(data, 1)), None)
+
+
+def load_yaml_documents(data: bytes | str, most: int = sys.maxsize) -> list[Any]:
+    """The same for all documents of a YAML text, or the first ones. Raises DocumentError."""
     import yaml
 
-    return _load_document(data, yaml, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    return _load_documents(data, yaml, getattr(yaml, "CSafeLoader", yaml.SafeLoader), most)
 
 
 def load_yaml_as_text(data: bytes | str) -> Any:
@@ -40,12 +46,12 @@ def load_yaml_as_text(data: bytes | str) -> Any:
     DocumentError."""
     import yaml
 
-    return _load_document(data, yaml, getattr(yaml, "CBaseLoader", yaml.BaseLoader))
+    return next(iter(_load_documents(data, yaml, getattr(yaml, "CBaseLoader", yaml.BaseLoader), 1)), None)
 
 
-def _load_document(data: bytes | str, yaml: Any, base: Any) -> Any:
+def _load_documents(data: bytes | str, yaml: Any, base: Any, most: int) -> list[Any]:
     try:
-        return _construct(data, yaml, base)
+        return _construct(data, yaml, base, most)
     except DocumentError:
         raise
     except yaml.MarkedYAMLError as error:
@@ -57,16 +63,17 @@ def _load_document(data: bytes | str, yaml: Any, base: Any) -> Any:
         raise DocumentError("nested too deeply") from None
 
 
-def _construct(data: bytes | str, yaml: Any, base: Any) -> Any:
+def _construct(data: bytes | str, yaml: Any, base: Any, most: int) -> list[Any]:
     budget = get_limits()
     _check_depth(data, yaml, base, budget.depth)
     loader = base(data)
+    found = []
     try:
-        node = loader.get_node() if loader.check_node() else None
-        if node is None:
-            return None
-        _count(node, yaml, budget.nodes, budget.depth)
-        return loader.construct_document(node)
+        while len(found) < most and loader.check_node():
+            node = loader.get_node()
+            _count(node, yaml, budget.nodes, budget.depth)
+            found.append(loader.construct_document(node))
+        return found
     finally:
         loader.dispose()
 

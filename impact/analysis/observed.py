@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...edges.console import UserError, escape
-from ...edges.documents import load_json
+from ...edges.documents import DocumentError, load_json, load_yaml_documents
 from ...edges.files import open_regular, read_file
 from ..model.flow.graph import Role
 from ..model.flow.observed import Observation, SeenEndpoint
@@ -86,13 +86,10 @@ def _parse_text(text: str, name: str) -> Observation:
 
 
 def _parse_yaml(text: str) -> Observation:
-    import yaml
-
     try:
-        # What `ros2 topic echo` prints are documents.
-        parts = [each for each in yaml.load_all(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader)) if each]
-    except yaml.YAMLError as error:
-        raise ValueError(f"not readable as YAML: {getattr(error, 'problem', None) or 'syntax error'}") from None
+        parts = [each for each in load_yaml_documents(text) if each]  # `ros2 topic echo` prints several
+    except DocumentError as error:
+        raise ValueError(f"not readable as YAML: {error}") from None
     bags = [each["rosbag2_bagfile_information"] for each in parts if "rosbag2_bagfile_information" in each]
     if bags:
         topics = (each["topic_metadata"] for bag in bags for each in bag["topics_with_message_count"])

@@ -294,6 +294,7 @@ def test_a_library_that_is_missing_is_told(observe, monkeypatch, name, package):
         ("", "seen.txt", "names no node; give what `ros2 node info`"),
         ("hello\n", "seen.txt", "names no node"),
         ("{", "seen.json", "cannot be read: Expecting"),
+        ("nodes: " + "[" * 20_000, "seen.yaml", "cannot be read: not readable as YAML: "),
         ('{"nodes": [{"name": "/a", "publishers": ["/b"]}]}', "seen.json", "nodes are objects with a `name`"),
         ('{"nodes": 5}', "seen.json", "nodes are objects with a `name`"),
         ("nodes: [\n", "seen.yaml", "not readable as YAML"),
