@@ -219,6 +219,11 @@ class Workspace:
         # What later joins made of it, see cache_in_derived().
         self.derived: dict[Any, Any] = {}
 
+    def find_owning_package(self, path: str) -> str:
+        """The name of the package that a file belongs to, empty for none and for duplicates."""
+        owner = self.discovered.find_owner(path)
+        return next((name for name, each in self.packages.items() if owner and each.path == owner.path), "")
+
     def __iter__(self):
         return iter(self.packages.values())
 

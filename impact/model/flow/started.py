@@ -74,11 +74,8 @@ def follow_workspace_launch(
 ) -> Launched:  # fmt: skip
     """All that a launch file of the workspace starts. path: relative to the workspace's root. undecided: as for
     follow()."""
-    owner = workspace.discovered.find_owner(path)
-    package, inner = "", path
-    for name, each in workspace.packages.items():
-        if owner is not None and each.path == owner.path:
-            package, inner = name, path[len(each.path) :].lstrip("/")
+    package = workspace.find_owning_package(path)
+    inner = path[len(workspace.packages[package].path) :].lstrip("/") if package else path
     sources = InWorkspace(workspace)
     return follow(package, inner, sources, arguments, generation=workspace.ros, undecided=undecided)
 

@@ -24,7 +24,7 @@ Not reported
 
 from ...model.flow.launches import GivenRemapping, LaunchedNode
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
-from .launch_settings import find_owning_package, group_by_line
+from .launch_settings import group_by_line
 
 _COMMON = frozenset(("/tf", "/tf_static", "/clock", "/rosout", "/parameter_events", "/diagnostics"))
 
@@ -52,7 +52,7 @@ def dead_remap(workspace: Workspace):
             continue
         programs = sorted({start.program.partition("/")[2] for start, _ in rows})
         data = {"programs": tuple(programs), "names": rows[0][0].names}
-        yield Diagnostic(At(path, line), written, find_owning_package(workspace, path), data)
+        yield Diagnostic(At(path, line), written, workspace.find_owning_package(path), data)
 
 
 def _may_apply(start: LaunchedNode, renamed: GivenRemapping, ros: int) -> bool:

@@ -25,9 +25,3 @@ def group_by_line(
             for each in of(start):
                 found.setdefault((each.path, each.line, name(each)), []).append((start, each))
     return ((place, rows) for place, rows in found.items() if f"{place[0]}:{place[1]}" not in elsewhere)
-
-
-def find_owning_package(workspace: Workspace, path: str) -> str:
-    """The name of the package that a file belongs to, empty for none."""
-    owner = workspace.discovered.find_owner(path)
-    return next((name for name, each in workspace.packages.items() if owner and each.path == owner.path), "")

@@ -35,7 +35,6 @@ from ...model.flow.graph import Endpoint
 from ...model.flow.launch_changes import LaunchChange, NodeChange, compare_launches
 from ...model.flow.workspace import get_flow
 from ..vocabulary import At, Diagnostic, Doubt, Text, Workspace, rule
-from .launch_settings import find_owning_package
 
 
 @rule(
@@ -151,4 +150,4 @@ def _find_place(
         path, line = launch.path, 1
     if (path, line) == (left.path, left.line):
         return At(path, line), now.nodes[left.node].package if left.node in now.nodes else ""
-    return At(path, line), find_owning_package(workspace, path)
+    return At(path, line), workspace.find_owning_package(path)

@@ -26,7 +26,6 @@ from ....edges.groups import group_pairs
 from ...model.flow.mentions import SETTINGS, find_mentions, list_replaced_names, normalise_mention
 from ...model.flow.workspace import get_flow
 from ..vocabulary import At, Diagnostic, Doubt, Text, Workspace, rule
-from .launch_settings import find_owning_package
 
 
 @rule(
@@ -71,7 +70,7 @@ def lost_name(workspace: Workspace, base: Workspace):
         at = At(one.path, one.line)
         if not others and kept - {one.path}:
             data = {"old": one.old, "places": tuple(sorted(kept - {one.path}))}
-            yield Diagnostic(at, one.new, find_owning_package(workspace, one.path), data, "alone")
+            yield Diagnostic(at, one.new, workspace.find_owning_package(one.path), data, "alone")
         elif others and len(kept) == 1 and "/" in old and kept.isdisjoint({one.path, *(it.path for it in now[new])}):
             data = {"new": one.new, "places": tuple(kept)}
-            yield Diagnostic(at, one.old, find_owning_package(workspace, one.path), data, "left", (Doubt.CHANGED,))
+            yield Diagnostic(at, one.old, workspace.find_owning_package(one.path), data, "left", (Doubt.CHANGED,))

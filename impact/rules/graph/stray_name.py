@@ -25,7 +25,6 @@ from ...model.flow.edges import Flow, build_system_flow
 from ...model.flow.mentions import find_mentions, list_settings_names, normalise_mention
 from ...model.flow.misspelling import differs_in_words, is_slip_of_name
 from ..vocabulary import At, Diagnostic, Text, Workspace, rule
-from .launch_settings import find_owning_package
 
 _KNOWN = ("literal", "given", "launch")
 
@@ -63,7 +62,7 @@ def stray_name(workspace: Workspace):
         if {(each.path, each.line) for each in mentions[name]} <= places:
             one, (path, line) = topics[known], min(places)
             data = {"replacement": one.topic, "place": f"{one.path}:{one.line}"}
-            yield Diagnostic(At(path, line), name, find_owning_package(workspace, path), data)
+            yield Diagnostic(At(path, line), name, workspace.find_owning_package(path), data)
 
 
 def _is_near(name: str, known: str) -> bool:

@@ -48,8 +48,7 @@ def wire_mismatch(views: Sequence[TargetView]) -> Iterator[tuple[TargetView, Dia
             if not found.places:
                 continue
             path, line = found.places[0]
-            owner = workspace.discovered.find_owner(path)
-            package = next((each.name for each in workspace if owner is not None and each.path == owner.path), "")
+            package = workspace.find_owning_package(path)
             data = {"kind": found.kind, "why": found.why, "package_of_type": found.type.partition("/")[0]}
             data |= {"first": one.target.name, "second": other.target.name}
             for view in (one, other):
