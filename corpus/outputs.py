@@ -11,7 +11,7 @@ from .report import CorpusError
 
 
 def need_file(file: Path) -> None:
-    """Raises CorpusError when a file cannot be written, as far as that can be told without trying."""
+    """Raises CorpusError when a file cannot be written, as far as that can be known without trying."""
     fault = explain_unwritable(file) if not os.path.isdir(file) else os.strerror(errno.EISDIR)
     try:
         check_writable_path(file)
@@ -22,7 +22,7 @@ def need_file(file: Path) -> None:
 
 
 def need_folder(folder: Path) -> None:
-    """Raises CorpusError when a folder cannot be made, or no file in it, as far as that can be told without trying."""
+    """Raises CorpusError when a folder cannot be made, or no file in it, as far as that can be known without trying."""
     fault = explain_unwritable(folder) if not os.path.isfile(folder) else os.strerror(errno.ENOTDIR)
     if fault:
         raise CorpusError(f"{folder}: cannot be written: {fault}; give another folder")

@@ -32,7 +32,7 @@ class Estimate:
         self._seen = 0
 
     def estimate_left(self, done: int, of: int | None) -> float | None:
-        """Seconds, or None while that cannot be told. done, of: reports read and to be read in all."""
+        """Seconds, or None while that cannot be known. done, of: reports read and to be read in all."""
         now = self._clock()
         self._seen += 1
         if self._first is None:

@@ -132,7 +132,7 @@ def read_releases(clone: Path) -> dict[str, str]:
 
 def resolve_version(pin: str, day: str, releases: Mapping[str, str]) -> str:
     """The version that a pin means on a day: the newest of the recipe that begins so, else the pin itself where it has
-    more than one number, or stands for a year; empty where that cannot be told. releases: versions by day."""
+    more than one number, or stands for a year; empty where that cannot be known. releases: versions by day."""
     plain = _VERSION.match(pin)
     if plain is None:
         return ""

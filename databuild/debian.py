@@ -280,7 +280,7 @@ def _find_rejected_calls(
     """Functions of namespaces that are there still, to the numbers of arguments that no version from then on takes."""
     found: dict[str, tuple[int, ...]] = {}
     for name, forms in old.items():
-        # What a macro, an alias or anything but a function may be called by a later version is not told.
+        # What a macro, an alias or anything but a function may be called by a later version is not known.
         if name in rest.others or name.rpartition("::")[2] in rest.simple or not all(name in known for known in later):
             continue
         counts = {n for one in forms if (ends := _count_args(one))[1] < 12 for n in range(ends[0], int(ends[1]) + 1)}

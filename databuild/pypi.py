@@ -98,12 +98,12 @@ class OfferedNames:
 
     @cache_method
     def find_each(self, name: str) -> tuple[PythonName | None, ...]:
-        """What Python and the stubs say of a name: None for what they have not, UNKNOWN where that cannot be told."""
+        """What Python and the stubs say of a name: None for what they have not, UNKNOWN where that cannot be known."""
         return tuple(names.find(name) for names in self._sides)
 
     @cache_method
     def find(self, name: str) -> PythonName | None:
-        """What a name surely is; None where it is not there, or that cannot be told."""
+        """What a name surely is; None where it is not there, or that cannot be known."""
         each = self.find_each(name)[: 1 if name in self._refused else None]
         return next((one for one in each if one is not None and one is not UNKNOWN), None)
 

@@ -144,7 +144,7 @@ class _Resolver(ast.NodeTransformer):
         return made if isinstance(made, list) else [made] if made is not None else []
 
     def _decide(self, test: ast.expr) -> bool | None:
-        """Whether a condition holds; None where it cannot be told."""
+        """Whether a condition holds; None where it cannot be known."""
         if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
             inner = self._decide(test.operand)
             return None if inner is None else not inner

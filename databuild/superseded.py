@@ -8,7 +8,7 @@ stored, each stored version tells whether the name is there. A row is
     contradicted    some stored version says otherwise, so that the row is wrong there or its bound is inexact
     wrong           contradicted, and the newest stored version has the name
     more            answered, but the row names a replacement, or a deprecation, that nothing stored names; or a target
-                    that lacks the name is not told so without the row
+                    that lacks the name is not known so without the row
     bare            it is a bare name of a function or method, which does not tell whose: it may be anybody's
     unknown         no version is stored, or none on one side of the bound, or the name is of no kind that is stored
 

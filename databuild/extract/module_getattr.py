@@ -12,7 +12,7 @@ Names = frozenset[str]
 
 
 class ServedNames(NamedTuple):
-    """served: names that it answers, submodules left out; None where that cannot be told. warned: those of them with a
+    """served: names that it answers, submodules left out; None where that cannot be known. warned: those of them with a
     warning. refused: names that it lists only to raise for them."""
 
     served: Names | None
@@ -116,7 +116,7 @@ class _Reader:
         return isinstance(node, ast.Name) and node.id == self.asked
 
     def _read_test(self, test: ast.expr) -> tuple[Names | None, bool]:
-        """The names for which a condition may hold, None where that cannot be told; with True, for which it may not."""
+        """The names for which a condition may hold, None where unknown; with True, for which it may not."""
         if isinstance(test, ast.BoolOp) and isinstance(test.op, ast.And):
             read = [self._read_test(value) for value in test.values]
             return next((one for one in read if one[0] is not None and not one[1]), (None, False))
@@ -138,7 +138,7 @@ class _Reader:
         return None
 
     def _find_keys(self, node: ast.expr, depth: int = 0) -> Names | None:
-        """What strings a collection may hold; None where that cannot be told."""
+        """What strings a collection may hold; None where that cannot be known."""
         elements = self._list_elements(node, depth)
         if elements is None or not all(isinstance(one, ast.Constant) for one in elements):
             return None

@@ -372,7 +372,7 @@ def _list_python_changes(old: Surface, new: Surface, after: RepositorySurfaces) 
 
 
 def _find_python_home(name: str, new: Surface, after: RepositorySurfaces) -> str:
-    """Another package of the state that gives the name; `?` where that cannot be told."""
+    """Another package of the state that gives the name; `?` where that cannot be known."""
     top = name.partition(".")[0]
     for package, surface in after.surfaces.items():
         if package == new.package or not any(m.name.partition(".")[0] == top for m in surface.python.modules):

@@ -11,7 +11,7 @@ def compare(old: BuildSurface, new: BuildSurface) -> tuple[VersionChange, ...]:
     """What changed for those who build on the package or start it, part by part, each sorted by name.
 
     A thing that is gone is not `sure` where it hung on a condition, or where the new version has things of its part
-    that cannot be told and that the old one did not have.
+    that cannot be known and that the old one did not have.
     """
     found: list[VersionChange] = []
     for what, things in THINGS.items():

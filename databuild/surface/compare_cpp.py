@@ -15,8 +15,8 @@ class CppChange(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | kind | holds |
     |---|---|
     | removed, added | the entity; what is `overload` where others of its name stay; members of a class that goes or
-      comes as a whole are not told one by one; what the compiler makes then by itself is compatible |
-    | moved | the same entity in another header; members are not told beside their class |
+      comes as a whole are not listed one by one; what the compiler makes then by itself is compatible |
+    | moved | the same entity in another header; members are not listed beside their class |
     | renamed | a hint: a removed and an added entity that look alike; sure: how much, 0 to 1. Both are told as removed
       and added too |
     | signature | what: arity, types, result, const, static, virtual, template, ref, explicit, override (whoever

@@ -11,8 +11,8 @@ from .version_change import OPEN, VersionChange
 
 
 def compare(old: PythonSurface, new: PythonSurface) -> tuple[VersionChange, ...]:
-    """What changed for those who use the package from Python, sorted by name. A name of which it cannot be told whether
-    it is still there is left out."""
+    """What changed for those who use the package from Python, sorted by name. A name is left out
+    where it cannot be known whether it is still there."""
     return _Comparison(SurfaceNames(old), SurfaceNames(new)).run()
 
 
@@ -153,7 +153,7 @@ class _Comparison:
         had, has = old.bound.parameters, new.bound.parameters
         sure = sure and not (is_wrapped(old.bound) or is_wrapped(new.bound))
         problem = explain_break(had, has)
-        # Which keywords `**kwargs` stood for cannot be told.
+        # Which keywords `**kwargs` stood for cannot be known.
         sure = sure and not (problem.startswith("`**"))
         if problem or [(p.name, p.kind) for p in had] != [(p.name, p.kind) for p in has]:
             self.add("signature", name, old.kind, old=describe(old), now=describe(new), breaks=bool(problem), sure=sure)
@@ -176,7 +176,7 @@ def _get_last(path: str) -> str:
 
 
 def _classify_use(entry: PythonName) -> str:
-    """How a thing is used: `value` without a call; empty where it cannot be told, since a name may stand for a class
+    """How a thing is used: `value` without a call; empty where it cannot be known, since a name may stand for a class
     or a function."""
     if entry.kind in ("attribute", "instance"):
         return "value" if entry.bound is not None and entry.bound.value else ""

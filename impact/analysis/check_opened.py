@@ -227,7 +227,7 @@ def is_right_on(action: FixAction, view: TargetView) -> bool:
     """Whether an action of a fix is right on a target where the rule found nothing to fix.
 
     A declaration is when the package is there, an include when its header surely is, what links when the packages have
-    it for CMake; anything else cannot be told.
+    it for CMake; anything else cannot be known.
     """
     if isinstance(action, (Replace, Insert)) and action.needs:
         forms = ((find_link_form(view, package), item) for package, item in action.needs)

@@ -138,7 +138,7 @@ def _split(data: bytes) -> list[str]:
 
 class Shown(NamedTuple):
     """A source line made fit for showing, with the caret under the finding. start: character offset, width: in
-    characters, 0 when no caret can be told."""
+    characters, 0 when no caret can be known."""
 
     text: str
     start: int

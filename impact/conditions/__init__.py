@@ -22,7 +22,7 @@ _LANGUAGES = {
 
 
 def holds(condition: Condition, environment: Environment) -> bool | None:
-    """Whether a condition holds on a machine; None when it cannot be told."""
+    """Whether a condition holds on a machine; None when it cannot be known."""
     evaluate = _LANGUAGES.get(condition.language)
     try:
         if condition.language == "cmake":

@@ -286,8 +286,8 @@ class _OnMachine(CMakeTest):
 
 
 def evaluate(text: str, environment: Environment, declared: Collection[str] = ()) -> bool | None:
-    """The value of a test; None where it cannot be told. declared: as in Condition. Raises ValueError where what are no
-    numbers are compared as such."""
+    """The value of a test; None where it cannot be known. declared: as in Condition. Raises ValueError where
+    numbers are compared that are none."""
     return _OnMachine(text, environment, declared).evaluate_tokens() if _split_tokens(text) else None
 
 

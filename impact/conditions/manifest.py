@@ -44,7 +44,7 @@ def _is_condition(node: ast.expr) -> bool:
 
 
 def evaluate(text: str, environment: Environment) -> bool | None:
-    """Whether a condition holds; None where it cannot be told."""
+    """Whether a condition holds; None where it cannot be known."""
     if not text.strip():
         return True
     node = _parse_expression(text)

@@ -37,7 +37,7 @@ def evaluate(text: str, environment: Environment) -> bool | None:
 
 
 def evaluate_truth(node: ast.expr, environment: Environment) -> bool | None:
-    """Whether an expression is true on a machine, None where that cannot be told."""
+    """Whether an expression is true on a machine, None where that cannot be known."""
     if isinstance(node, ast.BoolOp):
         join = combine_and if isinstance(node.op, ast.And) else combine_or
         value = evaluate_truth(node.values[0], environment)

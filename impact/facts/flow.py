@@ -106,10 +106,10 @@ class Assignment(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Access(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """How a parameter or local variable, or something below it, may be changed: reading it is not told. path: with its
-    members (`msg.header.stamp`; `[]` for an element: `msg.ranges.[]`). kind: `write`, `pass` (it is given to what is
-    called, or a method of it is called) or `escape` (handed to something that cannot be followed, whole or in part, or
-    captured by a Function inside)."""
+    """How a parameter or local variable, or something below it, may be changed: reading it is not listed. path: with
+    its members (`msg.header.stamp`; `[]` for an element: `msg.ranges.[]`). kind: `write`, `pass` (it is given to
+    what is called, or a method of it is called) or `escape` (handed to something that cannot be followed, whole or in
+    part, or captured by a Function inside)."""
 
     path: str
     kind: str

@@ -38,7 +38,7 @@ class Reference(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditional: stands under if/unless/try, so it may never run. conditions: of those, where one tells about the
     machine, these and UNDECIDED for any other; so the mention surely counts where all hold.
     arguments: names of the launch arguments that an include of the file gives; None for what is no include, or where
-    they cannot all be told.
+    they cannot all be known.
     """
 
     kind: str

@@ -52,7 +52,7 @@ class Entity(msgspec.Struct, frozen=True, array_like=True, gc=False):
     |---|---|---|---|
     | class, struct, union | | | template, arguments (of a specialisation), bases |
     | enum | underlying type as written | | `scoped` in traits |
-    | enumerator | qualified name of its enum | its number where that can be told, else the expression | |
+    | enumerator | qualified name of its enum | its number where that can be known, else the expression | |
     | function, method, constructor, destructor, conversion | result (`auto` where it is deduced) | | parameters |
     | variable, field | type | of a constant: what it is | |
     | alias | what it stands for | | template |
@@ -89,7 +89,7 @@ class HeaderSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """entities in the order of the file; includes as in CppFile; announced: qualified names of types that are declared
     but not defined here, outside of classes; inline: qualified names of inline namespaces;
     deprecated: the message with which the whole header warns whoever includes it, None for no warning; instead: the
-    header that it then takes in, empty when that cannot be told; lost: characters of declarations that were not
+    header that it then takes in, empty when that cannot be known; lost: characters of declarations that were not
     understood; problems: what could not be read."""
 
     entities: tuple[Entity, ...]

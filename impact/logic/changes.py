@@ -377,11 +377,11 @@ def _compare_outlets(one: OutletAt, other: OutletAt, at: StatementPlace) -> Iter
     of_ros1 = "reliability" not in before and "reliability" not in after
     clauses: list[str] = []
     for name in dict.fromkeys((*before, *after)):
-        # What the system chooses is not told either.
+        # What the system chooses is not known either.
         was, is_now = (
             "" if setting == "system_default" else setting for setting in (before.get(name, ""), after.get(name, ""))
         )
-        # A latch that is not set is no latch; any other setting that is not told is not known.
+        # A latch that is not set is no latch; any other setting that is not set is unknown.
         if was != is_now and ((was and is_now) or (name == "durability" and of_ros1)):
             label = "queue" if name == "depth" else name
             clauses.append(f"{label} `{is_now or 'volatile'}` was `{was or 'volatile'}`")

@@ -1,4 +1,4 @@
-"""Include paths that nobody has: what they were meant to be, and whether that can be told."""
+"""Include paths that nobody has: what they were meant to be, and whether that can be known."""
 
 from __future__ import annotations
 

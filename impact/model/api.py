@@ -45,7 +45,7 @@ class FoundName(NamedTuple):
     package, name, at: whose, which, and where its last part stands. how: `name`, `call` or `override`. arguments: how
     many a call gives, or an override takes; -1: not to be told. given: of a call, what each argument shows itself to be
     (see ApiUses.classify), or its class; of an override, the types of its parameters, then `const` and `override` where
-    they stand. templated: how many template arguments are written, -1 for none, UNREAD where that is not told. sure:
+    they stand. templated: how many template arguments are written, -1 for none, UNREAD where that is not known. sure:
     the name is written with its scopes, or the type of the object shows. through: packages of classes between the
     object's and the one that has the name.
     """

@@ -290,7 +290,7 @@ def list_shared_libraries(installed: InstallSpace, targets: Sequence[Chosen], co
 
 
 def list_foreign_files(installed: InstallSpace, shared_libraries: Iterable[SharedLibraries]) -> Iterator[PathProblem]:
-    """What cannot be told of files that are built for another kind of machine than one that would run them."""
+    """What cannot be known of files that are built for another kind of machine than one that would run them."""
     for libraries in shared_libraries:
         others = Counter(
             b.elf.machine for b in installed.binaries if libraries.machine and b.elf.machine != libraries.machine

@@ -241,7 +241,7 @@ class CppApiUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class SettingUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A parameter that is set for a node or plugin of another package, see settings.py, and that some version of that
-    package does not declare. role: as in ImportUse. value: as text, empty where it is not told."""
+    package does not declare. role: as in ImportUse. value: as text, empty where it is not known."""
 
     name: str
     package: str

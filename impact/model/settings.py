@@ -22,7 +22,7 @@ class Setting(NamedTuple):
     """A value that is set. name: below its owner, with dots. package: whose node or plugin it is for; empty where only
     the node's name is known. plugin: the class as written, empty for what is a node's. node: the program where the
     package is known and it is no plugin's, else the node's name. others: packages of plugins that the same node loads.
-    value: as read, None where that is not told plainly."""
+    value: as read, None where that is not known plainly."""
 
     name: str
     package: str
@@ -117,7 +117,7 @@ def list_launch_settings(file: LaunchFile, changing: Changing) -> Iterator[Setti
 
 
 def list_named_nodes(file: LaunchFile) -> Iterator[NamedNode]:
-    """The nodes that a launch file starts, as far as they are told plainly; one that it gives no name goes by that of
+    """The nodes that a launch file starts, as far as they are known plainly; one that it gives no name goes by that of
     its program."""
     for action in _list_actions(file.actions):
         package, program = find_literal(action.get("package")), find_literal(action.get("executable"))

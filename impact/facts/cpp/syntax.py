@@ -24,7 +24,7 @@ from .schema import CppUse, FileDeclarations
 ASSIGNING = {f"operator{sign}=": f"{sign}=" for sign in "+-*/"}
 """Operators by name that are looked for where they stand behind an object, to the sign that they are written with."""
 UNREAD = -2
-"""A number of arguments that is not told, or that only a parser can count."""
+"""A number of arguments that is not known, or that only a parser can count."""
 
 
 class Given(NamedTuple):

@@ -313,7 +313,7 @@ class Walker:
         return TextValue((ValuePart("not", "", (same,)),) if negated else same)
 
     def are_equal(self, left: Any, right: Any) -> bool | Value | None:
-        """Whether two values are the same; None when that cannot be told."""
+        """Whether two values are the same; None when that cannot be known."""
         if isinstance(left, LaunchConstant) and isinstance(right, LaunchConstant):
             return left.value == right.value
         if isinstance(left, TextValue) and isinstance(right, TextValue):

@@ -190,7 +190,7 @@ _ARGUMENT = re.compile(r"\s*\$\((?:arg|var)\s+([\w.-]+)\s*\)\s*\Z")
 
 def _find_conditions(document: Document) -> list[tuple[Condition, ...]]:
     """For each element, the if and unless of it and those around it that keep it from running when the file is started
-    without arguments, or that cannot be told."""
+    without arguments, or that cannot be known."""
     defaults: dict[str, set[str]] = {}
     for element in document.elements:
         if element.name == "arg" and (preset := element.find("default", "value")) is not None:

@@ -272,7 +272,7 @@ class PythonReader(ObjectUses, SourceText):
         )
 
     def find_bound_names(self) -> set[str] | None:
-        """Names that the module binds, for those who import it; None where that cannot be told."""
+        """Names that the module binds, for those who import it; None where that cannot be known."""
         bound = self.module_names
         bound |= {name for scope, name in self.declared_global if name in scope.bound or scope.imports.get(name)}
         certain = self.watches_names and DYNAMIC.isdisjoint(bound)
@@ -868,7 +868,7 @@ class PythonReader(ObjectUses, SourceText):
         self.conditional, self.undecided = before
 
     def list_given_arguments(self, node: ast.expr | None) -> tuple[str, ...] | None:
-        """Names of the arguments that `launch_arguments=` of an include gives; None where they cannot all be told."""
+        """Names of the arguments that `launch_arguments=` of an include gives; None where they cannot all be known."""
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "items":
             node = node.func.value
         value = {} if node is None else self.find_value(node)

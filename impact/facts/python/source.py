@@ -34,8 +34,8 @@ class PythonFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     names python. uses: what calls and objects tell besides the attributes. fields: of interfaces. words: see
     list_words(). unbound: names that nothing in the file binds, and methods, with a dot before, that nothing in it
     defines and only Python 2 has; and what PythonReader.list_misused() lists. bound: names, between spaces, that others
-    can import from it; empty where that cannot be told, and two spaces where there are none. typed: what of these shows
-    its type. unknown: members of objects whose types do not show, with the number of places.
+    can import from it; empty where that cannot be known, and two spaces where there are none. typed: what of these
+    shows its type. unknown: members of objects whose types do not show, with the number of places.
     """
 
     imports: tuple[Import, ...]

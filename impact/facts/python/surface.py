@@ -73,7 +73,7 @@ class ImportedName(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class ModuleSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """What a module offers.
 
-    all: the literal part of `__all__`, None where there is none. all_open: more is put into it than can be told; a
+    all: the literal part of `__all__`, None where there is none. all_open: more is put into it than can be known; a
     module whose `__all__` is added to is named as `+module`. open: (scope, why) of the module (empty scope) or of
     classes that may have more names than are listed: a module's `__getattr__`, `globals()[...] = `, `setattr` and kin,
     a metaclass or `__getattr__` of a class. deprecated: of the whole module. parsed: False for a file that could not be

@@ -84,7 +84,7 @@ class BuildTarget(msgspec.Struct, frozen=True, array_like=True, gc=False):
     custom (add_custom_target), generated (rosidl_generate_interfaces, generate_messages, generate_parameter_library,
     generate_dynamic_reconfigure_options ...), imported, alias, external (ExternalProject_Add, ament_vendor), fetched
     (FetchContent), unknown (something is given to it, but nothing that could be read makes it).
-    sources: paths relative to the workspace root when they can be told, else as written. guarded: of those, each that
+    sources: paths relative to the workspace root when they can be known, else as written. guarded: of those, each that
     stands under conditions besides the target's own, with these. export_name: what it is called where it is exported,
     empty for its name. public_standard: the C++ standard that it asks of those who link it. installed_includes: folders
     of the prefix that those search for headers, from $<INSTALL_INTERFACE:>. static: an archive by its type. excluded:
@@ -207,7 +207,7 @@ class CMakeUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class DependencyCall(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A call of ament_target_dependencies(). arguments: each as written, where it stands, and the words that it stands
-    for; empty where these, or where it stands, cannot be told."""
+    for; empty where these, or where it stands, cannot be known."""
 
     at: At
     target: str
@@ -256,7 +256,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
     place. standards: every one, with its place and conditions. standard_default_only: it is only set where the user or
     a toolchain has not chosen one. standard_by_flag: by -std= flags alone, so that CMake adds what linked targets ask
     for only where the compiler's default is lower. macros: what is given to the compiler with -D. message_files: what
-    generators of interfaces are given. unresolved: (place, reason) of what could not be told. files: the CMake files
+    generators of interfaces are given. unresolved: (place, reason) of what could not be known. files: the CMake files
     read, relative to the root. made: paths that configuring or building writes, or of the tree that git ignores; a
     folder ends with a slash, and what lies in the build folder starts with ${CMAKE_BINARY_DIR}. handed_on: what the
     scripts look for that the package gives to those who find it (CONFIG_EXTRAS, what these include, and extensions that
@@ -342,7 +342,7 @@ class Build(msgspec.Struct, frozen=True, array_like=True, gc=False):
         return [*self.uses, *(CMakeUse("target", one.item, one.at, "", one.conditions) for one in self.target_links)]
 
     def list_linked_items(self, target: str, hows: Container[str] | None = LINKING) -> set[str] | None:
-        """All that a target is linked to, itself and through targets of its package; None where that cannot be told.
+        """All that a target is linked to, itself and through targets of its package; None where that cannot be known.
         hows: what counts, with None all that it is given."""
         items = {link.item for link in self.links}
         for own in self.list_reached_targets((target, *items), hows):

@@ -81,7 +81,7 @@ _INTERFACES = re.compile(r"_(?:msgs?|srvs|actions)\Z")
 
 
 def list_linked(package: Package, target: str) -> set[str] | None:
-    """All that a target is linked to, itself and through targets of its package; None where that cannot be told, as of
+    """All that a target is linked to, itself and through targets of its package; None where that cannot be known, as of
     all that a manifest declares, of which some may be known nowhere."""
     items = package.build.list_linked_items(target)
     if items is None or ("${catkin_LIBRARIES}" in items and package.build.finds_declared):
@@ -91,7 +91,7 @@ def list_linked(package: Package, target: str) -> set[str] | None:
 
 def list_bringing(view: TargetView, package: Package, items: Iterable[str], library: str) -> set[str] | None:
     """Which packages of catkin that link items stand for, and of all that they bring, may hand on a part of a library;
-    None where that cannot be told."""
+    None where that cannot be known."""
     stems = (resolve_package(item) for item in items if "$" in item)
     if not all(stem in BRING_NOTHING or view.is_package(stem) for stem in stems):
         return None

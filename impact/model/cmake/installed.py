@@ -15,7 +15,7 @@ from .build import Install
 
 class InstalledHeaders(NamedTuple):
     """The headers of a package that are installed. headers: path in the tree to its path in the prefix. known: nothing
-    else can be there, as no rule installs what cannot be told."""
+    else can be there, as no rule installs what cannot be known."""
 
     headers: dict[str, str]
     known: bool

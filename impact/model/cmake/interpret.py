@@ -37,7 +37,7 @@ def interpret(
     buildtool), test_dependencies, exported_dependencies (build_export, buildtool_export and exec; None counts all of
     `dependencies` as exported), and the conditions of conditional_dependencies, which nothing declares without one.
 
-    Always returns; what could not be told or went beyond the bounds is in `unresolved`.
+    Always returns; what could not be known or went beyond the bounds is in `unresolved`.
     """
     declared = DeclaredPackages(
         dependencies,

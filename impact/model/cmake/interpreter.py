@@ -945,7 +945,7 @@ class Interpreter:
         self.assign(self.scope, name, CMakeValue((wrap(text[:MAX_TEXT], at, self.conditions, sure),), sure))
 
     def set_unknown(self, name: str, at: At) -> None:
-        """Marks a variable as set to something that cannot be told; it reads as `${name}`."""
+        """Marks a variable as set to something that cannot be known; it reads as `${name}`."""
         self.assign(self.scope, name, CMakeValue((wrap(f"${{{name}}}", at, (), False),), False))
 
     def lookup(self, scope: str, name: str) -> CMakeValue | None:
@@ -1124,7 +1124,7 @@ class Interpreter:
         return posixpath.normpath(posixpath.join(base or self.get_current_directory(), text))
 
     def resolve_tree_path(self, text: str) -> str:
-        """A path argument relative to the workspace root when it can be told, else as a reader would write it."""
+        """A path argument relative to the workspace root when it can be known, else as a reader would write it."""
         if not text or text.startswith("$<"):
             return self.clean(text)
         relative = self.make_relative(self.resolve(text))
@@ -1157,7 +1157,7 @@ class Interpreter:
         return self.call_site or At(self.including[-1] if self.including else "", 1)
 
     def give_up(self, at: At | None, reason: str) -> None:
-        """Notes what could not be told."""
+        """Notes what could not be known."""
         if not self.silent:
             self.unresolved[(self.locate(at or self.get_current_place()), reason)] = None
 

@@ -26,7 +26,7 @@ def resolve_package(item: str) -> str:
 
 
 def is_opaque(item: str) -> bool:
-    """Whether a link item holds a variable that stands for no package, so that it cannot be told what is linked."""
+    """Whether a link item holds a variable that stands for no package, so that it cannot be known what is linked."""
     return "$" in item and _OF_PACKAGE.fullmatch(item) is None
 
 
@@ -114,7 +114,7 @@ def list_given_names(view: TargetView, package: Package) -> Iterator[tuple[At, s
 @cache_in_derived
 def find_brought(view: TargetView, package: Package, target: str) -> tuple[frozenset[str], set[str]] | None:
     """What comes along with all that a target is given, and the items that may stand for something else; None where
-    that cannot be told."""
+    that cannot be known."""
     build = package.build
     items = build.list_linked_items(target, None)
     if items is None:

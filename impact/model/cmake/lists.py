@@ -323,7 +323,7 @@ def _run_regex(run: Interpreter, rest: list[Word], sure: bool, put) -> None:
 
 
 def _replace_matches(run: Interpreter, pattern_text: str, replacement: str, text: str) -> str | None:
-    """The text with every match replaced, None when it cannot be told."""
+    """The text with every match replaced, None when it cannot be known."""
     pattern = compile_if_usable(pattern_text, text, run.spend)
     if pattern is None:
         return None

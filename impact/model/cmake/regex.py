@@ -130,7 +130,7 @@ def compile_if_usable(pattern: str, text: str, spend: Callable[[int], None]) -> 
 
 
 def match(pattern: str, text: str, spend: Callable[[int], None]) -> tuple[str, ...] | Literal[False] | None:
-    """The match (all of it, then the groups), False when there is none, None when it cannot be told."""
+    """The match (all of it, then the groups), False when there is none, None when it cannot be known."""
     made = compile_if_usable(pattern, text, spend)
     if made is None:
         return None

@@ -100,7 +100,7 @@ def _is_alias(run: Interpreter, args: list[Word]) -> bool:
 
 
 def add_sources(run: Interpreter, draft: TargetDraft, items: list[Word]) -> None:
-    """Gives sources to a target, as paths relative to the workspace root where they can be told."""
+    """Gives sources to a target, as paths relative to the workspace root where they can be known."""
     current = run.get("CMAKE_INCLUDE_CURRENT_DIR")
     if items and current is not None and parse_constant(current.text):
         run.include_dirs[(run.resolve_tree_path("."), run.locate(items[0].at))] = None

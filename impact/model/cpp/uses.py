@@ -233,7 +233,7 @@ class ApiUses:
         known = self.vocabulary.names.get(name)
         if known is None or (use.braced and not known.takes_braces):
             return None
-        # These are the class's, so that it is not told how many the constructor has.
+        # These are the class's, so that it is not known how many the constructor has.
         templated = UNREAD if use.template is not None and use.form not in ("member", "initializer") else -1
         count, given = self._describe_arguments(use)
         return FoundName(known.package, name, use.at, "call", count, given, templated, True, ())

@@ -777,7 +777,7 @@ class FlowCode:
         return group_pairs((get_tail(call.callee), (place, fn, call)) for place, (fn, call) in enumerate(every))
 
     def list_targets(self, callee: str, fn: Fn, depth: int = 0) -> list[Fn]:
-        """The functions of the code that a call may reach; none when it leaves the code or cannot be told."""
+        """The functions of the code that a call may reach; none when it leaves the code or cannot be known."""
         known = fn.targets.get(callee)
         if known is None:
             last = get_tail(callee)

@@ -386,7 +386,7 @@ class Sites:
         return self._select_last_existing([*found, *sure])
 
     def _select_last_existing(self, found: list[str]) -> str:
-        """Of interfaces that a name may mean the last that exists; empty where that cannot be told."""
+        """Of interfaces that a name may mean the last that exists; empty where that cannot be known."""
         may = [known for known in dict.fromkeys(reversed(found)) if self.defined.has(known) is not False]
         return may[0] if len(may) == 1 or (may and self.defined.has(may[0])) else ""
 
@@ -826,7 +826,7 @@ class Sites:
         if not use.sure and len(use.call.arguments) > 2:
             return None
         known = self._resolve_interface(kind.arguments[0], use.fn) if kind.arguments else ""
-        return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be told")
+        return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be known")
 
     def list_publishers(self, receiver: str, fn: Fn, depth: int = 0) -> Iterator[Site]:
         """The publishers that an expression may stand for: kept there, passed in, or copied from elsewhere."""

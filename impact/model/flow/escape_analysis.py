@@ -197,7 +197,7 @@ class EscapeAnalysis:
         return {split_name(cls.name)[0] for cls in every if "::" in cls.name} - _OWN
 
     def _list_dead(self, one: Running) -> Iterator[str]:
-        """What the program is built from and, as far as can be told, never runs."""
+        """What the program is built from and, as far as can be known, never runs."""
         for use in self.join.calls.uses:
             path = use.fn.source.path
             if path in one.program.files and use.fn not in self._reached:

@@ -49,7 +49,7 @@ class Callback(msgspec.Struct, frozen=True):
 
 
 class Qos(msgspec.Struct, frozen=True, omit_defaults=True):
-    """Quality of service, as far as it is told; empty for what is not. depth -1: not told. deadline, lease: seconds.
+    """Quality of service, as far as it is known; empty for what is not. depth -1: not known. deadline, lease: seconds.
 
     reliability: reliable, best_effort; durability: volatile, transient_local; history: keep_last, keep_all;
     liveliness: automatic, manual_by_topic. written: the expression. `system_default` and `best_available` stand for

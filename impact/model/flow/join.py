@@ -425,7 +425,7 @@ class Join:
         if not site.type and not site.types:
             name = self.sites.find_template_parameter(site.use)
             reason = f"nothing here fixes the parameter `{name}` of the template" if name else ""
-            return f"{site.role} type", reason or "the type is not told where it is made"
+            return f"{site.role} type", reason or "the type is not known where it is made"
         if site.reason:
             return f"{site.role} callback", site.reason
         return None

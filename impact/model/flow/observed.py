@@ -22,8 +22,8 @@ _OPEN_PART = re.compile(r"<[^<>/]*>")
 
 
 class SeenEndpoint(NamedTuple):
-    """An endpoint of a running system. node: full name, empty where it is not told; type: `package/Name`, empty where
-    it is not told."""
+    """An endpoint of a running system. node: full name, empty where it is not known; type: `package/Name`, empty where
+    it is not known."""
 
     node: str
     role: Role

@@ -58,7 +58,7 @@ _UNITS = {
 def find_qos(calls: Calls, values: FlowValues, use: FrameworkCall) -> Qos | None:
     """The quality of service that a use asks for; None where its framework has none or it gives none.
 
-    A queue of ROS 1 is its depth. What is not told is empty, so that nothing is judged by it.
+    A queue of ROS 1 is its depth. What is not known is empty, so that nothing is judged by it.
     """
     from .endpoints import unparse
 
@@ -220,7 +220,7 @@ def parse_seconds(value: FlowExpr, fn: Fn, values: FlowValues) -> float | None:
 
 def _set_later(found: Qos, name: str, fn: Fn, values: FlowValues) -> Qos:
     """Settings that follow the making: `qos.best_effort();`, `qos.reliability = ...`. What is set under a condition
-    only is not told."""
+    only is not known."""
     fields = structs.asdict(found)
     nothing = structs.asdict(Qos())
     said = [(call.callee, call.arguments[0] if call.arguments else None, call.guard) for call in fn.facts.calls]

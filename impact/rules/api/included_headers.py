@@ -15,7 +15,7 @@ from .parameter_header import ParameterHeaders
 
 class HeaderLoss(NamedTuple):
     """What the first source that knows of a header tells of it. found: how the target stands to it; None where it
-    cannot be told. kind: of the text, where the state of that does not say it. ordered: places in sources go before
+    cannot be known. kind: of the text, where the state of that does not say it. ordered: places in sources go before
     those in headers."""
 
     found: Availability | None

@@ -23,7 +23,7 @@ Use instead
     request->activate_controllers = {"arm"};
 
 Not reported
-    Code that a version test excludes on the target, or that stands under a test which cannot be told; variables whose
+    Code that a version test excludes on the target, or that stands under a test which cannot be known; variables whose
     type does not show, unless only one interface of those that the file uses has such a name; in C++, fields of
     interfaces that the workspace itself brings.
 """
@@ -85,7 +85,7 @@ def _list_members(view: TargetView, package: Package, own: set[str]) -> Iterator
     for use in package.linked.members:
         if use.ros != view.target.ros or (not use.sure and use.member in own) or _is_reviewed(view, *use.spellings):
             continue
-        # A test of the code itself around such a use is there to tell versions apart, even where it cannot be told.
+        # A test of the code itself around such a use is there to tell versions apart, even where it cannot be known.
         if not view.applies(use.conditions) or not view.is_sure(c for c in use.conditions if c.language in _CODE):
             continue
         found = find_missing(view, "field", f"{use.interface}.{use.section}.{use.member}", (use.package,))

@@ -20,7 +20,7 @@ class DataFiles(NamedTuple):
 
 
 def read_data_files(package: Package) -> DataFiles | None:
-    """The data_files of an ament_python package; None where not all of them can be told, or where it installs nothing
+    """The data_files of an ament_python package; None where not all of them can be known, or where it installs nothing
     at all."""
     own = [(path, setup) for path, setup in package.linked.setup if posixpath.dirname(path) == package.path]
     code = next((path for path, _ in own if posixpath.basename(path) == "setup.py"), None)

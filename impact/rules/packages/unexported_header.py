@@ -21,7 +21,7 @@ Use instead
     catkin_package(INCLUDE_DIRS include)
 
 Not reported
-    Packages of which not everything that they install can be told; headers that another package has too, or that the
+    Packages of which not everything that they install can be known; headers that another package has too, or that the
     includer reaches through an include folder of its own.
 """
 

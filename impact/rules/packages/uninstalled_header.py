@@ -20,7 +20,7 @@ Use instead
     install(DIRECTORY include/ DESTINATION include FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 
 Not reported
-    Headers that the build makes; includes under a condition; packages of which it cannot be told what they install.
+    Headers that the build makes; includes under a condition; packages of which it cannot be known what they install.
 """
 
 import posixpath

@@ -13,7 +13,7 @@ Why it breaks
     fails when it is loaded.
 
 Severity
-    error: it is only said where it is sure. What cannot be told is counted in the coverage.
+    error: it is only said where it is sure. What cannot be known is counted in the coverage.
 
 Example
     apt upgrade                              # brings PCL 1.13 for 1.12

@@ -98,7 +98,7 @@ class Sonames:
         return self._families.get(split_soname(soname)[0], "")
 
     def fits(self, soname: str, version: str) -> bool | None:
-        """Whether a soname can be of this version of its family; None when that cannot be told."""
+        """Whether a soname can be of this version of its family; None when that cannot be known."""
         family = self.reviewed.libraries.get(self.find_family(soname))
         asked = parse_numbers(split_soname(soname)[1])
         there = [parse_number(part) for part in re.findall(r"\d+", version)]

@@ -239,7 +239,7 @@ class SystemLibraries:
 
 
 def _exports(build: BuildSurface, name: str) -> bool | None:
-    """Whether a build exports a target, None where that cannot be told."""
+    """Whether a build exports a target, None where that cannot be known."""
     if any(target.name == name for target in build.targets):
         return True
     return None if any(part == "targets" for part, _ in build.unknown) or not build.cmake_names else False

@@ -43,7 +43,7 @@ def check_use(
     templated: int = -1,
 ) -> Availability | None:
     """How the target stands to a use of a package's name, where it does not serve it; None where it does, or where that
-    cannot be told. The use is described as in model.package.CppApiUse."""
+    cannot be known. The use is described as in model.package.CppApiUse."""
     offer = offers.find_package(package)
     offered = offer.get("c++", name) if offer is not None else None
     if offer is None or offered is None or offered.state == "moved" or _lies_between(offer, offered):
@@ -80,7 +80,7 @@ def _check_inherited(
     offers: Offers, offer: PackageOffer, name: str, how: str, arguments: int, given: tuple[str, ...]
 ) -> Availability | None:
     """The same of a member that the target's version has no longer, or not yet, in the class itself but in a base of
-    it: its form is that of the base's. None where the base cannot be told."""
+    it: its form is that of the base's. None where the base cannot be known."""
     holder = next(_find_holders(offers, offer, name), None)
     return None if holder is None else check_use(offers, *holder, how, arguments, given)
 
@@ -304,7 +304,7 @@ def list_refused_kinds(type_: str) -> frozenset[str]:
 
 def find_changed_default(offers: Offers, found: Availability, arguments: int) -> tuple[str, str] | None:
     """The default of the first argument left out that was another before, then and now; None where they mean the same,
-    or it cannot be told. Reads both versions."""
+    or it cannot be known. Reads both versions."""
     assert found.evidence is not None
     history, evidence = offers.find_history(found.package), found.evidence
     return compare_defaults(history, found.symbol.name, evidence.last, evidence.first, arguments)

@@ -180,7 +180,7 @@ class PythonOffers:
         return [at for at in reversed(places) if at < place], [at for at in places if at > place]
 
     def _find_entry(self, offer: PackageOffer, place: int, name: str) -> PythonName | None:
-        """What a name is in a stored version; None where it is not there, or that cannot be told."""
+        """What a name is in a stored version; None where it is not there, or that cannot be known."""
         version = offer.line.versions[place]
         names = self.load_names(offer.package, version) if version not in offer.line.approximate else None
         found = names.find(name) if names is not None else None
@@ -265,7 +265,7 @@ def _describe(name: str, entry: PythonName) -> str:
 
 
 def find_parameters(names: SurfaceNames, entry: PythonName) -> tuple[PythonParameter, ...] | None:
-    """The parameters of a function or class; None where they cannot be told."""
+    """The parameters of a function or class; None where they cannot be known."""
     if entry.kind == "class":
         maker = names.find_member(entry, "__new__")
         found = names.list_members(entry).get("__init__") or names.find_member(entry, "__init__")
@@ -280,7 +280,7 @@ def find_parameters(names: SurfaceNames, entry: PythonName) -> tuple[PythonParam
 
 
 def explain_refusal(given: CallArguments, parameters: Iterable[PythonParameter]) -> str:
-    """Why a call with these arguments fails, in a clause; empty where it does not, as far as can be told."""
+    """Why a call with these arguments fails, in a clause; empty where it does not, as far as can be known."""
     parameters = tuple(parameters)
     kinds = {parameter.kind for parameter in parameters}
     positional = [p for p in parameters if p.kind in ("positional", "normal")]

@@ -38,7 +38,7 @@ def says_override(given: tuple[str, ...], arguments: int) -> bool:
 
 
 def extract_class(given: tuple[str, ...], arguments: int) -> str:
-    """The class that declares a method that is so described; empty where that is not told."""
+    """The class that declares a method that is so described; empty where that is not known."""
     return given[-1] if any(one.startswith(_RESULT) for one in given[arguments:]) else ""
 
 
@@ -64,7 +64,7 @@ class Override:
     def find_lost_change(self, line: Sequence[tuple[str, str]]) -> tuple[Offered, str, bool] | None:
         """The change that the method does not fit to, whether the target has no method of that name (`gone`) or another
         (`override`), and whether it was before the target's version; None where it overrides what the target has, or
-        where that cannot be told. line: packages and names of the method in the base
+        where that cannot be known. line: packages and names of the method in the base
         class and in the bases of that."""
         self.parameters = tuple(
             parameter.name

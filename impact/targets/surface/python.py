@@ -23,7 +23,7 @@ class PythonName(NamedTuple):
 
 
 UNKNOWN = PythonName("", "unknown")
-"""Stands for a name of which it cannot be told whether it is there."""
+"""Stands for a name of which it cannot be known whether it is there."""
 # Methods that every object has, so that one that is taken away is still there, and those that nobody calls by name.
 _OBJECT = frozenset((*dir(object), "__del__", "__slots__", "__post_init__", "__hash__", "__bool__"))
 _NO_ATTRIBUTES = frozenset(("object", "ABC", "abc.ABC", "Protocol", "typing.Protocol", "Generic", "typing.Generic"))
@@ -45,7 +45,7 @@ class SurfaceNames:
 
     def find(self, dotted: str) -> PythonName | None:
         """What a dotted name (`rclpy.node.Node.create_timer`) stands for; None where it is surely not there, UNKNOWN
-        where that cannot be told."""
+        where that cannot be known."""
         parts = dotted.split(".")
         for length in range(len(parts), 0, -1):
             module = self.modules.get(".".join(parts[:length]))
@@ -272,7 +272,7 @@ class SurfaceNames:
         return found
 
     def list_dataclass_fields(self, entry: PythonName, depth: int) -> dict[str, PythonParameter] | None:
-        """The constructor's parameters of a dataclass; None for any other class, and where a base cannot be told."""
+        """The constructor's parameters of a dataclass; None for any other class, and where a base cannot be known."""
         split = self._split(entry.where)
         if entry.bound is None or split is None or depth > _DEPTH:
             return None

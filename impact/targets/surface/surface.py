@@ -104,7 +104,7 @@ class BuildSurface(msgspec.Struct, frozen=True, array_like=True, gc=False):
     of the prefix. dependencies: packages that it brings along (what dependants may include and link through it);
     system: what it brings by DEPENDS of catkin_package().
     commands: functions and macros; variables: besides those that every package has.
-    standard: the C++ standard that its users need, 0 where nothing says. unknown: (part, why) of what cannot be told,
+    standard: the C++ standard that its users need, 0 where nothing says. unknown: (part, why) of what cannot be known,
     part being `targets`, `libraries`, `headers`, `commands`, `programs`, `launches` or `system`. pkgconfig: of system
     libraries, names of pkg-config files, each with the libraries that it links behind it.
     """
