@@ -39,11 +39,12 @@ from .graph import (
 from .loads import Loaded, list_loaded
 from .names import NameRefused, is_open, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
-from .qos import find_qos
+from .qos import find_qos, list_overridable, override_qos
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
 from .values import FlowValue, FlowValues
 
+_OVERRIDES = re.compile(r"qos_overrides\.").match
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
 _TRUTH = {"true": True, "True": True, "1": True, "false": False, "False": False, "0": False}
 _MOST_WAYS = 16
@@ -456,6 +457,9 @@ class Join:
         if id(use) not in self._qos:
             self._qos[id(use)] = find_qos(self.calls, self.values, use)
         qos = self._qos[id(use)]
+        if qos is not None and topic and isinstance(owner, Running) and use.row.qos:
+            policies = list_overridable(use) if any(map(_OVERRIDES, owner.values.settings)) else ()
+            qos = override_qos(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         only_if = "" if site.implied else self._describe_condition(use, owner)
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,

@@ -1,8 +1,9 @@
-"""Quality of service as code tells it: depths, profiles and the settings of them."""
+"""Quality of service as code gives it: depths, profiles and their settings; and as parameters override it."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec import structs
 
@@ -73,6 +74,58 @@ def find_qos(calls: Calls, values: FlowValues, use: FrameworkCall) -> Qos | None
         return None
     found = _evaluate(value, use.fn, calls, values, 0)
     return structs.replace(found, written=unparse(value))
+
+
+# What with_default_policies() of QosOverridingOptions makes parameters of (rclcpp, qos_overriding_options.hpp; rclpy,
+# rclpy/qos_overriding_options.py; from Galactic on).
+_OPTIONS = "qos_overriding_options"
+_BY_DEFAULT = ("history", "depth", "reliability")
+_FIELDS = {"liveliness_lease_duration": "lease"}
+
+
+def list_overridable(use: FrameworkCall) -> tuple[str, ...]:
+    """The policies of a use for which its node declares parameters `qos_overrides.TOPIC.ROLE.POLICY`: those that its
+    options name (`options.qos_overriding_options = ...` in the same function, or the keyword), by the names that they
+    have there."""
+    named = {argument.text for argument in use.call.arguments if argument.kind == "name"}
+    given = [each.parts[0] for each in use.call.arguments if each.kind == "keyword" and each.text == _OPTIONS]
+    for each in use.fn.facts.assignments:
+        owner, _, member = each.target.rpartition(".")
+        if member == _OPTIONS and owner in named:
+            given.append(each.value)
+    return tuple(dict.fromkeys(policy for value in given for policy in _list_policies(value)))
+
+
+def _list_policies(options: FlowExpr) -> Iterator[str]:
+    if get_tail(options.text) == "with_default_policies":
+        yield from _BY_DEFAULT
+    elif options.kind == "name" and "Kind" in options.text:
+        yield re.sub(r"(?<=[a-z])(?=[A-Z])", "_", get_tail(options.text)).lower()
+    else:
+        for part in options.parts:
+            yield from _list_policies(part)
+
+
+def override_qos(qos: Qos, topic: str, role: str, policies: Iterable[str], settings: Mapping[str, str]) -> Qos:
+    """The quality of service after the parameters that a launch gives. topic: as it is after remapping; settings:
+    values by name. Durations are nanoseconds. A value that is none of the policy makes it unknown."""
+    fields = structs.asdict(qos)
+    for policy in policies:
+        value = settings.get(f"qos_overrides.{topic}.{_SIDES[role]}.{policy}")
+        field = _FIELDS.get(policy, policy)
+        if value is None or field not in fields:
+            continue
+        number = int(value) if is_number(value) and value.isdigit() else None
+        if field == "depth":
+            fields[field] = -1 if number is None else number
+        elif field in ("deadline", "lease"):
+            fields[field] = None if number is None else number * 1e-9
+        else:
+            fields[field] = value if any(value == meant for _, meant in _WORDS[field]) else ""
+    return Qos(**fields)
+
+
+_SIDES = {"publisher": "publisher", "subscriber": "subscription"}
 
 
 def _evaluate_number(value: FlowExpr | None, fn: Fn, values: FlowValues) -> int:
