@@ -317,11 +317,13 @@ def _iterate_items(
                 data, content = extraction.tree.read_with_id(path, max(map(_largest, those)))
             except OSError as error:
                 reason = error.strerror or type(error).__name__
-                _mark_unreadable(looks, path, f"cannot be read: {reason[:1].lower()}{reason[1:]}")
+                message = f"cannot be read: {reason[:1].lower()}{reason[1:]}"
+                _mark_unreadable(looks, _list_equal(looks, path, those, paths_of), message)
                 advance(expected)
                 continue
             if data.startswith(_LFS_POINTER):
-                _mark_unreadable(looks, path, "a Git LFS pointer, its content is not here (git lfs pull)")
+                message = "a Git LFS pointer, its content is not here (git lfs pull)"
+                _mark_unreadable(looks, _list_equal(looks, path, those, paths_of), message)
                 advance(expected)
                 continue
             for look in looks:
@@ -358,12 +360,25 @@ def _iterate_batches(files: Iterable[_T], size_of: Callable[[_T], int]) -> Itera
         yield batch
 
 
-def _mark_unreadable(looks: list[ExtractedFacts], path: str, message: str) -> None:
-    """Leaves a path out of every look; the first names it."""
-    _drop(looks[0], path, message)
-    for look in looks[1:]:
-        look.kinds.pop(path, None)
-        look.ids.pop(path, None)
+def _list_equal(
+    looks: list[ExtractedFacts],
+    path: str,
+    those: Iterable[str],
+    paths_of: dict[tuple[str, str], list[tuple[ExtractedFacts, str]]],
+) -> list[str]:
+    """A path and all others of the same content, of which it alone is read."""
+    contents = {look.ids[path] for look in looks if path in look.ids}
+    equal = {each for content in contents for kind in those for _, each in paths_of.get((content, kind), ())}
+    return sorted(equal | {path})
+
+
+def _mark_unreadable(looks: list[ExtractedFacts], paths: Iterable[str], message: str) -> None:
+    """Leaves paths out of every look; the first names them."""
+    for path in paths:
+        _drop(looks[0], path, message)
+        for look in looks[1:]:
+            look.kinds.pop(path, None)
+            look.ids.pop(path, None)
 
 
 def _drop(extraction: ExtractedFacts, path: str, message: str) -> None:
