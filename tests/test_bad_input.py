@@ -662,6 +662,8 @@ def committed(folder: Path, bare: bool = False) -> pygit2.Repository:
         (("--base", ".=v9.9"), ("`v9.9`", "no revision")),
         (("--rev", "HEAD:src/bad/package.xml"), ("no revision",)),
         (("--rev", "HEAD", "--fix"), ("--fix", "remove --rev")),
+        (("--rev", ""), ("--rev", "is empty")),
+        (("--base", ""), ("--base", "is empty")),
     ],
 )
 def test_revisions(say, ws, arguments, words):
@@ -697,6 +699,20 @@ def test_a_repository_whose_objects_are_gone(say, ws):
         said = check(say, ws, *arguments)
         assert said.status == 2
         assert said.err
+
+
+def test_equal_files_whose_object_is_missing_cost_themselves_alone(say, ws):
+    for name in ("one", "two"):
+        (ws / f"src/healthy/{name}.cpp").write_text("int only_here();\n")
+        (ws / f"src/healthy/scripts_{name}").write_text("#!/usr/bin/env python3\nprint(1)\n")
+    repository = committed(ws)
+    for name in ("one.cpp", "scripts_one"):
+        id = str(repository.revparse_single(f"HEAD:src/healthy/{name}").id)
+        (Path(repository.path) / "objects" / id[:2] / id[2:]).unlink()
+    said = check(say, ws, "--rev", "HEAD")
+    assert said.status == 1 and FOUND in said.out
+    said = say("graph", ws, "--rev", "HEAD")
+    assert said.status == 0, said.err
 
 
 def test_branches_without_a_common_ancestor(say, ws):

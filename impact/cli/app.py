@@ -76,8 +76,19 @@ def _make_schema_option(report: str) -> Any:
     )
 
 
+def _refuse_empty(context: typer.Context, parameter: typer.CallbackParam, value: Any) -> Any:
+    """The value of an option for a revision. One that is empty was a variable without a value, and would be taken for
+    an option that was not given. Raises BadParameter."""
+    source = context.get_parameter_source(parameter.name or "")
+    if source is not None and source.name == "COMMANDLINE" and not all([value] if isinstance(value, str) else value):
+        raise typer.BadParameter("is empty; give a revision, or leave the option out")
+    return value
+
+
 _Workspace = Annotated[Path, typer.Argument(help="Workspace, package or git repository.")]
-_Revision = Annotated[str, typer.Option(help="Read this git revision instead of the files on disk.")]
+_Revision = Annotated[
+    str, typer.Option(help="Read this git revision instead of the files on disk.", callback=_refuse_empty)
+]
 _Output = Annotated[Path | None, typer.Option("--output", "-o", help="Write the report to this file.")]
 _Config = Annotated[Path | None, typer.Option(help="Another rosimpact.toml.")]
 _FollowLinks = Annotated[
@@ -127,10 +138,13 @@ def check(
     ),
     format: str = _make_option("One of text, json, sarif, github, markdown, html.", "--format", "-f", default="text"),
     output: _Output = None,
-    rev: str = _make_option("Check this git revision instead of the files on disk.", default=""),
+    rev: str = _make_option(
+        "Check this git revision instead of the files on disk.", default="", callback=_refuse_empty
+    ),
     base: list[str] = _make_option(
         "Compare with the merge base of this revision (PATH=REV for one repository, or a pinned .repos file): only "
-        "new findings fail."
+        "new findings fail.",
+        callback=_refuse_empty,
     ),
     install: Path | None = _make_option(
         "Also check the built files of this install space (or devel space, or prefix of a package) for shared "
@@ -221,7 +235,9 @@ def graph(
     around: str = _make_option("Only what is near this node or topic.", default=""),
     hops: int = _make_option("With --around: the number of steps from node to node.", default=2, min=1),
     rev: _Revision = "",
-    base: list[str] = _make_option("Mark what was added, removed and changed since this revision, as for check."),
+    base: list[str] = _make_option(
+        "Mark what was added, removed and changed since this revision, as for check.", callback=_refuse_empty
+    ),
     strict: bool = _make_option(
         "Exit with 1 where names or types are not known, or names in part only; their places go to standard error.",
         "--strict",
@@ -235,11 +251,14 @@ def graph(
     follow_links: _FollowLinks = False,
     format: str = _make_option(
         "One of text, json, graphml, dot, mermaid, html, nodl (the interface of each node, as .nodl.yaml).",
-        "--format", "-f", default="text",
+        "--format",
+        "-f",
+        default="text",
     ),
     output: Path | None = _make_option(
         "Write the graph to this file; with nodl, PACKAGE/PROGRAM.nodl.yaml for each node to this folder.",
-        "--output", "-o",
+        "--output",
+        "-o",
     ),
     all: bool = _make_option(
         "Also show hidden names, whole conditions and everything that was not resolved.", "--all", default=False
@@ -263,7 +282,8 @@ def graph(
 def impact(
     path: _Workspace = Path("."),
     base: list[str] = _make_option(
-        "What changed since the merge base of this revision (PATH=REV for one repository, or a pinned .repos file)."
+        "What changed since the merge base of this revision (PATH=REV for one repository, or a pinned .repos file).",
+        callback=_refuse_empty,
     ),
     rev: _Revision = "",
     package: list[str] = _make_option("Only changes in this package. May be repeated."),
