@@ -175,6 +175,18 @@ def test_an_error_about_all_packages_counts_for_each(say, ws):
     assert say("check", ws, "--target", "noetic").out.count("  ✗ 1\n") == 4
 
 
+def test_packages_with_warnings_alone_are_counted_beside_those_that_break(say, tmp_path):
+    ws = written(tmp_path / "ws", package("a") | package("b"))
+    for name, depend in (("a", "test_depend"), ("b", "depend")):
+        manifest = ws / name / "package.xml"
+        text = manifest.read_text().replace("  <export>", f"  <{depend}>gazebo_ros</{depend}>\n  <export>")
+        manifest.write_text(text)
+    said = say("upgrade", ws, "--from", "humble", "--to", "jazzy").out.splitlines()[0]
+    assert said == (
+        "humble → jazzy breaks 1 of 2 packages and may break 1 more: 1 error and 1 warning to fix, in 2 places"
+    )
+
+
 def test_a_warning_fails_when_asked_to(say, tmp_path):
     ws = written(tmp_path / "ws", package("a"))
     manifest = ws / "a/package.xml"

@@ -263,12 +263,12 @@ def show_text(
     items()."""
     build = surface.build
     lines = [paint(style, "bold", escape(f"package {surface.package} {_shorten(source)}")), *_render(source, style)]
-    facts = [f"build type {build.build_type}"]
+    facts = [f"build type {build.build_type}"] if build.build_type else []
     if build.standard:
         facts.append(f"C++{build.standard}")
     if build.dependencies:
         facts.append(f"exports dependencies: {', '.join(build.dependencies)}")
-    lines += lay_out([LinePart("; ".join(facts))], style, 2, 4)
+    lines += lay_out([LinePart("; ".join(facts))], style, 2, 4) if facts else []
     if surface.guessed:
         lines += lay_out([LinePart("installed headers are unknown; those of include/ are listed",
                                  "warning")], style, 2, 4)  # fmt: skip

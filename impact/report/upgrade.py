@@ -21,7 +21,7 @@ SCHEMA = 1
 def format_verdict(found: Upgrade) -> str:
     """One line: safe, or what breaks, or why neither is said.
 
-    `humble → jazzy breaks 3 of 46 packages: 3 errors and 1 warning to fix, in 9 places`
+    `humble → jazzy breaks 3 of 46 packages and may break 1 more: 3 errors and 1 warning to fix, in 9 places`
     """
     way = f"{escape(found.old.name)} → {escape(found.new.name)}"
     total = format_count(len(found.packages), "package")
@@ -33,10 +33,11 @@ def format_verdict(found: Upgrade) -> str:
         gaps = format_gaps(found.report.coverage)
         return "; ".join([f"{way}: no {'new' if old else 'known'} break in {total}", *rest, *([gaps] if gaps else [])])
     broken = _count_packages(found, (item for item in found.breaks if item.severity == "error"))
-    touched = broken or _count_packages(found, found.breaks)
+    affected = _count_packages(found, found.breaks)
+    more = f" and may break {affected - broken:,} more" if 0 < broken < affected else ""
     what = format_severities(found.breaks)
     places = format_count(sum(len(item.findings) for item in found.breaks), "place")
-    return f"{way} {'breaks' if broken else 'may break'} {touched:,} of {total}: {what} to fix, in {places}"
+    return f"{way} {'breaks' if broken else 'may break'} {broken or affected:,} of {total}{more}: {what} to fix, in {places}"
 
 
 def _count_packages(found: Upgrade, items: Iterable[UpgradeItem]) -> int:
