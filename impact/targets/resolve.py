@@ -15,7 +15,7 @@ from ...edges import files
 from ...edges.console import escape
 from ...edges.limits import get_limits
 from ..config import Config, check_inside, lies_in
-from ..tree import Tree
+from ..tree import GitTree, Tree, TreeError, WorkingTree
 from ..tree.ignore import find_git_dir
 from ..tree.paths import is_vendored
 from . import snapshot as snapshots
@@ -249,6 +249,9 @@ _CI_FILE = re.compile(
 )
 _AT_ROOT = re.compile(r"(?:\.github|\.gitlab-ci|\.gitlab|\.travis|\.circleci|azure-pipelines|Jenkinsfile)(?=[/.]|$)")
 """What CI services read at the root of a repository alone."""
+_CI_FOLDERS = (".github/workflows", ".gitlab", ".circleci")
+_CI_FILES = (".gitlab-ci.yml", ".gitlab-ci.yaml", ".travis.yml", ".travis.yaml", "azure-pipelines.yml", "Jenkinsfile")
+"""What of these has a name that is known beforehand."""
 _REPOSITORY_FILE = re.compile(r"\.(?:repos|rosinstall)$")
 _BRANCH = re.compile(r"\bversion[\"']?\s*:\s*[\"']?([\w./-]+)")
 _COMMENT = re.compile(r"^\s*(?:#|//).*|\s#\s.*")
@@ -296,13 +299,15 @@ def choose_default_distros(
     environment: Mapping[str, str] = os.environ,
     today: str = "",
     installing: Iterable[tuple[str, str, str]] = (),
+    above: Iterable[tuple[str, str, str]] = (),
 ) -> tuple[tuple[str, ...], str]:
     """Distros to check against when nobody said any, and the reason as a clause.
 
     ros: generation of the workspace, 1 or 2. texts: (repository, path, text) of CI files, Dockerfiles, pixi.toml, and
     files that list repositories (.repos, .rosinstall). branches: (repository, branch). today: ISO day that tells which
     distros have ended, the data's day. installing: as texts, of files that tell how to install things, which are read
-    where nothing else names a distro.
+    where nothing else names a distro. above: as texts, of the CI files of the repository that the workspace is a folder
+    of, which are read where nothing in the workspace but what tells how to install things names a distro.
 
     The sourced environment comes first; then what the workspace's repositories name in their files, else in their
     branches and in those of the repositories that they list, else in what tells how to install things: those distros
@@ -337,6 +342,10 @@ def choose_default_distros(
         by_branch = _drop_inner(by_branch)
         if not named or any(lives(distro) for found in by_branch.values() for distro in found):
             named = by_branch
+    if not named:
+        for repository, path, text in above:
+            for distro in find_named_distros(text, fitting):
+                named.setdefault(repository, {}).setdefault(distro, path)
     if not named:
         from ..facts.distros import list_installed_distros
 
@@ -422,7 +431,8 @@ def _choose_targets(
     current = not revision or revision.startswith(("HEAD", "@")) or getattr(tree, "is_checked_out", False)
     branches = _list_branches(tree) if current else [("", revision)]
     texts, installing = _iterate_texts(tree, _CI_FILE, _REPOSITORY_FILE), _iterate_texts(tree, _INSTALLING)
-    distros, reason = choose_default_distros(ros, texts, branches, known, today=day, installing=installing)
+    above = _iterate_texts_above(tree)
+    distros, reason = choose_default_distros(ros, texts, branches, known, today=day, installing=installing, above=above)
     return tuple(Chosen(DistroTarget(distro, data=data), reason) for distro in distros)
 
 
@@ -449,6 +459,30 @@ def _iterate_texts(tree: Tree, *patterns: re.Pattern[str]) -> Iterator[tuple[str
         except OSError:
             continue
         yield next((folder for folder in owners if not folder or path.startswith(f"{folder}/")), ""), path, text
+
+
+def _iterate_texts_above(tree: Tree) -> Iterator[tuple[str, str, str]]:
+    """What CI services read at the root of the repository that a tree is a folder of, as _iterate_texts() has it; paths
+    are relative to the tree. Of the rest of the repository nothing is read."""
+    if not isinstance(tree, GitTree | WorkingTree) or (depth := tree.count_levels_in_repository()) == 0:
+        return
+    for folder in ("", *_CI_FOLDERS):
+        try:
+            found = tree.open_folder_of_repository(folder)
+            names = [name for name in _CI_FILES if found.exists(name)] if not folder else [
+                entry.path for entry in found.list_entries() if entry.size <= _LARGEST
+            ]  # fmt: skip
+        except TreeError:
+            continue
+        for name in names:
+            path = f"{folder}/{name}" if folder else name
+            if not _CI_FILE.search(path):
+                continue
+            try:
+                text = found.read(name, _LARGEST).decode("utf-8", "replace")
+            except OSError:
+                continue
+            yield "", "../" * depth + path, text
 
 
 def read_branch(repository: Path) -> str:

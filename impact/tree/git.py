@@ -80,6 +80,14 @@ class GitTree(Walked):
         place = self._repo.path if self._repo.is_bare else self._repo.workdir or self._repo.path
         return {"": place.rstrip("/")}
 
+    def count_levels_in_repository(self) -> int:
+        """How far below the root of its repository the tree is."""
+        return self.folder.count("/") + 1 if self.folder else 0
+
+    def open_folder_of_repository(self, folder: str) -> GitTree:
+        """A folder of the same revision, by its path in the repository. Raises TreeError where there is none."""
+        return GitTree(self.repository, self.revision, folder)
+
     @property
     def is_checked_out(self) -> bool:
         """Whether it is the commit that HEAD means, asked for by its id."""

@@ -72,6 +72,16 @@ class WorkingTree(Walked):
         self.list_entries()
         return self._repositories
 
+    def count_levels_in_repository(self) -> int:
+        """How far below the root of its git repository the tree is; 0 at the root and outside of repositories."""
+        enclosing = find_enclosing_repository(self._real_root)
+        folder = os.path.relpath(self._real_root, enclosing or self._real_root)
+        return 0 if folder == os.curdir else folder.count(os.sep) + 1
+
+    def open_folder_of_repository(self, folder: str) -> "WorkingTree":
+        """A folder of the repository that holds the tree, by its path in that. Raises TreeError where there is none."""
+        return WorkingTree(os.path.join(find_enclosing_repository(self._real_root) or self._real_root, folder))
+
     def _walk(self, found: list[TreeEntry]) -> None:
         real_root = self._real_root
         enclosing = find_enclosing_repository(real_root)

@@ -21,7 +21,7 @@ from rosimpact.impact.targets.resolve import (
     parse_target,
     read_branch,
 )
-from rosimpact.impact.tree.git import GitTree
+from rosimpact.impact.tree import GitTree, WorkingTree
 
 DISTROS = list_known_distros()
 NAMES = [known.name for known in DISTROS]
@@ -363,6 +363,36 @@ def test_ci_files_below_another_repositorys_are_not_those_of_the_workspace(monke
     tree.list_entries = lambda: [SimpleNamespace(path=path, size=20) for path in texts]
     tree.read = lambda path, limit: texts[path].encode()
     assert [item.target.distro for item in choose_targets((), Config(), 2, tree)] == ["jazzy"]
+
+
+@pytest.mark.parametrize("kind", ["files", "revision"])
+def test_the_ci_files_of_the_repository_speak_for_a_folder_of_it_that_names_no_distro(tmp_path, monkeypatch, kind):
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    texts = {
+        ".github/workflows/build.yaml": "container: ros:kilted",
+        "Dockerfile": "FROM ros:rolling",  # of another folder's packages
+        "src/silent/package.xml": "<package/>",
+        "src/named/Dockerfile": "FROM ros:humble",
+        "tools/.gitlab-ci.yml": "image: ros:foxy",
+    }
+    for path, text in texts.items():
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text(text)
+
+    def git(*arguments):
+        given = ["git", "-C", tmp_path, "-c", "user.name=a", "-c", "user.email=a@example.org", *arguments]
+        subprocess.run(given, check=True, capture_output=True)
+
+    git("init", "-q", "-b", "main")
+    git("add", ".")
+    git("commit", "-q", "-m", "one")
+
+    def choose(folder):
+        tree = WorkingTree(tmp_path / folder) if kind == "files" else GitTree(tmp_path, "HEAD", folder)
+        return [(item.target.distro, item.reason) for item in choose_targets((), Config(), 2, tree)]
+
+    assert choose("src/silent") == [("kilted", "named by the workspace (../../.github/workflows/build.yaml)")]
+    assert [distro for distro, _ in choose("src/named")] == ["humble"]
 
 
 def test_asked_for_comes_first_then_the_configuration():
