@@ -296,7 +296,7 @@ def test_a_program_goes_stale_when_its_library_is_replaced(tmp_path, gcc, check,
     assert (status, finding["package"], finding["targets"], finding["help"]) == (
         1, "winch", ["this machine"], "rebuild winch")  # fmt: skip
     assert finding["message"] == (
-        "`libfoo.so.1`, needed by `winch/lib/winch/run`, was removed from this machine, which has `libfoo.so.2`"
+        "`libfoo.so.1`, needed by `winch/lib/winch/run`, is not available on this machine, which has `libfoo.so.2`"
     )
 
 
@@ -316,9 +316,26 @@ def test_a_version_of_a_symbol_that_the_library_lost_is_reported(tmp_path, gcc, 
     monkeypatch.setenv("LD_LIBRARY_PATH", str(system))
     _, (finding,), _ = check(ws, "--install", ws / "install")
     assert finding["message"] == (
-        "`FOO_1.2` of `libfoo.so.1`, needed by `winch/lib/winch/run`, was removed from this machine, "
+        "`FOO_1.2` of `libfoo.so.1`, needed by `winch/lib/winch/run`, is not available on this machine, "
         "which has `FOO_1.1`"
     )
+
+
+def test_a_library_that_is_asked_for_by_its_path_is_looked_for_beside_the_file(tmp_path, gcc, check):
+    ws = workspace(tmp_path / "ws", "winch")
+    program = ws / "install/winch/lib/winch/run"
+    (program.parent / "own").mkdir(parents=True)
+    (tmp_path / "foo.c").write_text("int foo(void) { return 0; }\n")
+    (tmp_path / "main.c").write_text("int foo(void);\nint main(void) { return foo(); }\n")
+    library = program.parent / "own/libfoo.so"
+    gcc(tmp_path, "-shared", "-fPIC", "-Wl,-soname,$ORIGIN/own/libfoo.so", "-o", str(library), "foo.c")
+    gcc(tmp_path, "-o", str(program), "main.c", str(library))
+    assert subprocess.run([program], check=False).returncode == 0
+    assert check(ws, "--install", ws / "install")[:2] == (0, [])
+
+    library.unlink()
+    status, (finding,), _ = check(ws, "--install", ws / "install")
+    assert (status, finding["subject"]) == (1, "$ORIGIN/own/libfoo.so")
 
 
 @pytest.mark.parametrize("kind", ["program", "plugin"])

@@ -37,7 +37,8 @@ def format_verdict(found: Upgrade) -> str:
     more = f" and may break {affected - broken:,} more" if 0 < broken < affected else ""
     what = format_severities(found.breaks)
     places = format_count(sum(len(item.findings) for item in found.breaks), "place")
-    return f"{way} {'breaks' if broken else 'may break'} {broken or affected:,} of {total}{more}: {what} to fix, in {places}"
+    does = "breaks" if broken else "may break"
+    return f"{way} {does} {broken or affected:,} of {total}{more}: {what} to fix, in {places}"
 
 
 def _count_packages(found: Upgrade, items: Iterable[UpgradeItem]) -> int:

@@ -62,7 +62,6 @@ _HELP = "[[install `{debian}`, or ]]rebuild [[{rebuilt}]][[{ordered} in this ord
     scope="install_space",
     texts={
         "symbol": Text(f"{_ASKED} is not found in any library that is loaded", _HELP),
-        "gone": Text(f"{_ASKED} was removed from {{machine}}, which has `{{there}}`", _HELP),
         "missing": Text(f"{_ASKED} is not available on {{machine}}[[, which has `{{there}}`]]", _HELP),
     },
 )
@@ -94,8 +93,7 @@ def stale_binary(view: TargetView, installed: InstallSpace, libraries: SharedLib
             }
             known = view.workspace.packages.get(package)  # what is not in the workspace has no manifest there
             at = At(known.linked.manifest_path if known is not None else f"{installed.label}/{files[0]}", 0)
-            gone = libraries.gone and missing.there
-            kind = "symbol" if missing.symbols >= 0 else "gone" if gone else "missing"
+            kind = "symbol" if missing.symbols >= 0 else "missing"
             yield Diagnostic(at, missing.subject, package, data, kind)
 
 

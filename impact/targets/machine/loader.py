@@ -20,6 +20,7 @@ from ...facts import elf
 from ...facts.elf import Elf, split_soname
 
 _STANDARD = ("lib", "lib64", "usr/lib", "usr/lib64", "usr/local/lib")
+_ORIGIN = re.compile(r"\$(?:ORIGIN\b|\{ORIGIN\})")
 _MULTIARCH = re.compile(r"[a-z0-9_]+-linux-(?:gnu|musl)\w*$")
 _CACHED = re.compile(r"\t(\S+) \(.*?\) => (.+)$")
 
@@ -70,9 +71,13 @@ class Loader:
     def find(self, soname: str, asker: Elf, folder: str = "") -> str:
         """The file that the loader takes for a library that a file asks for, empty when there is none.
 
-        asker: the file, whose own search folders and kind of machine count; folder: where it lies.
+        asker: the file, whose own search folders and kind of machine count; folder: where it lies. A name with a slash
+        is the path of the library.
         """
-        own = [re.sub(r"\$(?:ORIGIN\b|\{ORIGIN\})", folder or ".", place) for place in asker.search]
+        if "/" in soname:
+            path = _ORIGIN.sub(lambda _: folder or ".", soname)
+            return path if self._fits(path, asker) else ""
+        own = [_ORIGIN.sub(lambda _: folder or ".", place) for place in asker.search]
         places = [os.path.join(place, soname) for place in (*own, *self._folders)]
         places += self._cached.get(soname, ())
         places += [os.path.join(place, soname) for place in self.standard]

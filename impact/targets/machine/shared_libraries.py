@@ -41,12 +41,11 @@ class MissingSymbol(NamedTuple):
 class SharedLibraries:
     """The shared libraries of a machine, real or described.
 
-    Attributes: target (its name), name (`this machine`, `ubuntu jammy`), gone (what is not there was there once,
-    since it was built with), machine (`EM_X86_64`, empty where any may be), platform (`ubuntu jammy`)."""
+    Attributes: target (its name), name (`this machine`, `ubuntu jammy`), machine (`EM_X86_64`, empty where any may be),
+    platform (`ubuntu jammy`)."""
 
     target: str
     name: str
-    gone: bool
     machine: str
     platform: str
 
@@ -80,7 +79,7 @@ _OF_CLASSES = ("_ZN{}C", "_ZN{}D", "_ZTVN{}", "_ZTIN{}")
 class InstalledLibraries(SharedLibraries):
     """This machine."""
 
-    name, gone = "this machine", True
+    name = "this machine"
 
     def __init__(self, target: str, loader: Loader, machine: str, platform: str, sonames: Sonames):
         self.target, self.machine, self.platform = target, machine, platform
@@ -89,6 +88,8 @@ class InstalledLibraries(SharedLibraries):
     def has(self, soname: str, asker: Elf, folder: str) -> bool | None:
         if self._loader.find(soname, asker, folder):
             return True
+        if "/" in soname:  # looked for nowhere else
+            return False
         # A library without a version is of ROS or of one's own, and may be in a prefix that nobody named.
         if not split_soname(soname)[1] and not self._loader.knows_prefixes:
             return None
@@ -132,7 +133,7 @@ class InstalledLibraries(SharedLibraries):
 class DescribedLibraries(SharedLibraries):
     """A machine that is described: the packages of its platform, and those of its ROS distro."""
 
-    machine, gone = "", False
+    machine = ""
 
     def __init__(
         self,
