@@ -157,8 +157,9 @@ def locate_subject(line: str, column: int, subject: str) -> Shown:
     """
     start = column - 1
     if column <= 0:
-        start = line.find(subject) if subject else -1
-        return Shown(line, max(start, 0), len(subject) if start >= 0 else 0)
+        # A part of another word is not the subject.
+        found = re.search(rf"(?<!\w){re.escape(subject)}(?!\w)", line) if subject else None
+        return Shown(line, found.start(), len(subject)) if found else Shown(line, 0, 0)
     if start >= len(line):
         return Shown(line, 0, 0)
     if subject:

@@ -68,6 +68,7 @@ class PythonSource(NamedTuple):
     refused: int = 0
 
 
+_NO_TEXT = " text"
 _COOKIE = re.compile(rb"^[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)")
 # What is no Python and not meant to be: places that a generator fills in, commands of a notebook.
 _TEMPLATE = re.compile(r"@\w+@|@[({\[]|\$|\{%|<%|\{\{\s*[\w.]+\s*\}\}|^\s*[%!]\s*\w", re.MULTILINE)
@@ -107,7 +108,7 @@ def _decode(data: bytes) -> tuple[str, tuple[Problem, ...]]:
         text = data.decode("utf-8", "replace")
     except (UnicodeError, ValueError) as error:
         at = error.start if isinstance(error, UnicodeDecodeError) else 0
-        problems.append(Problem(data.count(b"\n", 0, at) + 1, f"not {encoding} text"))
+        problems.append(Problem(data.count(b"\n", 0, at) + 1, f"not {encoding}{_NO_TEXT}"))
         text = data.decode("latin-1")
     text = drop_surrogates(text)  # which escapes of odd codecs may give
     if "\r" in text:
@@ -149,7 +150,9 @@ def read(data: bytes) -> PythonSource:
     """
     text, problems = _decode(data)
     try:
-        return PythonSource(text, text, _parse(text), (), problems)
+        # Bytes that the encoding does not have are refused wherever they stand, in comments too.
+        undecoded = next((problem.line for problem in problems if problem.message.endswith(_NO_TEXT)), 0)
+        return PythonSource(text, text, _parse(text), (), problems, undecoded)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         old, tree, rewritten = _parse_python2(text, error) if isinstance(error, SyntaxError) else ((), None, text)
         if not old:
@@ -177,12 +180,13 @@ def extract(data: bytes) -> PythonFile:
             reader.read(tree)
             bound = reader.find_bound_names()
             uses = reader.list_object_uses(reader.find_column)
+            undecoded = (NEVER_PYTHON, refused, "SyntaxError") if refused else None
             return PythonFile(
                 imports=tuple(reader.imports),
                 attributes=reader.list_attributes(),
                 references=tuple(sorted(reader.references, key=attrgetter("line", "column"))),
                 python2_only=old or tuple(reader.python2_only),
-                needs=None if old else reader.needs,
+                needs=undecoded or (None if old else reader.needs),
                 interpreter=interpreter,
                 problems=problems,
                 uses=uses,

@@ -317,6 +317,14 @@ def test_what_no_python_reads(text):
     assert facts.needs and facts.needs[:2] == (NEVER_PYTHON, 2)
 
 
+@pytest.mark.parametrize(
+    ("data", "refused"), [(b"a = 1\n# caf\xe9\n", True), (b"# coding: latin-1\n# caf\xe9\n", False)]
+)
+def test_bytes_that_the_encoding_does_not_have_are_refused_by_every_python(data, refused):
+    facts = extract(data)
+    assert facts.needs == ((NEVER_PYTHON, 2, "SyntaxError") if refused else None)
+
+
 @pytest.mark.parametrize("text", ["type A = int )", "x = f'{a['b')'", "with a as b c:", "x = [*a for a in b c]"])
 def test_what_a_newer_python_may_read(text):
     facts = extract(f"import a\n{text}\n".encode())
