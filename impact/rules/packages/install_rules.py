@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from ....edges.memory import cache_in_derived
 from ...model.cmake.build import Install
 from ...model.cmake.installed import lets_in, list_copied_files
-from ..vocabulary import Package, TargetView
+from ..vocabulary import At, Package, TargetView
 
 
 def read_installs(view: TargetView, package: Package) -> list[Install] | None:
@@ -60,21 +60,22 @@ def list_places(package: Package, installs: Iterable[Install]) -> frozenset[str]
     return frozenset(found)
 
 
-def list_references(view: TargetView, package: Package, *kinds: str) -> set[str]:
-    """What the workspace's launch files and scripts start or open in a package; of all kinds where none is given."""
+def list_references(view: TargetView, package: Package, *kinds: str) -> dict[str, At]:
+    """What the workspace's launch files and scripts start or open in a package, each with the first place that does; of
+    all kinds where none is given."""
     found = _list_all_references(view).get(package.name, {})
-    return set().union(*(found.get(kind, ()) for kind in kinds or found))
+    return {name: at for kind in kinds or found for name, at in found.get(kind, {}).items()}
 
 
 @cache_in_derived
-def _list_all_references(view: TargetView) -> dict[str, dict[str, set[str]]]:
-    """Package to kind to names. An example that is installed is started there as well."""
-    found: dict[str, dict[str, set[str]]] = {}
+def _list_all_references(view: TargetView) -> dict[str, dict[str, dict[str, At]]]:
+    """Package to kind to names, with their first places. An example that is installed is started there as well."""
+    found: dict[str, dict[str, dict[str, At]]] = {}
     for package in view.workspace:
         installs = read_installs(view, package) or []
         for use in package.linked.references:
             r = use.reference
             example = use.role == "aside" and r.package == package.name and is_installed(installs, use.at.path)
             if r.package and r.name and (use.role == "run" or example):
-                found.setdefault(r.package, {}).setdefault(r.kind, set()).add(r.name)
+                found.setdefault(r.package, {}).setdefault(r.kind, {}).setdefault(r.name, use.at)
     return found

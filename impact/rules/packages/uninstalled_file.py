@@ -20,14 +20,14 @@ Not reported
 
 import posixpath
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from ...model.package import find_folder_role
 from ..vocabulary import At, Diagnostic, Package, TargetView, Text, Together, rule
 from .data_files import list_copied
 from .install_rules import is_installed, list_places, list_references, read_installs
 
-_OPENED = "`{file}` is opened through the package's share folder but is not installed"
+_OPENED = "`{file}` is opened through the package's share folder ({opener}) but is not installed"
 _LAUNCHED = "`{file}` cannot be launched: the folder `{subject}` is not installed"
 _INSTALL_FOLDER = "install(DIRECTORY {subject} DESTINATION {share})"
 _ADD_FOLDER = "add `('{share}/{subject}', glob('{subject}/*'))` to data_files"
@@ -46,7 +46,7 @@ _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
         "opened": Text(_OPENED, _INSTALL_FOLDER),
         "opened, data_files": Text(_OPENED, _ADD_FOLDER),
         "elsewhere": Text(
-            "`{file}` is opened through the package's share folder but is installed elsewhere",
+            "`{file}` is opened through the package's share folder ({opener}) but is installed elsewhere",
             "install it as {share}/{file}",
         ),
         "launch": Text(_LAUNCHED, _INSTALL_FOLDER),
@@ -54,7 +54,7 @@ _DATA = ("launch", "urdf", "meshes", "robots", "worlds")
     },
 )
 def uninstalled_file(view: TargetView, package: Package):
-    opened = list_references(view, package, "file", "place") | _list_exported(package)
+    opened = _list_exported(package) | list_references(view, package, "file", "place")
     installs = read_installs(view, package)
     if installs is None:
         if copied := list_copied(package):
@@ -65,17 +65,20 @@ def uninstalled_file(view: TargetView, package: Package):
         yield from _list_opened(package, installs, opened)
 
 
-def _list_exported(package: Package) -> set[str]:
-    """The files that the manifest exports to whoever reads it: not those of tests, the settings of documentation, nor
-    descriptions of plugins, which uninstalled-plugin-description looks at."""
+def _list_exported(package: Package) -> dict[str, At]:
+    """The files that the manifest exports to whoever reads it, and where: not those of tests, the settings of
+    documentation, nor descriptions of plugins, which uninstalled-plugin-description looks at."""
     exports = [export for export in package.manifest.exports if not export.tag.startswith("rosdoc")]
-    values = [value for e in exports for key, value in (("", e.text), *e.attributes.items()) if key != "plugin"]
-    names = (value.removeprefix("${prefix}/") for value in values)
-    inside = (name for name in names if posixpath.join(package.path, name) in package.files)
-    return {name for name in inside if find_folder_role(name) is None}
+    found = {}
+    for export in exports:
+        values = [export.text, *(value for key, value in export.attributes.items() if key != "plugin")]
+        for name in (value.removeprefix("${prefix}/") for value in values):
+            if posixpath.join(package.path, name) in package.files and find_folder_role(name) is None:
+                found[name] = At(package.linked.manifest_path, export.line)
+    return found
 
 
-def _list_nothing(package: Package, opened: set[str]) -> Iterator[Diagnostic]:
+def _list_nothing(package: Package, opened: Mapping[str, At]) -> Iterator[Diagnostic]:
     """A package that compiles nothing and installs nothing. opened: what launch files and scripts open in it."""
     inside = {posixpath.normpath(name).split("/")[0] for name in opened}
     folders = tuple(folder for folder in (*_DATA, *sorted(inside - {*_DATA})) if package.has_files(folder))
@@ -84,10 +87,10 @@ def _list_nothing(package: Package, opened: set[str]) -> Iterator[Diagnostic]:
         yield Diagnostic(package.build.catkin_package, "install", package.name, data, "nothing")
 
 
-def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagnostic]:
+def _list_opened(package: Package, installs, opened: Mapping[str, At]) -> Iterator[Diagnostic]:
     """Launch files and data that something of the workspace opens, and launch files of ROS 2, that no rule puts into
     the share folder at the path by which they are opened."""
-    missing: dict[str, tuple[str, str]] = {}
+    missing: dict[str, tuple[str, str, str]] = {}
     catkin = package.build_type == "catkin"
     places = list_places(package, installs)
     for name in sorted(name for name in opened if "$" not in name):
@@ -98,17 +101,18 @@ def _list_opened(package: Package, installs, opened: set[str]) -> Iterator[Diagn
             continue
         taken = any(is_installed(installs, file) for file in files)
         if not taken or places is not None:
-            missing.setdefault(inside.split("/")[0], (inside, "elsewhere" if taken else "opened"))
+            opener = f"{opened[name].path}:{opened[name].line}"
+            missing.setdefault(inside.split("/")[0], (inside, "elsewhere" if taken else "opened", opener))
     missing.pop("package.xml", None)  # every build type installs it
     if name := _find_launch_file(package, installs):
-        missing.setdefault("launch", (name, "launch"))
-    for folder, (name, kind) in missing.items():
+        missing.setdefault("launch", (name, "launch", ""))
+    for folder, (name, kind, opener) in missing.items():
         build = package.build
         at = build.packaged or At(build.files[0] if build.files else installs[0].at.path, 1)
         share = "${CATKIN_PACKAGE_SHARE_DESTINATION}" if catkin else "share/${PROJECT_NAME}"
         if package.build_type == "ament_python":
             share, kind = f"share/{package.name}", f"{kind}, data_files" if kind != "elsewhere" else kind
-        data = {"file": name, "share": share}
+        data = {"file": name, "share": share, "opener": opener}
         yield Diagnostic(at, folder, package.name, data, kind, together=_FOLDERS)
 
 
