@@ -60,7 +60,9 @@ def summarize(impact: Impact) -> str:
         return f"no change that message flow knows of{silent}"
     counts = Counter(effect.kind for effect in impact.effects)
     reported = ", ".join(format_count(counts[kind], _HEADS[kind].removesuffix("s")) for kind in KINDS if counts[kind])
-    return f"{reported} changed; {format_count(len(impact.reached), 'node')} of {impact.of:,} reached{silent}"
+    unnamed = impact.coverage.calls - impact.coverage.resolved
+    more = f"; {format_count(unnamed, 'API call')} not resolved, and may be reached too" if unnamed else ""
+    return f"{reported} changed; {format_count(len(impact.reached), 'node')} of {impact.of:,} reached{silent}{more}"
 
 
 def group_effects(effects: Iterable[Effect]) -> list[list[Effect]]:

@@ -10,8 +10,9 @@ from typing import NamedTuple
 import jsonschema
 import pytest
 from rosimpact.impact.analysis.downstream import ImpactResult, compute_impact, select_effects
-from rosimpact.impact.analysis.effects import NOTHING, Impact
+from rosimpact.impact.analysis.effects import NOTHING, Effect, Impact
 from rosimpact.impact.facts.store import Store
+from rosimpact.impact.model.flow.graph import Coverage
 from rosimpact.impact.model.flow.workspace import link_for_flow
 from rosimpact.impact.report import impact as impact_report
 from rosimpact.impact.report.style import PLAIN
@@ -288,3 +289,11 @@ def test_json_is_as_its_schema_says(between: Between):
 def test_markdown(between: Between):
     shown = impact_report.render_markdown(between(ROWS["a condition"].files))
     assert shown.splitlines()[0] == "- condition tightened `/level` `gauge/src/gauge.cpp:13`: reaches /watch, /horn"
+
+
+def test_calls_that_are_not_resolved_may_be_reached_too():
+    effect = Effect("publish", "changed", "/wind", "talk", "talk.cpp", 1, ("/talk",), ("/wind",), "")
+    impact = Impact((effect,), (), 3, 0, Coverage(5, 3, 0, 1))
+    assert impact_report.summarize(impact).endswith("0 nodes of 3 reached; 2 API calls not resolved, and may be reached too")
+    resolved = Impact((effect,), (), 3, 0, Coverage(5, 5, 0, 1))
+    assert impact_report.summarize(resolved).endswith("0 nodes of 3 reached")
