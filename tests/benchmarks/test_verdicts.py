@@ -148,3 +148,14 @@ def test_explain_tells_the_precision_that_the_verdicts_give():
         "Precision at first sight",
         "    x: 7 of 9 findings right, 1 badly said (repositories: 2)",
     ]
+
+
+def test_a_rule_is_imprecise_when_surely_less_than_nine_in_ten_of_its_findings_on_heads_are_true():
+    def rows(rule, right, false, batch="x"):
+        made = [record(rule, str(at), "true" if at < right else "false", f"o/{at}") for at in range(right + false)]
+        return [{"batch": batch, **row} for row in made]
+
+    given = [*rows("seldom", 1, 4), *rows("mostly", 17, 3), *rows("few", 0, 2), *rows("mended", 0, 9)]
+    given += [*rows("mended", 20, 0, "y"), *({**row, "repo": "o/r"} for row in rows("once", 0, 9))]
+    given += [{**row, "tag": "1.0.0"} for row in rows("released", 0, 9)]
+    assert verdicts.find_imprecise(given) == {"seldom": (1, 5)}

@@ -14,9 +14,9 @@ Why it breaks
 Severity
     error when a source compiles the file, none of the headers that reach it there brings the name on the target, under
     the C++ standard in force, and all of them are known, or for a ROS package's name none of the others depends on
-    that; warning when something else is not known, or is known to announce the type, where no header ever brought a
-    ROS package's name, and in installed headers that only tests compile, or nothing; note for files that no source
-    compiles, and for what lies ahead, in the newest distro.
+    that; warning in tests, under conditions, and in installed headers that only tests compile, or nothing; note where
+    the contents of one of the headers are not known or it is known to announce the type, where no header ever brought
+    a ROS package's name, for files that no source compiles, and for what lies ahead, in the newest distro.
 
 Example
     uint32_t width;                             // and no #include <cstdint>: GCC 13 stops here
@@ -84,7 +84,10 @@ def missing_include(view: TargetView):
                 continue
             reported.add((need.at.path, lost.header))
             horizon = "" if lost.now else view.horizon
-            doubt = None if sure else Doubt.INCOMPLETE if places.matters(need, lost) else Doubt.UNCOMPILED
+            doubt = None
+            if not sure:
+                unsure = Doubt.INCOMPLETE if known and lost.sure else Doubt.UNCHECKED
+                doubt = unsure if places.matters(need, lost) else Doubt.UNCOMPILED
             yield Diagnostic(
                 need.at,
                 lost.header,
