@@ -20,8 +20,8 @@ from ..edges.files import write_file
 from ..impact.facts.cmake import extract
 from ..impact.facts.manifest import extract as read_manifest
 from ..impact.model.cmake.names import COMMANDS
-from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.tables import DATA
 
 _NAME = re.compile(r"[a-z][a-z0-9]*_\w+\Z")
 _SCRIPT = re.compile(r"\.cmake(\.in|\.em)?\Z")

@@ -24,8 +24,8 @@ from ..edges.console import UserError
 from ..edges.documents import DocumentError, load_toml
 from ..edges.files import check_writable_path, read_file, write_file
 from ..edges.limits import get_limits
-from ..impact.targets.snapshot import DATA, DATA_VARIABLE
 from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.tables import DATA, DATA_VARIABLE
 from .git import Report
 
 _STATE = "steps.json"

@@ -13,6 +13,7 @@ from ..impact.cache import cache_folder
 from ..impact.targets import snapshot as snapshots
 from ..impact.targets.snapshot import Snapshot
 from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.tables import DATA, find_updated_folder
 from .git import BuildError, Report
 from .write import DistroRow, Sync
 
@@ -68,7 +69,7 @@ def read_status(snapshot: Snapshot | None = None) -> Status:
         used.date,
         dict(used.info.sources),
         used.data,
-        used.data != snapshots.DATA,
+        used.data != DATA,
         (used.data / "distros.sqlite.zst").stat().st_size,
         dict(used.fetch("SELECT d.name, max(s.day) FROM sync s JOIN distro d ON d.id = s.distro GROUP BY d.id")),
         load_shipped().about._asdict(),
@@ -99,7 +100,7 @@ def update(
         )
     except BuildError as error:
         raise BuildError(f"{error}; the data of {used.date} stays in use") from None
-    folder = output or snapshots.find_updated_folder()
+    folder = output or find_updated_folder()
     today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
     write.write_snapshot(raw, today, {**used.info.sources, "updated from": used.date}, folder)
     return Updated(today, folder, found.syncs, found.releases, found.manifests, found.rules, found.failures)

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ....edges.memory import cache_method
-from ..snapshot import DATA, read_table
+from ..tables import find_data_folder
 from ..target import Provider
-from ..unpacked import ShippedDatabase
+from ..unpacked import ShippedDatabase, read_table
 from ..version import parse
 
 __all__ = ["HeaderSpan", "Providers", "load_providers"]
@@ -65,8 +65,9 @@ class Providers(ShippedDatabase):
     form = 2
     fill = staticmethod(add_facts)
 
-    def __init__(self, data: Path = DATA, cache: Path | None = None):
-        super().__init__(data, cache, data)
+    def __init__(self, data: Path | None = None, cache: Path | None = None):
+        folder = data or find_data_folder()
+        super().__init__(folder, cache, folder)
 
     def __reduce__(self):
         return Providers, (self.data, self._cache)
