@@ -47,8 +47,10 @@ def read_tables() -> int:
     make_version_test("rclcpp", False, "1.0.0", ros=2, oldest="1.0.0")
     for kind in ("call-changed", "behaviour"):
         changes.load_uses(kind)
-    for load in (changes.load_rows, changes.load_transitive, parameters.load_renamed_parameters, load_sonames,
-                 load_offered, index_headers, lambda: load_apt("ubuntu jammy"), lambda: load_shipped().about):  # fmt: skip
+    for load in (
+        *(changes.load_rows, changes.load_transitive, parameters.load_renamed_parameters, load_sonames, load_offered),
+        *(index_headers, lambda: load_apt("ubuntu jammy"), lambda: load_shipped().about),
+    ):
         load()
     return 0
 
