@@ -128,7 +128,7 @@ def _unpack(path: Path, names: frozenset[str], folder: Path) -> None:
             if path.name.endswith(".zip"):
                 members = _list_zip(opened.enter_context(zipfile.ZipFile(stream)))
             else:
-                _write_limited(_inflate(path, stream), _LARGEST_ARCHIVE, folder / _TAR, str(path))
+                _write_limited(_decompress(path, stream), _LARGEST_ARCHIVE, folder / _TAR, str(path))
                 members = _list_tar(opened.enter_context(tarfile.open(folder / _TAR, "r:")))
             for name, member in _select_members(path, members, names):
                 _write_limited(_read_stream(member), LARGEST, folder / name, f"{path}: `{name}`")
@@ -137,7 +137,7 @@ def _unpack(path: Path, names: frozenset[str], folder: Path) -> None:
         raise UserError(f"{path}: cannot be unpacked: {error or 'it is cut off'}; get it again") from None
 
 
-def _inflate(path: Path, stream: IO[bytes]) -> Iterator[bytes]:
+def _decompress(path: Path, stream: IO[bytes]) -> Iterator[bytes]:
     import zstandard
 
     if not path.name.endswith(".zst"):

@@ -83,7 +83,7 @@ def update_tables(source: str, report: Report | None = None) -> TablesUpdate:
             elif file.parent != folder:
                 _store(read_chunks(file), table, folder / name, str(file))
     tell("reading the tables", 0, 0)
-    _try_tables(folder, source)
+    _check_tables(folder, source)
     write_file(folder / MANIFEST, text)
     write_file(home / POINTER, folder.name.encode())
     _remove_others(home, {folder.name, *((before.folder.name,) if before is not None else ())})
@@ -170,7 +170,7 @@ def _store(chunks: Iterable[bytes], table: StoredTable, file: Path, what: str) -
             raise UserError(f"{what}: holds {said} than {MANIFEST} says; try again, or get it from another source")
 
 
-def _try_tables(folder: Path, source: str) -> None:
+def _check_tables(folder: Path, source: str) -> None:
     """Raises UserError where a check could not read the tables of a folder."""
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, DATA_VARIABLE: str(folder), CACHE_VARIABLE: cache, "PYTHONSAFEPATH": "1"}

@@ -41,7 +41,7 @@ def home(tmp_path, monkeypatch) -> Path:
 @pytest.fixture
 def untried(monkeypatch) -> None:
     """Leaves out the process that reads all tables."""
-    monkeypatch.setattr(table_update, "_try_tables", lambda folder, source: None)
+    monkeypatch.setattr(table_update, "_check_tables", lambda folder, source: None)
 
 
 def publish(folder: Path, files: dict[str, bytes], **otherwise: object) -> Path:
