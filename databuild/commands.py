@@ -1,4 +1,4 @@
-"""Builds data/commands.json: the CMake functions and macros that packages give to those who find them.
+"""Builds data/commands.json.zst: the CMake functions and macros that packages give to those who find them.
 
     python -P -m rosimpact.databuild.commands FOLDER... --output DATA
 
@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import msgspec
+import zstandard
 
 from ..edges.files import write_file
 from ..impact.facts.cmake import extract
@@ -71,8 +72,8 @@ def main(arguments: list[str] | None = None) -> None:
         if name not in COMMANDS:
             owners[str(generation)].setdefault(name, set()).add(package)
     made = {ros: {name: " ".join(sorted(found)) for name, found in rows.items()} for ros, rows in owners.items()}
-    written = msgspec.json.format(msgspec.json.encode(made, order="sorted"), indent=1) + b"\n"
-    write_file(given.output / "commands.json", written)
+    text = msgspec.json.encode(made, order="sorted")
+    write_file(given.output / "commands.json.zst", zstandard.ZstdCompressor(level=19).compress(text))
     print(*(f"ROS {ros}: {len(rows)} commands" for ros, rows in made.items()), sep=", ")
 
 

@@ -180,7 +180,7 @@ STEPS = (
          lambda sources, data, own: _call("databuild.find_modules", *sources.cmake.modules)
          if sources.cmake.modules else None),
     BuildStep("cmake-names", (), (), _build_cmake_names),
-    BuildStep("commands", ("commands.json",), ("surfaces", "cmake-names"),
+    BuildStep("commands", ("commands.json.zst",), ("surfaces", "cmake-names"),
          lambda sources, data, own: _call("databuild.commands", *sources.commands) if sources.commands else None),
     BuildStep("std-names", ("std_names.json.zst",), (), _build_std_names),
     BuildStep("fields", ("fields.json.zst",), ("manifests",),

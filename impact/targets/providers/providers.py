@@ -135,7 +135,7 @@ class Providers(ShippedDatabase):
     def commands(self) -> dict[int, dict[str, str]]:
         """The packages that define a CMake function or macro, by generation of ROS and its name in lower case, see
         databuild/commands.py."""
-        return read_table(self.data / "commands.json", dict[int, dict[str, str]])
+        return read_table(self.data / "commands.json.zst", dict[int, dict[str, str]])
 
     def list_spellings(self, name: str) -> tuple[str, ...]:
         """Every known CMake package whose name differs from this one in letter case at most."""
