@@ -5,6 +5,7 @@ never more bytes than a limit. What is wrong with it raises UserError.
 """
 
 import contextlib
+import errno
 import gzip
 import stat
 import tarfile
@@ -132,8 +133,11 @@ def _unpack(path: Path, names: frozenset[str], folder: Path) -> None:
                 members = _list_tar(opened.enter_context(tarfile.open(folder / _TAR, "r:")))
             for name, member in _select_members(path, members, names):
                 _write_limited(_read_stream(member), LARGEST, folder / name, f"{path}: `{name}`")
-    except (tarfile.TarError, zipfile.BadZipFile, zlib.error, zstandard.ZstdError, gzip.BadGzipFile, EOFError,
+    except (tarfile.TarError, zipfile.BadZipFile, zlib.error, zstandard.ZstdError, OSError, EOFError,
             ValueError, NotImplementedError, RuntimeError) as error:  # fmt: skip
+        # A place before the beginning, which a damaged archive may name, is an invalid argument of no file.
+        if isinstance(error, OSError) and (error.filename or error.errno not in (None, errno.EINVAL)):
+            raise
         raise UserError(f"{path}: cannot be unpacked: {error or 'it is cut off'}; get it again") from None
 
 
@@ -171,6 +175,8 @@ def _list_tar(archive: tarfile.TarFile) -> Iterator[_Member]:
 
 def _list_zip(archive: zipfile.ZipFile) -> Iterator[_Member]:
     for one in archive.infolist():
+        if one.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise zipfile.BadZipFile(f"`{one.filename}` is compressed in another way than `zip` does")
         regular = stat.S_IFMT(one.external_attr >> 16) in (0, stat.S_IFREG)
         yield one.filename, lambda one=one, regular=regular: archive.open(one) if regular else None
 
