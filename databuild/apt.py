@@ -26,7 +26,8 @@ import msgspec
 from ..edges.files import write_file
 from ..impact.targets.providers.apt import INFERRED, AptGraph
 from ..impact.targets.providers.providers import Providers
-from ..impact.targets.snapshot import DATA, load_snapshot
+from ..impact.targets.snapshot import load_snapshot
+from ..impact.targets.tables import DATA
 from .providers import read_dependencies, read_keys
 
 BASE = "build-essential"

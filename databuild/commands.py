@@ -1,4 +1,4 @@
-"""Builds data/commands.json: the CMake functions and macros that packages give to those who find them.
+"""Builds data/commands.json.zst: the CMake functions and macros that packages give to those who find them.
 
     python -P -m rosimpact.databuild.commands FOLDER... --output DATA
 
@@ -15,13 +15,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import msgspec
+import zstandard
 
 from ..edges.files import write_file
 from ..impact.facts.cmake import extract
 from ..impact.facts.manifest import extract as read_manifest
 from ..impact.model.cmake.names import COMMANDS
-from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.tables import DATA
 
 _NAME = re.compile(r"[a-z][a-z0-9]*_\w+\Z")
 _SCRIPT = re.compile(r"\.cmake(\.in|\.em)?\Z")
@@ -71,8 +72,8 @@ def main(arguments: list[str] | None = None) -> None:
         if name not in COMMANDS:
             owners[str(generation)].setdefault(name, set()).add(package)
     made = {ros: {name: " ".join(sorted(found)) for name, found in rows.items()} for ros, rows in owners.items()}
-    written = msgspec.json.format(msgspec.json.encode(made, order="sorted"), indent=1) + b"\n"
-    write_file(given.output / "commands.json", written)
+    text = msgspec.json.encode(made, order="sorted")
+    write_file(given.output / "commands.json.zst", zstandard.ZstdCompressor(level=19).compress(text))
     print(*(f"ROS {ros}: {len(rows)} commands" for ros, rows in made.items()), sep=", ")
 
 

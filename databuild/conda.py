@@ -26,7 +26,7 @@ import zstandard
 
 from ..edges.files import write_file
 from ..impact.targets.platform import normalize_library_name
-from ..impact.targets.snapshot import DATA
+from ..impact.targets.tables import DATA
 from ..impact.targets.version import is_at_least
 from .git import BuildError, open_repository, read_file_versions, read_first_parents
 from .surface.releases import find_git_directory

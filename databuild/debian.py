@@ -29,8 +29,8 @@ from ..edges.files import write_file
 from ..impact.facts.surface import CLASSES, Entity, HeaderSurface, list_offered
 from ..impact.targets.changes import load_rows, load_uses
 from ..impact.targets.platform import CODENAMES
-from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.tables import DATA
 from ..impact.targets.version import is_at_least, parse
 from . import library_file, library_tags
 from .includes import list_platform_versions

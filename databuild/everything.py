@@ -24,9 +24,10 @@ from ..edges.console import UserError
 from ..edges.documents import DocumentError, load_toml
 from ..edges.files import check_writable_path, read_file, write_file
 from ..edges.limits import get_limits
-from ..impact.targets.snapshot import DATA, DATA_VARIABLE
 from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.tables import DATA, DATA_VARIABLE, MANIFEST
 from .git import Report
+from .table_manifest import write_manifest
 
 _STATE = "steps.json"
 LOGS = "logs"
@@ -179,7 +180,7 @@ STEPS = (
          lambda sources, data, own: _call("databuild.find_modules", *sources.cmake.modules)
          if sources.cmake.modules else None),
     BuildStep("cmake-names", (), (), _build_cmake_names),
-    BuildStep("commands", ("commands.json",), ("surfaces", "cmake-names"),
+    BuildStep("commands", ("commands.json.zst",), ("surfaces", "cmake-names"),
          lambda sources, data, own: _call("databuild.commands", *sources.commands) if sources.commands else None),
     BuildStep("std-names", ("std_names.json.zst",), (), _build_std_names),
     BuildStep("fields", ("fields.json.zst",), ("manifests",),
@@ -293,11 +294,12 @@ def build_everything(
         ended[step.name] = _Ended(_compute_key(arguments, _list_read(step, output)), seconds, said)
         write_file(work / _STATE, msgspec.json.encode(ended))
         yield BuiltTable(step.name, "made", seconds, said)
+    write_manifest(output)
 
 
 def _copy_missing(output: Path) -> None:
     for path in sorted(DATA.iterdir()):
-        if path.is_file() and not (output / path.name).exists():
+        if path.is_file() and path.name != MANIFEST and not (output / path.name).exists():
             shutil.copyfile(path, output / path.name)
 
 

@@ -20,7 +20,7 @@ import msgspec
 
 from ..edges.files import write_file
 from ..impact.facts.cmake import Command, extract
-from ..impact.targets.snapshot import DATA
+from ..impact.targets.tables import DATA
 
 _KINDS = {"find_path": "header", "find_program": "program"}
 _OPTION = re.compile(

@@ -32,9 +32,9 @@ from ..impact.facts.condition import Condition
 from ..impact.targets.changes import DISTROS
 from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.providers import includes
-from ..impact.targets.snapshot import DATA
 from ..impact.targets.surface.includes import Included
 from ..impact.targets.surface.store import TYPES, Surfaces, load_shipped
+from ..impact.targets.tables import DATA
 from ..impact.targets.version import parse
 from .history import _find_tree
 from .surface.releases import find_git_directory

@@ -20,7 +20,8 @@ from pathlib import Path
 from typing import Any
 
 from ..impact.targets.distro.distro import make_version_key
-from ..impact.targets.snapshot import DATA, Snapshot, read_shipped
+from ..impact.targets.snapshot import Snapshot, read_shipped
+from ..impact.targets.tables import DATA
 from .git import open_repository
 from .manifests import DeclaredVersion, changes_only, parse_manifest
 from .surface.releases import Release, find_git_directory, find_tag, list_releases

@@ -28,7 +28,8 @@ import msgspec
 from ..edges.files import write_file
 from ..impact.targets.distro.rosdep import decode_rule
 from ..impact.targets.providers.providers import BY_FOLDER
-from ..impact.targets.snapshot import DATA, Snapshot, load_snapshot
+from ..impact.targets.snapshot import Snapshot, load_snapshot
+from ..impact.targets.tables import DATA
 from .history import RosFacts, read_repositories
 
 SCHEMA = """

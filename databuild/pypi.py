@@ -39,9 +39,10 @@ from ..edges.files import write_file
 from ..edges.memory import cache_method
 from ..impact.facts.python.source import read
 from ..impact.facts.python.surface import ModuleSurface, is_private
-from ..impact.targets.snapshot import DATA, read_table
 from ..impact.targets.surface.python import UNKNOWN, PythonName, SurfaceNames
 from ..impact.targets.surface.surface import InstalledModule, PythonSurface
+from ..impact.targets.tables import DATA
+from ..impact.targets.unpacked import read_table
 from ..impact.targets.version import is_at_least, parse
 from .extract.module_getattr import read_module_getattr
 from .extract.python import extract

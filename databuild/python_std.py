@@ -21,9 +21,10 @@ import msgspec
 
 from ..impact.facts.python.surface import Bound, ImportedName, ModuleSurface
 from ..impact.targets.changes import load_rows
-from ..impact.targets.snapshot import DATA, load_snapshot
+from ..impact.targets.snapshot import load_snapshot
 from ..impact.targets.surface.python import UNKNOWN, SurfaceNames
 from ..impact.targets.surface.surface import BuildSurface, InstalledModule, PythonSurface, Surface
+from ..impact.targets.tables import DATA
 from .extract.python import extract
 from .jobs import Packing
 from .surface.compare import RepositorySurfaces

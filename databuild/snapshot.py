@@ -1,5 +1,6 @@
 """`rosimpact data`: build the snapshot from git repositories, refresh it from the network, tell its date."""
 
+import contextlib
 import datetime
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -13,10 +14,11 @@ from ..impact.cache import cache_folder
 from ..impact.targets import snapshot as snapshots
 from ..impact.targets.snapshot import Snapshot
 from ..impact.targets.surface.store import load_shipped
+from ..impact.targets.tables import DATA, find_updated_folder, read_fetched, read_manifest
 from .git import BuildError, Report
 from .write import DistroRow, Sync
 
-__all__ = ["BuildError", "BuiltSnapshot", "Status", "Updated", "build", "read_status", "update"]
+__all__ = ["BuildError", "BuiltSnapshot", "Status", "TablesStatus", "Updated", "build", "read_status", "update"]
 
 _SAVE_EVERY = 2000
 
@@ -33,11 +35,20 @@ class BuiltSnapshot(NamedTuple):
     unreadable: dict[str, int]
 
 
+class TablesStatus(NamedTuple):
+    """Which tables are in use. date: of their manifest; empty where there is none. updated: those that are not as
+    shipped. unused: why those that `data update --from` fetched are not in use, as a clause; empty without any."""
+
+    date: str
+    updated: tuple[str, ...]
+    unused: str
+
+
 class Status(NamedTuple):
     """What data is in use. sources: repository → commit. folder: where it lies; updated: it is not the shipped one.
 
-    last_syncs: newest sync known for each distro that has any; packed: bytes. surfaces: what is shipped of
-    them (see surface_store.About), which no update changes.
+    last_syncs: newest sync known for each distro that has any; packed: bytes. surfaces: what is in use of
+    them (see surface_store.About).
     """
 
     date: str
@@ -47,6 +58,7 @@ class Status(NamedTuple):
     packed: int
     last_syncs: dict[str, str]
     surfaces: dict[str, Any]
+    tables: TablesStatus
 
 
 class Updated(NamedTuple):
@@ -68,11 +80,23 @@ def read_status(snapshot: Snapshot | None = None) -> Status:
         used.date,
         dict(used.info.sources),
         used.data,
-        used.data != snapshots.DATA,
+        used.data != DATA,
         (used.data / "distros.sqlite.zst").stat().st_size,
         dict(used.fetch("SELECT d.name, max(s.day) FROM sync s JOIN distro d ON d.id = s.distro GROUP BY d.id")),
         load_shipped().about._asdict(),
+        _read_tables_status(),
     )
+
+
+def _read_tables_status() -> TablesStatus:
+    fetched, shipped = read_fetched(), None
+    with contextlib.suppress(OSError, ValueError):  # a folder that ROSIMPACT_DATA names may have none
+        shipped = read_manifest(DATA)
+    if fetched is None or fetched.manifest is None or fetched.unused:
+        return TablesStatus(shipped.date if shipped else "", (), fetched.unused if fetched is not None else "")
+    before = shipped.tables if shipped else {}
+    updated = tuple(name for name, table in fetched.manifest.tables.items() if before.get(name) != table)
+    return TablesStatus(fetched.manifest.date, updated, "")
 
 
 def update(
@@ -99,7 +123,7 @@ def update(
         )
     except BuildError as error:
         raise BuildError(f"{error}; the data of {used.date} stays in use") from None
-    folder = output or snapshots.find_updated_folder()
+    folder = output or find_updated_folder()
     today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
     write.write_snapshot(raw, today, {**used.info.sources, "updated from": used.date}, folder)
     return Updated(today, folder, found.syncs, found.releases, found.manifests, found.rules, found.failures)

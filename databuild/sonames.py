@@ -21,7 +21,7 @@ import msgspec
 
 from ..edges.files import write_file
 from ..impact.targets.machine.sonames import FILE, SonamesTable
-from ..impact.targets.snapshot import DATA
+from ..impact.targets.tables import DATA
 from .providers import unpack
 
 _LIBRARY = re.compile(rb"(?:usr/)?lib(?:32|64|x32)?/(?!debug/)(?:[^ \t]*/)?([^/ \t]+\.so\.\d[\w.+~-]*)[ \t]+(\S+)$")

@@ -23,7 +23,7 @@ import zstandard
 
 from ..edges.files import write_file
 from ..impact.targets.providers.standard import HEADER_SINCE
-from ..impact.targets.snapshot import DATA
+from ..impact.targets.tables import DATA
 
 NAMES = {
     "algorithm": """

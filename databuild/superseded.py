@@ -43,12 +43,13 @@ from ..impact.targets.availability import Availabilities
 from ..impact.targets.changes import DISTROS
 from ..impact.targets.distro.distro import DistroTarget
 from ..impact.targets.distro.known import list_known_distros
-from ..impact.targets.snapshot import DATA, read_table
 from ..impact.targets.surface.changes import Line
 from ..impact.targets.surface.fields import covers, load_fields
 from ..impact.targets.surface.offers import find_standing
 from ..impact.targets.surface.store import load_shipped
 from ..impact.targets.symbol import Symbol
+from ..impact.targets.tables import DATA
+from ..impact.targets.unpacked import read_table
 from ..impact.targets.version import is_at_least
 from .includes import list_platform_versions
 from .pypi import FILE as PYPI_FILE

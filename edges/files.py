@@ -111,9 +111,10 @@ def read_start(path: Path, size: int) -> bytes:
         os.close(descriptor)
 
 
-def read_chunks(path: Path, size: int = _CHUNK) -> Iterator[bytes]:
-    """A regular file piece by piece, for what is searched and not kept. Raises OSError."""
-    descriptor = open_regular(path)
+def read_chunks(path: Path, size: int = _CHUNK, *, follow: bool = True) -> Iterator[bytes]:
+    """A regular file piece by piece, for what is searched and not kept. follow: as for open_regular(). Raises
+    OSError."""
+    descriptor = open_regular(path, follow=follow)
     try:
         while data := os.read(descriptor, size):
             yield data

@@ -17,7 +17,7 @@ from typing import NamedTuple, TypeAlias
 
 import pygit2
 import pytest
-from rosimpact.impact.targets import snapshot
+from rosimpact.impact.targets import snapshot, tables
 from rosimpact.impact.targets.providers import providers
 
 MANIFEST = """<?xml version="1.0"?>
@@ -735,7 +735,7 @@ def data(ws, tmp_path, monkeypatch) -> Path:
 
     write(ws, {"src/bad/src/node.cpp": "#include <rclcpp/rclcpp.hpp>\n"})
     folder = tmp_path / "data"
-    shutil.copytree(snapshot.DATA, folder)
+    shutil.copytree(tables.DATA, folder)
     # What an earlier test's check came to is remembered there, and would be said again without a look at the data.
     monkeypatch.setenv("ROSIMPACT_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(snapshot, "_default", snapshot.Snapshot(folder, tmp_path / "unpacked", folder))

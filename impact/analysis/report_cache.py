@@ -16,7 +16,7 @@ from ..config import Config
 from ..facts.store import Store, encode_rows
 from ..rules.rule import Finding, load_rules
 from ..source_keys import compute_code_stamp
-from ..targets.snapshot import compute_data_stamp, find_updated_folder
+from ..targets.tables import compute_data_stamp, find_updated_folder
 from ..tree import WorkingTree
 from ..tree.paths import compute_blob_id
 from .report import AnalysisCoverage, Checked, Report, ReportedPackage, SourceLines, report_target

@@ -21,9 +21,9 @@ from ..model.workspace import Workspace
 from ..rules.rule import Diagnostic
 from ..source_keys import compute_code_stamp
 from ..targets.changes import index_uses
-from ..targets.snapshot import compute_data_stamp
 from ..targets.surface.fields import load_fields
 from ..targets.surface.store import load_shipped
+from ..targets.tables import compute_data_stamp
 
 # (rule, what it yields)
 Yielded = tuple[str, Diagnostic]

@@ -422,8 +422,19 @@ def data_build(
 
 
 @_add_command(data_app, "update")
-def data_update() -> None:
-    """Update the snapshot over the network, with the rosdistro library."""
+def data_update(
+    from_: str = _make_option(
+        "Take all tables from here: a folder that `data build` made, an archive of one (.tar.zst, .tar.gz, .zip), or "
+        "its http(s) address.",
+        "--from",
+        default="",
+    ),
+    shipped: bool = _make_option("Remove what updates made, and use the shipped data.", "--shipped", default=False),
+) -> None:
+    """Update the snapshot over the network, with the rosdistro library; or all tables, with --from.
+
+    Exit status: 0 updated, 2 not updated; the data in use stay.
+    """
 
 
 @_add_command(study_app, "run")

@@ -1,9 +1,15 @@
 """rosimpact data."""
 
+from __future__ import annotations
+
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ...edges.console import UserError, escape_json, format_count, make_step_reporter, run_command, say
 from .output import READ_SO_FAR, make_command, print_answer
+
+if TYPE_CHECKING:
+    from ...databuild.snapshot import TablesStatus
 
 
 @make_command("text", "json")
@@ -15,17 +21,27 @@ def data_status(format: str) -> str:
     if format == "json":
         import json
 
-        return escape_json(json.dumps(found._asdict(), indent=1, default=str, ensure_ascii=False))
+        answer = {**found._asdict(), "tables": found.tables._asdict()}
+        return escape_json(json.dumps(answer, indent=1, default=str, ensure_ascii=False))
     origin = "updated" if found.updated else "shipped with rosimpact"
     lines = [f"distro data of {found.date}, {origin}, {found.packed / 1e6:.1f} MB, in {found.folder}"]
     lines += [f"from {name} {commit}" for name, commit in found.sources.items()]
     if found.last_syncs:
         newest = ", ".join(f"{name} {day}" for name, day in sorted(found.last_syncs.items()))
         lines.append(f"newest syncs: {newest}")
+    lines.append(f"tables {_describe_tables(found.tables)}")
     kept = found.surfaces
     told_of = f"{format_count(kept['packages'], 'package')}, {format_count(kept['versions'], 'version')}"
     lines.append(f"surfaces of {told_of}, as of {kept['date']}, of {kept['distros']}")
     return "\n".join(lines)
+
+
+def _describe_tables(tables: TablesStatus) -> str:
+    date = f"of {tables.date}" if tables.date else "without a date"
+    if tables.updated:
+        return f"{date}, updated: {', '.join(tables.updated)}"
+    unused = f"; fetched ones are not used: {tables.unused}" if tables.unused else ""
+    return f"{date}, as shipped with rosimpact{unused}"
 
 
 def data_build(
@@ -71,8 +87,10 @@ _OUTCOMES = {
 
 def _build_snapshot(rosdistro: Path, output: Path, work: Path, meta_ros: Path | None) -> int:
     from ...databuild.snapshot import build
+    from ...databuild.table_manifest import write_manifest
 
     built = build(rosdistro, output, work, meta_ros, make_step_reporter())
+    write_manifest(output)
     print_answer(
         f"data of {built.date} in {output}: {format_count(built.releases, 'release')}, "
         f"{format_count(built.manifests, 'manifest')}, {format_count(built.rules, 'rosdep rule')}, "
@@ -84,10 +102,16 @@ def _build_snapshot(rosdistro: Path, output: Path, work: Path, meta_ros: Path | 
     return 0
 
 
-def data_update() -> int:
-    """Refreshes the snapshot over the network."""
+def data_update(from_: str, shipped: bool) -> int:
+    """Refreshes the snapshot over the network; takes all tables from a source, or goes back to the shipped ones."""
 
     def update_data() -> int:
+        if from_ and shipped:
+            raise UserError("--shipped: has no effect with --from; give one of them")
+        if shipped:
+            return _reset_tables()
+        if from_:
+            return _update_tables(from_)
         from ...databuild.snapshot import update
 
         found = update(report=make_step_reporter())
@@ -102,3 +126,22 @@ def data_update() -> int:
         return 0
 
     return run_command(update_data, "interrupted; the data in use stays", "the distro data")
+
+
+def _update_tables(source: str) -> int:
+    from ...databuild.table_update import update_tables
+
+    found = update_tables(source, make_step_reporter())
+    print_answer(
+        f"tables of {found.date} in {found.folder}: {len(found.fetched)} fetched, "
+        f"{len(found.changed)} not as shipped{': ' if found.changed else ''}{', '.join(found.changed)}",
+        "text",
+    )
+    return 0
+
+
+def _reset_tables() -> int:
+    from ...databuild.table_update import reset_tables
+
+    print_answer("back to the shipped data" if reset_tables() else "the shipped data are in use", "text")
+    return 0

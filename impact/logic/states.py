@@ -13,6 +13,7 @@ from ..facts.kinds import make_overall_version
 from ..facts.store import Store, pack, unpack
 from ..model.flow import join
 from ..source_keys import compute_source_key
+from ..targets.tables import compute_data_version
 from .changes import LogicChange, Side, changes, is_unchanged
 from .guard_renames import propose_renames
 from .guard_solver import limit_questions
@@ -143,6 +144,7 @@ class Digests:
 
 @cache
 def compute_stamp(module: str) -> bytes:
-    """Changes whenever the code does that makes facts, joins them, or compares; module: what does so."""
-    found = f"{compute_source_key(module, join.__name__)} {make_overall_version()} {format_limits()}"
+    """Changes whenever the code does that makes facts, joins them, or compares, or the data; module: what does so."""
+    code = compute_source_key(module, join.__name__)
+    found = f"{code} {make_overall_version()} {compute_data_version()} {format_limits()}"
     return hashlib.sha1(found.encode()).digest()[:8]

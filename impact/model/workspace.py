@@ -38,6 +38,7 @@ from ..facts.setup import SetupFile
 from ..facts.store import Store
 from ..source_keys import compute_source_key
 from ..targets.surface.fields import ROS1_SUFFIXES, make_snake_case
+from ..targets.tables import compute_data_version
 from ..tree.paths import Tree, is_vendored
 from .cmake.build import At, Build
 from .cmake.interpret import interpret, list_extras
@@ -638,7 +639,7 @@ class _Linker:
         self.by_name = {p.name: p for p in discovered.packages}
         self._extras: dict[str, tuple[str, ...]] = {}
         self.whole = True
-        self.code = f"{compute_source_key(__name__)} {make_overall_version()}"
+        self.code = f"{compute_source_key(__name__)} {make_overall_version()} {compute_data_version()}"
         self.unread = frozenset(problem.path for problem in (*extraction.problems, *tree.skipped))
         self.identity = hashlib.sha1(f"{self.code} {ros} {sorted(self.unread)}".encode("utf-8", "backslashreplace"))
         self.outline = self.identity.copy()

@@ -22,7 +22,8 @@ from ..facts.usage import Pattern
 from .distro.known import release_day
 from .providers.libraries import load_libraries
 from .providers.providers import Providers, load_providers
-from .snapshot import DATA, SnapshotError, read_table
+from .tables import find_data_folder, list_tables, suggest_repair
+from .unpacked import SnapshotError, read_table
 from .version import is_at_least
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 def _read(pattern: str, *last: str) -> list[_File]:
     """The files of a pattern. last: those that come last."""
-    paths = sorted(DATA.glob(pattern), key=lambda path: (path.name in last, path.name))
+    paths = sorted(list_tables(pattern), key=lambda path: (path.name in last, path.name))
     return [read_table(path, _File) for path in paths]
 
 
@@ -181,7 +182,7 @@ def load_uses(kind: str = "call-changed") -> dict[str, ChangeRow]:
             shared |= {"removed_in": group.since, "back_in": group.until}
         for label, use in group.uses.items():
             if label in found:
-                raise SnapshotError(f"{DATA}: two uses are called `{label}`; install rosimpact again")
+                raise SnapshotError(f"{find_data_folder()}: two uses are called `{label}`; {suggest_repair()}")
             found[label] = ChangeRow(old=label, new=use.help or group.help, pattern=use, **shared)
     return found
 
@@ -214,7 +215,7 @@ _LESS_TELLING = frozenset(("api-renamed", "api-changed"))
 @cache
 def compute_uses_stamp() -> str:
     """Differs whenever a table of uses does."""
-    paths = (path for pattern in _USES.values() for path in sorted(DATA.glob(pattern)))
+    paths = (path for pattern in _USES.values() for path in list_tables(pattern))
     return hashlib.sha1(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
 
 

@@ -8,7 +8,8 @@ from functools import cache
 
 import msgspec
 
-from .snapshot import DATA, read_table
+from .tables import find_table
+from .unpacked import read_table
 
 
 def find_last_part(name: str) -> str:
@@ -45,4 +46,4 @@ def find_renamed_parameters(package: str) -> dict[str, tuple[str, ...]]:
 @cache
 def load_renamed_parameters() -> list[RenamedParameters]:
     """Every row. Raises SnapshotError."""
-    return read_table(DATA / "parameters.json", _File).renamed
+    return read_table(find_table("parameters.json"), _File).renamed

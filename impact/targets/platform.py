@@ -6,7 +6,8 @@ from functools import lru_cache
 
 import msgspec
 
-from .snapshot import DATA, read_table
+from .tables import find_table
+from .unpacked import read_table
 from .version import parse_number
 
 
@@ -26,7 +27,7 @@ class _Platforms(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     python_libraries: dict[str, str]
 
 
-_SHIPPED = read_table(DATA / "platforms.json", _Platforms)
+_SHIPPED = read_table(find_table("platforms.json"), _Platforms)
 CODENAMES, _FROZEN = _SHIPPED.codenames, _SHIPPED.frozen
 OTHER_SYSTEMS, OTHER_RELEASES = frozenset(_SHIPPED.other_systems.split()), frozenset(_SHIPPED.other_releases.split())
 PYTHON_LIBRARIES = _SHIPPED.python_libraries

@@ -20,9 +20,8 @@ import msgspec
 from ...edges.files import read_file
 from ...edges.limits import get_limits
 from ...edges.memory import cache_method
-from ..cache import cache_folder
+from .tables import find_data_folder, find_updated_folder, suggest_repair
 from .unpacked import AddFacts, ShippedDatabase, SnapshotError
-from .unpacked import read_table as read_table
 
 FACT_SCHEMA = """
 CREATE TABLE library(platform TEXT, name TEXT, version TEXT, source TEXT, PRIMARY KEY(platform, name)) WITHOUT ROWID;
@@ -46,10 +45,6 @@ KINDS = {
 }
 """One letter for each kind of dependency, as stored in dependencies.entries."""
 
-DATA_VARIABLE = "ROSIMPACT_DATA"
-"""A variable of the environment that names another data folder than the shipped one, as `rosimpact data build` made."""
-DATA = Path(os.environ.get(DATA_VARIABLE) or Path(__file__).parent / "data")
-
 
 class SnapshotInfo(msgspec.Struct, frozen=True):
     """What `snapshot.json` says: newest day of the data, SHA-256 of the unpacked database, and where it came from."""
@@ -59,7 +54,7 @@ class SnapshotInfo(msgspec.Struct, frozen=True):
     sources: dict[str, str] = {}
 
 
-def read_shipped(data: Path = DATA) -> SnapshotInfo:
+def read_shipped(data: Path) -> SnapshotInfo:
     """Date and content hash of the snapshot in a data folder.
 
     Raises SnapshotError when it is missing or damaged.
@@ -70,19 +65,7 @@ def read_shipped(data: Path = DATA) -> SnapshotInfo:
         int(info.sha256, 16)
         return info
     except (OSError, ValueError, RecursionError) as error:
-        raise SnapshotError(f"{data / 'snapshot.json'}: {error}; install rosimpact again") from None
-
-
-def compute_data_stamp() -> tuple[tuple[str, int, int], ...]:
-    """Sizes and times of the shipped data files; differs whenever one of them does."""
-    with os.scandir(DATA) as entries:
-        files = sorted((entry.name, entry.stat()) for entry in entries if entry.is_file())
-    return tuple((name, status.st_size, status.st_mtime_ns) for name, status in files)
-
-
-def find_updated_folder() -> Path:
-    """Where `rosimpact data update` keeps what it made; it is used while it is newer than what is shipped."""
-    return cache_folder() / "updated"
+        raise SnapshotError(f"{data / 'snapshot.json'}: {error}; {suggest_repair()}") from None
 
 
 def add_facts(connection: sqlite3.Connection, platforms: bytes, distros: bytes) -> None:
@@ -116,8 +99,8 @@ class Snapshot(ShippedDatabase):
     fact_files = ("platform_versions.yaml", "distros.yaml")
     fill = staticmethod(add_facts)
 
-    def __init__(self, data: Path = DATA, cache: Path | None = None, facts: Path = DATA):
-        super().__init__(data, cache, facts)
+    def __init__(self, data: Path | None = None, cache: Path | None = None, facts: Path | None = None):
+        super().__init__(data or find_data_folder(), cache, facts or find_data_folder())
         self._info: SnapshotInfo | None = None
 
     @property
@@ -150,8 +133,8 @@ class Snapshot(ShippedDatabase):
         except SnapshotError:
             if self.data != find_updated_folder():
                 raise
-            # What an update left broken is passed over; the shipped data is always there.
-            self.data, self._info = DATA, None
+            # What an update left broken is passed over; the other data are always there.
+            self.data, self._info = find_data_folder(), None
             return super()._read_contents()
 
 
@@ -167,10 +150,10 @@ def load_snapshot() -> Snapshot:
 
 
 def _find_newest_folder() -> Path:
-    """The shipped data, or what `data update` made where that is newer and whole."""
-    updated = find_updated_folder()
+    """The data folder in use, or the snapshot that `data update` made where that is newer and whole."""
+    updated, other = find_updated_folder(), find_data_folder()
     if os.path.exists(updated / "snapshot.json"):
         with contextlib.suppress(SnapshotError):
-            if read_shipped(updated).date > read_shipped().date and os.path.isfile(updated / "distros.sqlite.zst"):
+            if read_shipped(updated).date > read_shipped(other).date and os.path.isfile(updated / "distros.sqlite.zst"):
                 return updated
-    return DATA
+    return other

@@ -23,6 +23,7 @@ from ...edges.console import UserError
 from ...edges.files import read_chunks, read_file, read_with_status, write_file
 from ..cache import CACHE_VARIABLE, cache_folder
 from ..facts.store import FAULTS
+from .tables import LARGEST, suggest_repair
 
 T = TypeVar("T")
 _STALE = 3600
@@ -30,8 +31,7 @@ _SUM = ".sum"
 _SUM_BYTES = 1000
 # A change within this time of another may leave a file's times as they were.
 _TICK_NS = 20_000_000
-# Of shipped data; the largest has 2 MB, and 12 MB when it is unpacked.
-_PACKED_BYTES = 64 << 20
+# Of a packed table; the largest has 12 MB when it is unpacked.
 _UNPACKED_BYTES = 256 << 20
 
 
@@ -44,11 +44,21 @@ def read_table(path: Path, kind: type[T]) -> T:
     import zstandard
 
     try:
-        raw = read_file(path, _PACKED_BYTES)
-        raw = zstandard.ZstdDecompressor().decompress(raw) if path.suffix == ".zst" else raw
+        raw = read_file(path, LARGEST)
+        raw = _decompress_bounded(raw) if path.suffix == ".zst" else raw
         return msgspec.json.decode(raw, type=kind)
     except (OSError, ValueError, RecursionError, zstandard.ZstdError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+        raise SnapshotError(f"{path}: {error}; {suggest_repair()}") from None
+
+
+def _decompress_bounded(data: bytes) -> bytes:
+    """What a frame holds. Raises ZstdError, ValueError where it claims too much."""
+    import zstandard
+
+    # Memory for all that a frame says to hold is taken before the first byte is unpacked.
+    if zstandard.frame_content_size(data) > _UNPACKED_BYTES:
+        raise ValueError("claims to hold too much")
+    return zstandard.ZstdDecompressor().decompress(data, max_output_size=_UNPACKED_BYTES)
 
 
 @cache
@@ -72,15 +82,11 @@ def decompress(packed: Path, sha256: str, described: str) -> bytes:
     import zstandard
 
     try:
-        data = read_file(packed, _PACKED_BYTES)
-        # Memory for all that a file says to hold is taken before the first byte is unpacked.
-        if zstandard.frame_content_size(data) > _UNPACKED_BYTES:
-            raise SnapshotError(f"{packed}: claims to hold too much; install rosimpact again")
-        raw = zstandard.ZstdDecompressor().decompress(data, max_output_size=_UNPACKED_BYTES)
-    except (OSError, zstandard.ZstdError) as error:
-        raise SnapshotError(f"{packed}: {error}; install rosimpact again") from None
+        raw = _decompress_bounded(read_file(packed, LARGEST))
+    except (OSError, ValueError, zstandard.ZstdError) as error:
+        raise SnapshotError(f"{packed}: {error}; {suggest_repair()}") from None
     if hashlib.sha256(raw).hexdigest() != sha256:
-        raise SnapshotError(f"{packed}: does not match {described}; install rosimpact again")
+        raise SnapshotError(f"{packed}: does not match {described}; {suggest_repair()}")
     return raw
 
 
@@ -151,7 +157,7 @@ class ShippedDatabase:
         try:
             return [(self.facts / name).read_bytes() for name in self.fact_files]
         except OSError as error:
-            raise SnapshotError(f"{error}; install rosimpact again") from None
+            raise SnapshotError(f"{error}; {suggest_repair()}") from None
 
     def _open(self) -> sqlite3.Connection:
         """A connection of this process. In a forked one a file is opened anew: with its parent's connection both would

@@ -4,8 +4,11 @@ import json
 from pathlib import Path
 
 import pytest
+import zstandard
 from rosimpact.databuild.everything import STEPS, build_everything
+from rosimpact.databuild.table_manifest import make_manifest
 from rosimpact.edges.console import UserError
+from rosimpact.impact.targets.tables import DATA, read_manifest
 
 LISTENING = """find_path(EAR_INCLUDE_DIR ear.h)
 find_package_handle_standard_args(Ear REQUIRED_VARS EAR_INCLUDE_DIR)
@@ -40,6 +43,7 @@ def test_what_has_sources_is_built_once(sources):
     data = sources.parent / "data"
     assert json.loads((data / "find_modules.json").read_bytes()) == {"Ear": {"header": ["ear.h"]}}
     assert (data / "behaviour.json").stat().st_size > 1000  # reviewed tables come along
+    assert make_manifest(data, "2026-01-01").tables == read_manifest(data).tables != read_manifest(DATA).tables
     assert run(sources) == {"find-modules": "kept"}
     assert run(sources, again=("find-modules",)) == {"find-modules": "made"}
     assert run(sources, "conda") == {}
@@ -51,7 +55,8 @@ def test_a_step_is_run_again_when_what_it_reads_changed(sources, tmp_path):
     (tmp_path / "cmakes/ear.cmake").write_text("function(ear_listen)\nendfunction()\n")
     sources.write_text('commands = ["cmakes"]\n')
     assert run(sources) == {"commands": "made"}
-    assert '"ear_listen": "ear_cmake"' in (tmp_path / "data/commands.json").read_text()
+    made = zstandard.decompress((tmp_path / "data/commands.json.zst").read_bytes())
+    assert b'"ear_listen":"ear_cmake"' in made
     surfaces = tmp_path / "data/surfaces.sqlite"
     surfaces.write_bytes(surfaces.read_bytes() + b"\0" * 512)
     assert run(sources) == {"commands": "made"}

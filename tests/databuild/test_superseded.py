@@ -6,7 +6,7 @@ from collections import Counter
 import pytest
 from rosimpact.databuild.superseded import derive_bounds, drop_superseded, judge_row
 from rosimpact.impact.targets.changes import load_rows
-from rosimpact.impact.targets.snapshot import DATA
+from rosimpact.impact.targets.tables import DATA
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ import pytest
 import yaml
 import zstandard
 from rosimpact.impact.targets.changes import load_rows, load_transitive
-from rosimpact.impact.targets.snapshot import DATA
 from rosimpact.impact.targets.surface.store import load_shipped
+from rosimpact.impact.targets.tables import DATA
 
 CARD = (Path(__file__).parents[2] / "DATA.md").read_text(encoding="utf-8")
 SNAPSHOT = json.loads((DATA / "snapshot.json").read_text())

@@ -14,7 +14,7 @@ from rosimpact.impact.targets.distro.distro import DistroTarget
 from rosimpact.impact.targets.evidence import holds_on, make_evidence
 from rosimpact.impact.targets.providers.libraries import load_libraries
 from rosimpact.impact.targets.providers.providers import load_providers
-from rosimpact.impact.targets.snapshot import DATA
+from rosimpact.impact.targets.tables import DATA
 from rosimpact.impact.targets.version import is_at_least, parse
 
 OLD = """#pragma once

@@ -13,7 +13,7 @@ from rosimpact.impact.targets.changes import (
     load_transitive,
 )
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.snapshot import DATA
+from rosimpact.impact.targets.tables import DATA
 from rosimpact.impact.targets.version import parse
 
 

@@ -4,7 +4,8 @@ import msgspec
 import pytest
 from rosimpact.impact.targets.changes import iterate_in_force, load_rows, load_transitive
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.snapshot import DATA, read_table
+from rosimpact.impact.targets.tables import DATA
+from rosimpact.impact.targets.unpacked import read_table
 from rosimpact.impact.targets.version import is_at_least, parse
 
 

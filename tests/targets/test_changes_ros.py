@@ -7,7 +7,7 @@ import pytest
 from rosimpact.impact.targets import changes
 from rosimpact.impact.targets.changes import DISTROS, iterate_in_force
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.snapshot import read_table
+from rosimpact.impact.targets.unpacked import read_table
 
 DATA = Path(changes.__file__).parent / "data"
 FILES = ("changes_ros.json", "changes_ros_tags.json.zst")

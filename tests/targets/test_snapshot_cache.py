@@ -13,7 +13,8 @@ from rosimpact.impact.cache import cache_folder
 from rosimpact.impact.targets import snapshot as snapshots
 from rosimpact.impact.targets import unpacked
 from rosimpact.impact.targets.distro.distro import DistroTarget
-from rosimpact.impact.targets.snapshot import DATA, Snapshot, SnapshotError
+from rosimpact.impact.targets.snapshot import Snapshot, SnapshotError
+from rosimpact.impact.targets.tables import DATA
 
 
 def answers(snapshot):

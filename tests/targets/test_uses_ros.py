@@ -7,7 +7,7 @@ import re
 import pytest
 from rosimpact.impact.facts.usage import find_use_places
 from rosimpact.impact.targets.changes import DISTROS, load_uses
-from rosimpact.impact.targets.snapshot import DATA
+from rosimpact.impact.targets.tables import DATA
 
 BOUND = re.compile(r"\d+(\.\d+)+\Z")
 OURS = {

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 
-from ..snapshot import DATA, read_table
+from ..tables import find_table
+from ..unpacked import read_table
 
 CHANNELS = frozenset(("conda-forge", "robostack"))
 """Platforms that this knows: conda-forge, and RoboStack, which holds a distro's packages to versions of its own."""
@@ -15,7 +16,7 @@ _Rows = dict[str, dict[str, str]]
 
 @cache
 def _load_table() -> dict[str, _Rows]:
-    return read_table(DATA / "conda.json.zst", dict[str, _Rows])
+    return read_table(find_table("conda.json.zst"), dict[str, _Rows])
 
 
 def find_libraries(platform: str, distro: str, day: str) -> dict[str, tuple[str, str]]:

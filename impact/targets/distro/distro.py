@@ -24,6 +24,7 @@ from ...conditions.manifest import evaluate
 from .. import snapshot as snapshots
 from ..platform import find_neighbours, normalize_library_name, normalize_platform, parse_python_minor
 from ..snapshot import KINDS, Snapshot
+from ..tables import compute_data_stamp
 from ..target import ReleasedDependency, Resolution
 from ..version import parse_number
 from .conda import CHANNELS, find_libraries
@@ -173,7 +174,7 @@ class DistroTarget:
     def compute_identity(self) -> str:
         """Differs whenever the target, or the data that answers for it, does."""
         known = (self.name, self.distro, self.date, self._cut, self.platform, self._overrides, self._rules)
-        return repr((tuple(self._asked), *known, snapshots.compute_data_stamp()))
+        return repr((tuple(self._asked), *known, compute_data_stamp()))
 
     def copy_with_changes(
         self,

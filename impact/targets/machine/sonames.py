@@ -7,12 +7,12 @@ which sonames a platform cannot have; that is how platforms without a file list 
 
 import re
 from functools import cache
-from pathlib import Path
 
 import msgspec
 
 from ...facts.elf import split_soname
-from ..snapshot import DATA, SnapshotError, read_table
+from ..tables import find_table, suggest_repair
+from ..unpacked import SnapshotError, read_table
 from ..version import parse_number
 
 FILE = "sonames.json.zst"
@@ -115,12 +115,12 @@ def parse_numbers(version: str) -> list[int]:
 
 
 @cache
-def load_sonames(data: Path = DATA) -> Sonames:
+def load_sonames() -> Sonames:
     """The shipped table. Raises SnapshotError when it is missing or damaged."""
     import yaml
 
-    table, path = read_table(data / FILE, SonamesTable), data / "sonames.yaml"
+    table, path = read_table(find_table(FILE), SonamesTable), find_table("sonames.yaml")
     try:
         return Sonames(table, msgspec.convert(yaml.safe_load(path.read_bytes()), type=Reviewed))
     except (OSError, ValueError) as error:
-        raise SnapshotError(f"{path}: {error}; install rosimpact again") from None
+        raise SnapshotError(f"{path}: {error}; {suggest_repair()}") from None

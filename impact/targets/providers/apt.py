@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from functools import cache, cached_property
-from pathlib import Path
 
 import msgspec
 
@@ -10,7 +9,8 @@ from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ..platform import find_neighbours
-from ..snapshot import DATA, read_table
+from ..tables import find_table
+from ..unpacked import read_table
 
 INFERRED = 1 << 15
 """Bit of a relation that was read off the lists of files of Ubuntu's suites instead of a package's own dependencies."""
@@ -89,11 +89,11 @@ class Apt:
 
 
 @cache
-def _load_graph(data: Path) -> AptGraph:
-    return read_table(data / "apt.json.zst", AptGraph)
+def _load_graph() -> AptGraph:
+    return read_table(find_table("apt.json.zst"), AptGraph)
 
 
 @cache
-def load_apt(platform: str, data: Path = DATA) -> Apt:
+def load_apt(platform: str) -> Apt:
     """The shipped graph for a platform (`ubuntu jammy`). Raises SnapshotError when it is missing or damaged."""
-    return Apt(_load_graph(data), platform)
+    return Apt(_load_graph(), platform)

@@ -19,9 +19,10 @@ from ....edges.reach import Reach
 from ...conditions import Environment
 from ...facts.condition import Condition
 from ..distro.distro import DistroTarget
-from ..snapshot import DATA, read_table
 from ..surface.includes import Include, Included
 from ..surface.store import Surfaces
+from ..tables import find_table
+from ..unpacked import read_table
 from ..version import is_at_least, parse
 from . import message_headers
 from .libraries import load_libraries
@@ -100,7 +101,7 @@ class Includes:
 @cache
 def load_includes() -> Includes:
     """The shipped table. Raises SnapshotError when it cannot be read."""
-    return Includes(read_table(DATA / "includes.json.zst", IncludesTable))
+    return Includes(read_table(find_table("includes.json.zst"), IncludesTable))
 
 
 _INCLUDE_FOLDERS = ("eigen3/Eigen/", "eigen3/unsupported/", "opencv4/opencv2/")
@@ -483,7 +484,7 @@ class _Offers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 @cache
 def load_offered() -> dict[str, tuple[str, ...]]:
     """Names to the headers that offer them: types that some header stopped bringing along, and much used ones."""
-    reviewed = read_table(DATA / "offers.json", _Offers).names
+    reviewed = read_table(find_table("offers.json"), _Offers).names
     return {**load_includes().table.names, **reviewed}
 
 

@@ -19,11 +19,11 @@ import msgspec
 from ....edges.memory import cache_method
 from ...facts.cpp.lexical import Include
 from ..platform import find_neighbours
-from ..snapshot import DATA, SnapshotError
 from ..surface.includes import choose_path, covers
 from ..surface.store import StoredRows, StoredSurfacesError, SurfaceHistory
 from ..surface.surface import BuildSurface
-from ..unpacked import read_packed
+from ..tables import find_table, suggest_repair
+from ..unpacked import SnapshotError, read_packed
 from ..version import parse
 from .providers import load_providers
 
@@ -70,12 +70,12 @@ class HeaderBlock(msgspec.Struct, frozen=True, array_like=True, gc=False):
 class SystemLibraries:
     """The shipped file, or another of its form. Raises SnapshotError when it cannot be read."""
 
-    def __init__(self, file: Path = DATA / "libraries.sqlite") -> None:
-        self._file = StoredRows(file)
+    def __init__(self, file: Path | None = None) -> None:
+        self._file = StoredRows(file or find_table("libraries.sqlite"))
         try:
             self._file.query_column("SELECT name FROM package LIMIT 1")
         except StoredSurfacesError as error:
-            raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
+            raise SnapshotError(f"{str(error).partition(';')[0]}; {suggest_repair()}") from None
 
     def _query_first(self, query: str, value: str) -> str:
         return next(iter(self._file.query_column(query, value)), "")

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 
 from ..distro.conda import CHANNELS
-from ..snapshot import DATA, read_table
+from ..tables import find_table
+from ..unpacked import read_table
 from ..version import is_at_least, parse
 from .libraries import load_libraries
 
@@ -99,7 +100,7 @@ class _Facts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     debian: dict[str, tuple[str, ...]]
 
 
-_KNOWN = read_table(DATA / "system_libraries.json", _Facts)
+_KNOWN = read_table(find_table("system_libraries.json"), _Facts)
 _OTHER = _CMakePackage()
 BOOST_COMPILED = frozenset(_KNOWN.boost.compiled.split())
 BOOST_BROUGHT = {library: set(others.split()) for library, others in _KNOWN.boost.brought.items()}

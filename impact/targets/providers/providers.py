@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ....edges.memory import cache_method
-from ..snapshot import DATA, read_table
+from ..tables import find_data_folder
 from ..target import Provider
-from ..unpacked import ShippedDatabase
+from ..unpacked import ShippedDatabase, read_table
 from ..version import parse
 
 __all__ = ["HeaderSpan", "Providers", "load_providers"]
@@ -65,8 +65,9 @@ class Providers(ShippedDatabase):
     form = 2
     fill = staticmethod(add_facts)
 
-    def __init__(self, data: Path = DATA, cache: Path | None = None):
-        super().__init__(data, cache, data)
+    def __init__(self, data: Path | None = None, cache: Path | None = None):
+        folder = data or find_data_folder()
+        super().__init__(folder, cache, folder)
 
     def __reduce__(self):
         return Providers, (self.data, self._cache)
@@ -134,7 +135,7 @@ class Providers(ShippedDatabase):
     def commands(self) -> dict[int, dict[str, str]]:
         """The packages that define a CMake function or macro, by generation of ROS and its name in lower case, see
         databuild/commands.py."""
-        return read_table(self.data / "commands.json", dict[int, dict[str, str]])
+        return read_table(self.data / "commands.json.zst", dict[int, dict[str, str]])
 
     def list_spellings(self, name: str) -> tuple[str, ...]:
         """Every known CMake package whose name differs from this one in letter case at most."""

@@ -13,7 +13,8 @@ from functools import cache
 import msgspec
 
 from ....edges.groups import group_pairs
-from ..snapshot import DATA, read_table
+from ..tables import find_table
+from ..unpacked import read_table
 
 
 class _Headers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -37,7 +38,7 @@ class _Headers(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     defined: list[Defined]
 
 
-_KNOWN = read_table(DATA / "std_headers.json", _Headers)
+_KNOWN = read_table(find_table("std_headers.json"), _Headers)
 
 DEFINED_IN: dict[str, tuple[str, ...]] = {
     **{f"std::{name}": row.headers for row in _KNOWN.defined for name in row.names.split()},
@@ -76,7 +77,7 @@ def _load_c_headers() -> dict[str, frozenset[str]]:
 
 @cache
 def _load_tables() -> tuple[tuple[int, dict[str, frozenset[str]]], ...]:
-    read = read_table(DATA / "providers_std.json.zst", dict[str, dict[str, str]])
+    read = read_table(find_table("providers_std.json.zst"), dict[str, dict[str, str]])
     return tuple(
         (int(major), {header: frozenset(text.split()) for header, text in table.items()})
         for major, table in sorted(read.items(), key=lambda item: int(item[0]))
@@ -113,7 +114,7 @@ class StandardNames(msgspec.Struct, frozen=True):
 @cache
 def load_names() -> StandardNames:
     """The names that are known. Raises SnapshotError when the data cannot be read."""
-    return read_table(DATA / "std_names.json.zst", StandardNames)
+    return read_table(find_table("std_names.json.zst"), StandardNames)
 
 
 @cache

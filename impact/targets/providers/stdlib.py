@@ -2,7 +2,8 @@
 
 import msgspec
 
-from ..snapshot import DATA, read_table
+from ..tables import find_table
+from ..unpacked import read_table
 
 
 class _Modules(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -20,7 +21,7 @@ class _Modules(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     private: str
 
 
-_KNOWN = read_table(DATA / "python_modules.json", _Modules)
+_KNOWN = read_table(find_table("python_modules.json"), _Modules)
 _ALWAYS_3, _ADDED, _PRIVATE = frozenset(_KNOWN.always.split()), _KNOWN.added, frozenset(_KNOWN.private.split())
 _NOT_IN_2 = frozenset(_KNOWN.not_in_2.split())
 _SUCCESSORS = {

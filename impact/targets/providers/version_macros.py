@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import msgspec
 
-from ..snapshot import DATA, read_table
+from ..tables import find_table
+from ..unpacked import read_table
 from ..version import is_at_least, parse
 
 
@@ -55,6 +56,6 @@ def make_version_test(package: str, library: bool, version: str, *, ros: int, ol
 
 @cache
 def _load_rows() -> dict[tuple[str, bool], _Row]:
-    file = read_table(DATA / "version_macros.json", _File)
+    file = read_table(find_table("version_macros.json"), _File)
     return {(name, library): row for rows, library in ((file.macros, False), (file.libraries, True)) for row in rows
             for name in row.packages}  # fmt: skip

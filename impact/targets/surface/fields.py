@@ -21,7 +21,8 @@ from typing import NamedTuple
 
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
-from ..snapshot import DATA, read_table
+from ..tables import find_table
+from ..unpacked import read_table
 from ..version import is_at_least, parse
 
 
@@ -241,4 +242,4 @@ class Fields:
 @cache
 def load_fields() -> Fields:
     """The shipped table."""
-    return Fields(DATA / "fields.json.zst")
+    return Fields(find_table("fields.json.zst"))

@@ -24,8 +24,8 @@ from ....edges.memory import cache_method
 from ...facts.interface import Interface
 from ...facts.python.surface import Bound, ImportedName, ModuleSurface
 from ...facts.surface import CLASSES, Entity, HeaderSurface, drop_inline, list_offered
-from ..snapshot import DATA, SnapshotError
-from ..unpacked import make_decoder, read_packed
+from ..tables import find_table, suggest_repair
+from ..unpacked import SnapshotError, make_decoder, read_packed
 from .changes import Line
 from .includes import Included, covers
 from .surface import BuildSurface, InstalledModule, PythonSurface, Surface
@@ -455,6 +455,6 @@ class Surfaces(StoredRows):
 def load_shipped() -> Surfaces:
     """The surfaces that come with the program. Raises SnapshotError when they cannot be read."""
     try:
-        return Surfaces(DATA / "surfaces.sqlite")
+        return Surfaces(find_table("surfaces.sqlite"))
     except StoredSurfacesError as error:
-        raise SnapshotError(f"{str(error).partition(';')[0]}; install rosimpact again") from None
+        raise SnapshotError(f"{str(error).partition(';')[0]}; {suggest_repair()}") from None
