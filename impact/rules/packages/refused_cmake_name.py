@@ -27,7 +27,7 @@ from .refused_names import find_policy_version
 _MAKES_TARGETS = "1.1.0"
 
 
-@rule(texts=Text("target name `{subject}` contains a slash", "remove the slash from the name"))
+@rule(preview=True, texts=Text("target name `{subject}` contains a slash", "remove the slash from the name"))
 def refused_cmake_name(view: TargetView, package: Package):
     build = package.build
     refused = ("custom", "executable", "library") if find_policy_version(package) >= (3,) else ("custom",)
