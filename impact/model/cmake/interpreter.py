@@ -83,6 +83,7 @@ class _TooMuch(Exception):
 
 SOURCES = (".c", ".C", ".cc", ".cpp", ".cxx", ".c++")
 # Commands that read sources and compile nothing.
+_MAKING_TARGETS = frozenset(("add_custom_target", "add_executable", "add_library"))
 _NO_BUILDER = re.compile(r"lint|format|tidy|check|uncrustify|style|doc|translation|coverage|install|propert|package")
 # Commands of other packages that call find_package() for their arguments.
 _FINDER = re.compile(r"find\w*_packages?(?:_|\Z)")
@@ -134,6 +135,7 @@ class Interpreter:
         self.properties: dict[str, CMakeValue] = {}
         self.overlay: dict[str, CMakeValue] = {}  # arguments of the macro that is running
         self.definitions: dict[str, tuple[Block, dict[str, CMakeValue]]] = {}
+        self.maybe_made: set[str] = set()  # targets
         self.conditions: tuple[Condition, ...] = ()
         self.assumed: dict[str, bool] = {}
         self.journal: list[tuple[dict[str, CMakeValue], str, CMakeValue | None]] = []
@@ -891,11 +893,13 @@ class Interpreter:
         return None
 
     def define_all(self, body: list[CommandCall | Block]) -> None:
-        """Learns the functions and macros of a body without running it."""
+        """Learns the functions and macros of a body without running it, and which targets it may make when it is run."""
         pending = list(body)
         while pending:
             node = pending.pop()
             if isinstance(node, CommandCall):
+                if node.name in _MAKING_TARGETS and node.templates:
+                    self.maybe_made.add(node.templates[0].raw)
                 continue
             if node.kind in ("function", "macro"):
                 templates = node.head.templates

@@ -164,7 +164,7 @@ def resolve_target(run: Interpreter, name: Word) -> TargetDraft:
         note_branches(run, draft, name)
         return draft
     typesupport = run.is_typesupport(name)
-    known = typesupport or name in run.maybe_set or "::" in name
+    known = typesupport or name in run.maybe_set or name in run.maybe_made or "::" in name
     known = known or (run.command == "add_dependencies" and _may_be_made_along(run, name))
     if not known and not _is_asked_for(run, name) and not calls_unmodelled(run):
         run.refuse("no target", name)
