@@ -12,7 +12,7 @@ import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -186,11 +186,24 @@ def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
     try:
         with open_for_replacing(drawn) as file:
             figure.savefig(file, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": "rosimpact"})
+        pixels = io.BytesIO()
+        figure.savefig(pixels, format="png", bbox_inches="tight")
         with open_for_replacing(picture) as file:
-            figure.savefig(file, format="png", bbox_inches="tight", metadata={"Software": "rosimpact"})
+            write_palette_png(pixels, file)
     finally:
         plt.close(figure)
     return drawn, picture
+
+
+def write_palette_png(picture: IO[bytes], file: IO[bytes]) -> None:
+    """Writes a PNG with a palette of 256 colours, which takes a third of the bytes that matplotlib's true colour does."""
+    from PIL import Image, PngImagePlugin
+
+    information = PngImagePlugin.PngInfo()
+    information.add_text("Software", "rosimpact")
+    with Image.open(picture) as drawn:
+        few = drawn.convert("RGB").quantize(256, dither=Image.Dither.NONE)
+        few.save(file, "PNG", optimize=True, pnginfo=information, dpi=drawn.info.get("dpi"))
 
 
 def write_headline(axes: Axes, title: str, below: str = "") -> None:
