@@ -19,7 +19,9 @@ from typing import Any
 import msgspec
 
 from ...edges.documents import load_yaml
+from ...impact.facts.condition import Condition
 from ...impact.facts.cpp.lexical import scan
+from ...impact.facts.cpp.tree_nodes import SIGNS, list_tree_nodes
 from ...impact.facts.place import Problem
 from ...impact.facts.python.constants import Constants
 from ...impact.facts.python.source import read
@@ -36,11 +38,13 @@ class DeclaredParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class ParametersFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """parameters: in the order of the file. mentioned: see mentions(), the last parts of names (`scale` of
-    `PathAlign.scale`), each once; comments count too."""
+    `PathAlign.scale`), each once; comments count too. tree_nodes: names of nodes of behaviour trees, each with the
+    conditions of the preprocessor that it is registered under, see tree_nodes.py."""
 
     parameters: tuple[DeclaredParameter, ...] = ()
     problems: tuple[Problem, ...] = ()
     mentioned: tuple[str, ...] = ()
+    tree_nodes: tuple[tuple[str, tuple[Condition, ...]], ...] = ()
 
 
 Facts = ParametersFile
@@ -61,7 +65,11 @@ def extract(data: bytes, language: str) -> ParametersFile:
     if language in ("python", "cfg"):
         source = read(data)
         problems = source.problems or source.python2_only[:1] if source.tree is None else ()
-    return ParametersFile(tuple(dict.fromkeys(readers[language](data))), problems, mentioned)
+    tree_nodes = tuple(list_tree_nodes(scan(data))) if any(sign in data for sign in _SIGNS) else ()
+    return ParametersFile(tuple(dict.fromkeys(readers[language](data))), problems, mentioned, tree_nodes)
+
+
+_SIGNS = tuple(sign.encode() for sign in SIGNS)
 
 
 _TEXT = re.compile(rb"""["']([A-Za-z_~/.][\w./]{0,80})["']""")

@@ -19,6 +19,7 @@ import msgspec
 
 from ..condition import Condition
 from ..place import Problem, Reference
+from .tree_nodes import list_tree_nodes
 
 
 class Include(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -56,7 +57,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). parents:
     derived classes and aliases of types, with the words of their bases or of what they stand for. initializes: a
     constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
-    comments, literals, includes and blanks.
+    comments, literals, includes and blanks. tree_nodes: names of nodes of behaviour trees, see tree_nodes.py.
     """
 
     includes: tuple[Include, ...]
@@ -79,6 +80,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     parents: tuple[tuple[str, str], ...] = ()
     initializes: bool = False
     code: str = ""
+    tree_nodes: tuple[str, ...] = ()
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -560,6 +562,7 @@ def extract(data: bytes) -> CppFile:
         parents=parents,
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
+        tree_nodes=tuple(sorted({name for name, _ in list_tree_nodes(scanned)})),
     )
 
 

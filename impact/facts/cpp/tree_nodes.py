@@ -1,0 +1,49 @@
+"""The names by which a C++ file registers nodes of behaviour trees with BehaviorTree.CPP.
+
+A name is a literal among the first arguments of `registerNodeType`, `registerBuilder`, `registerSimpleAction` and its
+sisters, of `CreateRosNodePlugin`, and of functions and macros that are called alike; or a constant of the same file.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..condition import Condition
+    from .lexical import Scan
+
+COMPUTED = "*"
+"""Stands for names that the file does not tell."""
+SIGNS = ("registerNodeType", "registerBuilder", "registerSimple", "BT_REGISTER", "RosNodePlugin")
+"""One of these stands in every file that registers nodes."""
+_SURE = ("registerNodeType", "registerBuilder", "registerSimple")
+_CALL = re.compile(
+    r"\b(?P<called>\w*(?:[rR]egister|REGISTER)_?(?:\w*(?:[nN]ode|NODE)|Builder|Simple)\w*|CreateRosNodePlugin)"
+    r"\s*(?:<[^;{}()]{0,300}>)?\s*\((?=\s*(?P<first>\w[\w:]*(?:\(\))?)?\s*(?P<end>[,)])?)"
+)
+_LITERAL = re.compile(r'\s*(?:[\w:.]{1,200}\s*,\s*){0,2}(?:std::string\s*[({]\s*)?"(?P<name>[^"\\\n]{1,200})"')
+
+
+def list_tree_nodes(scanned: Scan) -> Iterator[tuple[str, tuple[Condition, ...]]]:
+    """Each name that a file registers, or COMPUTED, with the conditions of the preprocessor that it stands under."""
+    if not any(sign in scanned.visible for sign in SIGNS):
+        return
+    for call in _CALL.finditer(scanned.visible):
+        _, _, conditions = scanned.find_segment(call.start())
+        literal = _LITERAL.match(scanned.text, call.end())
+        if literal is not None and scanned.visible[literal.end() - 1] == '"':
+            yield sys.intern(literal["name"]), conditions
+        elif call["called"].startswith(_SURE) and call["first"] and call["end"]:
+            yield _find_constant(scanned, call["first"].removesuffix("()").rpartition(":")[2]) or COMPUTED, conditions
+        elif call["called"].startswith(_SURE) and scanned.text[call.end() : call.end() + 1] == "#":
+            yield COMPUTED, conditions
+
+
+def _find_constant(scanned: Scan, name: str) -> str:
+    """The literal that a file gives to a name; empty where there is none."""
+    assigned = re.search(rf'\b{re.escape(name)}\s*(?:\[\]\s*)?[=({{]\s*(?=")', scanned.visible)
+    literal = _LITERAL.match(scanned.text, assigned.end()) if assigned is not None else None
+    return sys.intern(literal["name"]) if literal is not None else ""
