@@ -24,6 +24,7 @@ from ..impact.targets.parameters import find_last_part
 from ..impact.targets.surface.changes import PARAMETER, Line
 from ..impact.targets.surface.includes import Include, Included, IncludesRow
 from ..impact.targets.surface.store import About, StoredSurfacesError, SurfaceHistory
+from ..impact.targets.surface.surface import TREE_NODE
 from ..impact.targets.unpacked import read_packed
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ CREATE TABLE package(name TEXT, ros INTEGER, data BLOB NOT NULL, changes BLOB NO
 CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE headers(data BLOB NOT NULL);
 CREATE TABLE parameters(data BLOB NOT NULL);
+CREATE TABLE tree_nodes(data BLOB NOT NULL);
 CREATE TABLE about(packages INTEGER, versions INTEGER, distros TEXT, date TEXT);
 """
 """about: one row, see About. package: for each generation of ROS that has it, what its versions offer, what changed
@@ -43,7 +45,8 @@ between them (see surface_changes.py), and what their headers include (see surfa
 one of ROS 2 may share name and version, and be two. elsewhere: names that some version of a package lost, and the
 packages, space separated, that have or had one of that name. headers: one row, packed: headers that do not lie in a
 folder that is called like their package, with the packages that have or had them. parameters: one row, packed: the last
-parts of the names of parameters that came or went for sure, with the packages that declare or declared them."""
+parts of the names of parameters that came or went for sure, with the packages that declare or declared them.
+tree_nodes: one row, packed: nodes of behaviour trees, with the packages that register or registered them for sure."""
 _LEVEL = 19
 # (kind, scope, value as JSON-like data)
 _Row = tuple[str, str, Any]
@@ -246,6 +249,7 @@ def _fill(file: Path, packages: Packages, about: About) -> None:
         db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_pack_moved_names(packages).items()))
         db.execute("INSERT INTO headers VALUES(?)", (_pack_headers(packages),))
         db.execute("INSERT INTO parameters VALUES(?)", (_pack_parameters(packages),))
+        db.execute("INSERT INTO tree_nodes VALUES(?)", (_pack_tree_nodes(packages),))
         db.execute("INSERT INTO about VALUES(?, ?, ?, ?)", about)
         db.commit()
         db.execute("VACUUM")
@@ -289,6 +293,16 @@ def _pack_parameters(packages: Packages) -> bytes:
         for name, events in read_packed(packed.changes, Line).events.get(PARAMETER, {}).items():
             if any(t.kind in ("added", "removed") and t.sure >= 1 for event in events for t in event.reported):
                 found.setdefault(find_last_part(name), {})[package] = None
+    return _pack_names(found)
+
+
+def _pack_tree_nodes(packages: Packages) -> bytes:
+    """Nodes of behaviour trees, with the packages of which some version registers them for sure."""
+    found: dict[str, dict[str, None]] = {}
+    for (package, _), packed in sorted(packages.items()):
+        for plugin in SurfaceHistory(package, packed.data, packed.includes).list_all_plugins():
+            if plugin.base == TREE_NODE and plugin.sure:
+                found.setdefault(plugin.name, {})[package] = None
     return _pack_names(found)
 
 

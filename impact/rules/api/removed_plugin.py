@@ -46,6 +46,7 @@ from .diagnosis import (
     texts={
         **build_availability_texts(),
         "package": GONE_PACKAGE,
+        "generation": Text("`{subject}` is not available in {upstream} {version}, only in ROS {other}"),
         "own": Text("`{subject}` is not declared by {upstream}", help="[[did you mean `{alike}`?]]"),
     },
 )
@@ -75,6 +76,11 @@ def removed_plugin(view: TargetView, package: Package):
             owner = "" if use.reference.conditional else _find_lost_owner(view, library[1])
             if owner:
                 yield from find_gone_package(view, package, use, owner, name)
+            elif not use.reference.conditional and (owner := _find_other_generation(view, library[1])):
+                data = {"upstream": owner, "version": view.target.find_version(owner) or "",
+                        "other": 3 - view.target.ros}  # fmt: skip
+                doubts = (*list_place_doubts(view, use.role), Doubt.LATE)
+                yield Diagnostic(use.at, name, package.name, data, "generation", doubts)
             continue
         found = find_missing(view, "plugin", name, _list_candidates(view, package, use))
         if found is None:
@@ -92,11 +98,34 @@ _LIBRARY = re.compile(r"(?:lib)?([\w-]+)\.so")
 
 def _find_lost_owner(view: TargetView, library: str) -> str:
     """A package that installed a library, where none that the target or the workspace has does; else empty."""
-    made = (target.output_name or target.name for package in view.workspace for target in package.build.targets)
-    if library in made:
+    if library in _list_made_libraries(view):
         return ""
     owners = view.offers.list_library_owners(library)
     return owners[0] if owners and not any(map(view.is_available, owners)) else ""
+
+
+def _find_other_generation(view: TargetView, library: str) -> str:
+    """A package of the target that installs a library in the other ROS generation and none of the name here; else
+    empty."""
+    if library in _list_made_libraries(view) or view.offers.list_library_owners(library):
+        return ""
+    for owner in view.offers.list_library_owners(library, 3 - view.target.ros):
+        offer = view.offers.find_package(owner)
+        if offer is None or not offer.exact or not offer.build.libraries:
+            continue
+        if library not in offer.line.events.get("library", {}) and not any(
+            part in ("libraries", "targets") for part, _ in offer.build.unknown
+        ):
+            return owner
+    return ""
+
+
+@cache_in_derived
+def _list_made_libraries(view: TargetView) -> frozenset[str]:
+    """The names of the libraries that the workspace builds."""
+    return frozenset(
+        target.output_name or target.name for package in view.workspace for target in package.build.targets
+    )
 
 
 @cache_in_derived

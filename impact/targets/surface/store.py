@@ -28,7 +28,7 @@ from ..snapshot import DATA, SnapshotError
 from ..unpacked import make_decoder, read_packed
 from .changes import Line
 from .includes import Included, covers
-from .surface import BuildSurface, InstalledModule, PythonSurface, Surface
+from .surface import BuildSurface, InstalledModule, Plugin, PythonSurface, Surface
 
 TYPES = CLASSES | {"enum", "alias"}
 """The kinds of types."""
@@ -108,6 +108,11 @@ class SurfaceHistory:
             for name, values in build.items()
         }
         return BuildSurface(self.package, version, **given)
+
+    def list_all_plugins(self) -> list[Plugin]:
+        """The plugins of all versions."""
+        decode = make_decoder(Plugin)
+        return [decode(value) for scope, value, _ in self._rows.get("build", ()) if scope == "plugins"]
 
     def list_exports(self, version: str) -> tuple[str, ...] | None:
         """The packages, and the CMake names of system libraries, that a version hands on to its dependants; None for
@@ -434,6 +439,12 @@ class Surfaces(StoredRows):
         not, with those packages."""
         (data,) = next(self.fetch("SELECT data FROM parameters"))
         return read_packed(data, dict[str, frozenset[str]])
+
+    @cached_property
+    def tree_nodes(self) -> dict[str, tuple[str, ...]]:
+        """Nodes of behaviour trees that some version of a package surely registers, with those packages."""
+        (data,) = next(self.fetch("SELECT data FROM tree_nodes"))
+        return read_packed(data, dict[str, tuple[str, ...]])
 
     @cached_property
     def about(self) -> About:
