@@ -25,7 +25,7 @@ Not reported
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 
 from ....edges.memory import cache_in_derived
@@ -46,55 +46,51 @@ from .diagnosis import build_availability_texts, diagnose, find_missing, is_of_a
     },
 )
 def removed_tree_node(view: TargetView, package: Package):
-    uses = [use for use in package.linked.references if use.reference.kind == "tree node"]
-    if not uses or COMPUTED in _list_own(view):
-        return
+    by_file: dict[str, dict[str, ReferenceUse]] = {}
+    for use in package.linked.references:
+        if use.reference.kind == "tree node":
+            by_file.setdefault(use.at.path, {}).setdefault(use.reference.name, use)
     files = frozenset(package.linked.files)
-    unknown = {use.at.path for use in uses if not _is_known(view, use.reference.name)}
-    reported: dict[str, set[str]] = defaultdict(set)
-    for use in uses:
-        name = use.reference.name
-        if name in _list_own(view) or name in _list_registered(view) or name in reported[use.at.path]:
+    if not by_file or COMPUTED in _list_own(view):
+        return
+    for path, uses in by_file.items():
+        if is_of_another_distro(view, path, files):
             continue
-        if is_of_another_distro(view, use.at.path, files):
-            continue
-        for diagnostic in _find_problems(view, package, use, use.at.path in unknown):
-            reported[use.at.path].add(name)
-            yield diagnostic
+        along = _list_packages(view, frozenset(uses))
+        known = _list_own(view).union(_list_registered(view, along))
+        unknown = [name for name in uses if name not in known and name not in view.offers.surfaces.tree_nodes]
+        for name, use in uses.items():
+            if name not in known:
+                yield from _find_problems(view, package, use, along, len(unknown) > 1)
 
 
 def _find_problems(
-    view: TargetView, package: Package, use: ReferenceUse, open_ended: bool
+    view: TargetView, package: Package, use: ReferenceUse, along: frozenset[str], open_ended: bool
 ) -> Iterator[Diagnostic | Upcoming]:
-    """What is wrong with a node that nothing registers here for sure. open_ended: its file has others that nobody is
-    known to register, as the packages of the workspace may all do."""
+    """What is wrong with a node that nothing registers here for sure. along: packages that come along. open_ended: the
+    tree has other nodes that nobody is known to register, so that who registers them may register this one."""
     name = use.reference.name
     doubts = (*list_place_doubts(view, use.role), Doubt.LATE)
     owners = view.offers.surfaces.tree_nodes.get(name, ())
-    along = [owner for owner in owners if owner in view.brought_to_workspace]
-    found = find_missing(view, "plugin", name, along) if along else None
+    there = [owner for owner in owners if owner in along]
+    found = find_missing(view, "plugin", name, there) if there else None
     if found is not None and found.form != "never":
+        # A new node is often called like another one that does something else.
+        found = found._replace(alike=found.alike if is_slip(found.alike, name) else "")
         yield diagnose(found, use.at, name, package.name, doubts)
         return
     for owner in owners:
-        if owner not in along and (heir := _find_heir(view, owner)):
+        if owner not in along and (heir := _find_heir(view, owner, along)):
             data = {"upstream": heir, "version": view.target.find_version(heir) or "", "owner": owner}
             yield Diagnostic(use.at, name, package.name, data, "elsewhere", (*doubts, Doubt.INCOMPLETE))
             return
-    if owners or open_ended or name in set().union(*(one.linked.modelled for one in view.workspace)):
+    if owners or open_ended or any(name in one.linked.modelled for one in view.workspace):
         return
-    alike = [(known, owner) for known, owner in _list_registered(view).items() if is_slip(known, name)]
+    alike = [(known, owner) for known, owner in _list_registered(view, along).items() if is_slip(known, name)]
     if len(alike) == 1:
         ((known, owner),) = alike
         data = {"upstream": owner, "version": view.target.find_version(owner) or "", "alike": known}
         yield Diagnostic(use.at, name, package.name, data, "misspelt", (*doubts, Doubt.INCOMPLETE))
-
-
-def _is_known(view: TargetView, name: str) -> bool:
-    """Whether somebody is known to register a node, or it is one letter off a node of the target."""
-    if name in _list_own(view) or name in view.offers.surfaces.tree_nodes:
-        return True
-    return any(is_slip(known, name) for known in _list_registered(view))
 
 
 @cache_in_derived
@@ -104,8 +100,8 @@ def _list_own(view: TargetView) -> frozenset[str]:
 
 
 @cache_in_derived
-def _list_nodes_of(view: TargetView) -> dict[str, set[str]]:
-    """The nodes that released packages registered in any version, by package."""
+def _list_nodes_by_package(view: TargetView) -> dict[str, set[str]]:
+    """The nodes that released packages registered in any version."""
     found: dict[str, set[str]] = defaultdict(set)
     for name, owners in view.offers.surfaces.tree_nodes.items():
         for owner in owners:
@@ -113,10 +109,25 @@ def _list_nodes_of(view: TargetView) -> dict[str, set[str]]:
     return found
 
 
+_TELLING = 3
+"""Nodes of a tree that one package alone registers, from which on the tree is written for that package."""
+
+
 @cache_in_derived
-def _list_registered(view: TargetView) -> dict[str, str]:
-    """The nodes that packages which come along with the workspace surely register on the target, with their package."""
-    offers = (view.offers.find_package(name) for name in _list_nodes_of(view) if name in view.brought_to_workspace)
+def _list_packages(view: TargetView, names: frozenset[str]) -> frozenset[str]:
+    """The packages that register nodes and come along with the workspace, or with one that a tree of some nodes is
+    evidently written for."""
+    known = _list_nodes_by_package(view)
+    owners = view.offers.surfaces.tree_nodes
+    sole = Counter(owners[name][0] for name in names if len(owners.get(name, ())) == 1)
+    meant = [owner for owner, count in sole.items() if count >= _TELLING and view.is_available(owner)]
+    return view.brought_to_workspace.union(view.list_transitive(meant)).intersection(known)
+
+
+@cache_in_derived
+def _list_registered(view: TargetView, packages: frozenset[str]) -> dict[str, str]:
+    """The nodes that packages surely register on the target, each with its package."""
+    offers = (view.offers.find_package(name) for name in sorted(packages))
     return {
         plugin.name: offer.package
         for offer in offers
@@ -126,12 +137,10 @@ def _list_registered(view: TargetView) -> dict[str, str]:
     }
 
 
-def _find_heir(view: TargetView, owner: str) -> str:
-    """The package that comes along with the workspace and has most of the nodes of one that does not; else empty."""
-    nodes = _list_nodes_of(view)
-    had = nodes[owner]
-    common = {
-        name: len(had & nodes[name]) for name in nodes if name != owner and name in view.brought_to_workspace
-    }
+def _find_heir(view: TargetView, owner: str, along: frozenset[str]) -> str:
+    """The package of those that come along which has most of the nodes of one that does not; empty where none has
+    half of them."""
+    nodes = _list_nodes_by_package(view)
+    common = {name: len(nodes[owner] & nodes[name]) for name in sorted(along)}
     best = max(common, key=lambda name: common[name], default="")
-    return best if best and 2 * common[best] >= min(len(had), len(nodes[best])) else ""
+    return best if best and 2 * common[best] >= len(nodes[owner]) else ""
