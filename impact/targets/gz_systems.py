@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 PREFIXES = ("ignition-gazebo", "gz-sim")
 """What names of libraries of systems begin with."""
-_NAME = re.compile(rf"(?:lib)?(?P<prefix>{'|'.join(PREFIXES)})-(?P<system>[\w-]+)-system(?:\.so)?")
+_NAME = re.compile(rf"(?:lib)?(?P<prefix>{'|'.join(PREFIXES)})(?P<major>\d*)-(?P<system>[\w-]+)-system(?:\.so)?")
 _KEY = re.compile(rf"(?:lib)?(?:{'|'.join(PREFIXES)})(\d+)(?:-dev)?")
 
 
@@ -51,10 +51,18 @@ def load_gz_systems() -> GzSystems:
     return read_table(DATA / "gz_systems.json.zst", GzSystems)
 
 
-def split_name(library: str) -> tuple[str, str] | None:
-    """The prefix and the system of a library's name; None for one that is called otherwise."""
+class SystemName(NamedTuple):
+    """A library's name by its parts. major: of the version, empty for the name that all versions have."""
+
+    prefix: str
+    major: str
+    system: str
+
+
+def split_name(library: str) -> SystemName | None:
+    """The parts of the name of a system's library; None for one that is called otherwise."""
     name = _NAME.fullmatch(library)
-    return (name["prefix"], name["system"]) if name is not None else None
+    return SystemName(name["prefix"], name["major"], name["system"]) if name is not None else None
 
 
 def find_gz_version(target: DistroTarget, along: Iterable[str]) -> str:

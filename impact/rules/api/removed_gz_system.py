@@ -2,7 +2,8 @@
 
 What it does
     Reports `<plugin filename="...">` in SDF, URDF and xacro files that names a system of gz-sim (Ignition Gazebo until
-    version 6) which the version of the target does not have, by a name that its loader does not accept, or misspelt.
+    version 6) which the version of the target does not have, by a name that its loader does not accept or that is of
+    another version, or misspelt.
 
 Why it breaks
     The simulator starts, says that it failed to load the system, and runs without it: no sensor data, no drive.
@@ -34,6 +35,7 @@ from .diagnosis import is_of_another_distro
             "`{subject}` is not found by the loader of gz-sim {version}[[ (accepted since {since})]]",
             help="use `{replacement}`",
         ),
+        "major": Text("`{subject}` is of another version than gz-sim {version}", help="use `{replacement}`"),
         "removed": Text("`{subject}` is not available in gz-sim {version}[[ (last in {since})]]"),
         "not yet": Text("`{subject}` is not available in gz-sim {version}[[ (added in {since})]]"),
         "never": Text("gz-sim {version} has no system `{subject}`", help="did you mean `{replacement}`?"),
@@ -48,7 +50,7 @@ def removed_gz_system(view: TargetView, package: Package):
     table = load_gz_systems()
     files = frozenset(package.linked.files)
     made = {target.output_name or target.name for one in view.workspace for target in one.build.targets}
-    for use, (prefix, system) in uses:
+    for use, (prefix, major, system) in uses:
         if is_of_another_distro(view, use.at.path, files) or use.reference.name.removeprefix("lib") in made:
             continue
         subject = use.reference.name
@@ -63,6 +65,8 @@ def removed_gz_system(view: TargetView, package: Package):
         elif not table.has(spans, version):
             kind = "removed" if (last := table.find_last(spans, version)) else "not yet"
             data["since"] = last or table.find_first(spans, version)
+        elif major and major != version.partition(".")[0]:
+            kind, data["replacement"] = "major", subject.replace(f"{prefix}{major}", prefix)
         elif not table.has(table.prefixes[prefix], version):
             kind, data["since"] = "name", table.find_first(table.prefixes[prefix], version)
             data["replacement"] = subject.replace(prefix, next(one for one in PREFIXES if one != prefix))

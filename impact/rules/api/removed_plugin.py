@@ -3,7 +3,8 @@
 What it does
     Reports names of plugins and components in parameter files, launch files and robot descriptions that an earlier or
     later version of the package declares and the target's does not; names from packages that the target does not have
-    and package.xml does not declare; misspelt names; and names that a package of the workspace does not declare.
+    and package.xml does not declare; libraries that Gazebo loads and that only the other ROS has; misspelt names; and
+    names that a package of the workspace does not declare.
 
 Why it breaks
     pluginlib finds no class of that name, so the node that asks for it does not start.
@@ -46,7 +47,8 @@ from .diagnosis import (
     texts={
         **build_availability_texts(),
         "package": GONE_PACKAGE,
-        "generation": Text("`{subject}` is not available in {upstream} {version}, only in ROS {other}"),
+        "library": Text("`{subject}` is not available in {upstream} {version}, only in ROS {other}"),
+        "generation": Text("`{subject}` belongs to {upstream}, which is only released for ROS {other}"),
         "own": Text("`{subject}` is not declared by {upstream}", help="[[did you mean `{alike}`?]]"),
     },
 )
@@ -77,10 +79,11 @@ def removed_plugin(view: TargetView, package: Package):
             if owner:
                 yield from find_gone_package(view, package, use, owner, name)
             elif not use.reference.conditional and (owner := _find_other_generation(view, library[1])):
-                data = {"upstream": owner, "version": view.target.find_version(owner) or "",
-                        "other": 3 - view.target.ros}  # fmt: skip
+                version = view.target.find_version(owner) or ""
+                data = {"upstream": owner, "version": version, "other": 3 - view.target.ros}
+                kind = "library" if version else "generation"
                 doubts = (*list_place_doubts(view, use.role), Doubt.LATE)
-                yield Diagnostic(use.at, name, package.name, data, "generation", doubts)
+                yield Diagnostic(use.at, name, package.name, data, kind, doubts)
             continue
         found = find_missing(view, "plugin", name, _list_candidates(view, package, use))
         if found is None:
@@ -105,12 +108,14 @@ def _find_lost_owner(view: TargetView, library: str) -> str:
 
 
 def _find_other_generation(view: TargetView, library: str) -> str:
-    """A package of the target that installs a library in the other ROS generation and none of the name here; else
-    empty."""
+    """A package that installs a library in the other ROS generation, and here none of the name, or that this one never
+    had; else empty."""
     if library in _list_made_libraries(view) or view.offers.list_library_owners(library):
         return ""
     for owner in view.offers.list_library_owners(library, 3 - view.target.ros):
         offer = view.offers.find_package(owner)
+        if view.target.ros == 2 and view.target.is_other_generation(owner) and not view.may_have(owner):
+            return owner
         if offer is None or not offer.exact or not offer.build.libraries:
             continue
         if library not in offer.line.events.get("library", {}) and not any(
