@@ -19,9 +19,8 @@ from typing import Any
 import msgspec
 
 from ...edges.documents import load_yaml
-from ...impact.facts.condition import Condition
 from ...impact.facts.cpp.lexical import scan
-from ...impact.facts.cpp.tree_nodes import SIGNS, list_tree_nodes
+from ...impact.facts.cpp.tree_nodes import SIGNS, RegisteredNode, list_tree_nodes
 from ...impact.facts.place import Problem
 from ...impact.facts.python.constants import Constants
 from ...impact.facts.python.source import read
@@ -38,13 +37,13 @@ class DeclaredParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class ParametersFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """parameters: in the order of the file. mentioned: see mentions(), the last parts of names (`scale` of
-    `PathAlign.scale`), each once; comments count too. tree_nodes: names of nodes of behaviour trees, each with the
-    conditions of the preprocessor that it is registered under, see tree_nodes.py."""
+    `PathAlign.scale`), each once; comments count too. tree_nodes: nodes of behaviour trees, in the order of
+    the file."""
 
     parameters: tuple[DeclaredParameter, ...] = ()
     problems: tuple[Problem, ...] = ()
     mentioned: tuple[str, ...] = ()
-    tree_nodes: tuple[tuple[str, tuple[Condition, ...]], ...] = ()
+    tree_nodes: tuple[RegisteredNode, ...] = ()
 
 
 Facts = ParametersFile

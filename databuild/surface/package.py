@@ -138,14 +138,14 @@ def _add_tree_nodes(
         if target.kind in ("library", "module") and target.name in libraries
         for path in target.sources
     }
-    found: dict[str, bool] = {}
-    for path in compiled.intersection(files):
+    found: dict[str, Plugin] = {}
+    for path in sorted(compiled.intersection(files)):
         facts = declared.get_facts(path) if path in declared.kinds else None
-        for name, conditions in facts.facts.tree_nodes if facts is not None and facts.facts is not None else ():
-            holds = evaluate_all(conditions, _NOTHING_KNOWN)
-            if holds is not False and name != COMPUTED:
-                found[name] = found.get(name, False) or bool(holds)
-    nodes = (Plugin(name, "", TREE_NODE, sure) for name, sure in sorted(found.items()))
+        for node in facts.facts.tree_nodes if facts is not None and facts.facts is not None else ():
+            holds = evaluate_all(node.conditions, _NOTHING_KNOWN)
+            if holds is not False and node.name != COMPUTED and (holds or node.name not in found):
+                found[node.name] = Plugin(node.name, node.type, TREE_NODE, bool(holds))
+    nodes = (found[name] for name in sorted(found))
     return msgspec.structs.replace(build, plugins=(*build.plugins, *nodes)) if found else build
 
 

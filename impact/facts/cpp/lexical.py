@@ -562,7 +562,7 @@ def extract(data: bytes) -> CppFile:
         parents=parents,
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
-        tree_nodes=tuple(sorted({name for name, _ in list_tree_nodes(scanned)})),
+        tree_nodes=tuple(sorted({node.name for node in list_tree_nodes(scanned)})),
     )
 
 

@@ -11,8 +11,11 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+import msgspec
+
+from ..condition import Condition
+
 if TYPE_CHECKING:
-    from ..condition import Condition
     from .lexical import Scan
 
 COMPUTED = "*"
@@ -22,24 +25,35 @@ SIGNS = ("registerNodeType", "registerBuilder", "registerSimple", "BT_REGISTER",
 _SURE = ("registerNodeType", "registerBuilder", "registerSimple")
 _CALL = re.compile(
     r"\b(?P<called>\w*(?:[rR]egister|REGISTER)_?(?:\w*(?:[nN]ode|NODE)|Builder|Simple)\w*|CreateRosNodePlugin)"
-    r"\s*(?:<[^;{}()]{0,300}>)?\s*\((?=\s*(?P<first>\w[\w:]*(?:\(\))?)?\s*(?P<end>[,)])?)"
+    r"\s*(?:<(?P<class>[^;{}()]{0,300})>)?\s*\((?=\s*(?P<first>\w[\w:]*(?:\(\))?)?\s*(?P<end>[,)])?)"
 )
 _LITERAL = re.compile(r'\s*(?:[\w:.]{1,200}\s*,\s*){0,2}(?:std::string\s*[({]\s*)?"(?P<name>[^"\\\n]{1,200})"')
 
 
-def list_tree_nodes(scanned: Scan) -> Iterator[tuple[str, tuple[Condition, ...]]]:
-    """Each name that a file registers, or COMPUTED, with the conditions of the preprocessor that it stands under."""
+class RegisteredNode(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A name, or COMPUTED; its class as written, without blanks, empty where none is; and the conditions of the
+    preprocessor that the registration stands under."""
+
+    name: str
+    type: str
+    conditions: tuple[Condition, ...]
+
+
+def list_tree_nodes(scanned: Scan) -> Iterator[RegisteredNode]:
+    """The nodes that a file registers."""
     if not any(sign in scanned.visible for sign in SIGNS):
         return
     for call in _CALL.finditer(scanned.visible):
         _, _, conditions = scanned.find_segment(call.start())
+        type_ = "".join((call["class"] or "").split())
         literal = _LITERAL.match(scanned.text, call.end())
         if literal is not None and scanned.visible[literal.end() - 1] == '"':
-            yield sys.intern(literal["name"]), conditions
+            yield RegisteredNode(sys.intern(literal["name"]), type_, conditions)
         elif call["called"].startswith(_SURE) and call["first"] and call["end"]:
-            yield _find_constant(scanned, call["first"].removesuffix("()").rpartition(":")[2]) or COMPUTED, conditions
+            name = _find_constant(scanned, call["first"].removesuffix("()").rpartition(":")[2])
+            yield RegisteredNode(name or COMPUTED, type_, conditions)
         elif call["called"].startswith(_SURE) and scanned.text[call.end() : call.end() + 1] == "#":
-            yield COMPUTED, conditions
+            yield RegisteredNode(COMPUTED, type_, conditions)
 
 
 def _find_constant(scanned: Scan, name: str) -> str:

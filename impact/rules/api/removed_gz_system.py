@@ -29,6 +29,7 @@ from .diagnosis import is_of_another_distro
 
 
 @rule(
+    severity="warning",
     preview=True,
     texts={
         "name": Text(

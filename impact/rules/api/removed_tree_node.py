@@ -38,10 +38,13 @@ from .diagnosis import build_availability_texts, diagnose, find_missing, is_of_a
 
 
 @rule(
+    severity="warning",
     preview=True,
     texts={
         **build_availability_texts(),
-        "elsewhere": Text("`{subject}` is not available in {upstream} {version}, only in {owner}"),
+        "elsewhere": Text(
+            "`{subject}` is not available in {upstream} {version}, only in {owner}", help="[[use `{replacement}`]]"
+        ),
         "misspelt": Text("`{subject}` is not a node of {upstream} {version}", help="did you mean `{alike}`?"),
     },
 )
@@ -81,7 +84,8 @@ def _find_problems(
         return
     for owner in owners:
         if owner not in along and (heir := _find_heir(view, owner, along)):
-            data = {"upstream": heir, "version": view.target.find_version(heir) or "", "owner": owner}
+            data = {"upstream": heir, "version": view.target.find_version(heir) or "", "owner": owner,
+                    "replacement": _find_other_name(view, heir, name)}  # fmt: skip
             yield Diagnostic(use.at, name, package.name, data, "elsewhere", (*doubts, Doubt.INCOMPLETE))
             return
     if owners or open_ended or any(name in one.linked.modelled for one in view.workspace):
@@ -135,6 +139,14 @@ def _list_registered(view: TargetView, packages: frozenset[str]) -> dict[str, st
         for plugin in offer.build.plugins
         if plugin.base == TREE_NODE and plugin.sure
     }
+
+
+def _find_other_name(view: TargetView, owner: str, name: str) -> str:
+    """The name under which a package surely registers what it registers by another one in some builds alone."""
+    offer = view.offers.find_package(owner)
+    nodes = [node for node in offer.build.plugins if node.base == TREE_NODE] if offer is not None else []
+    types = {node.type for node in nodes if node.name == name and node.type}
+    return next((node.name for node in nodes if node.sure and node.type in types), "")
 
 
 def _find_heir(view: TargetView, owner: str, along: frozenset[str]) -> str:

@@ -85,7 +85,7 @@ TREE_NODE = "BT::TreeNode"
 
 class Plugin(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """A plugin: lookup name, type, base class. A component has the base `rclcpp_components`, a node of behaviour trees
-    TREE_NODE, and no type."""
+    TREE_NODE."""
 
     name: str
     type: str
