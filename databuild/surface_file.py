@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _SCHEMA = """
 CREATE TABLE package(name TEXT, ros INTEGER, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL,
   PRIMARY KEY(name, ros)) WITHOUT ROWID;
-CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE elsewhere(data BLOB NOT NULL);
 CREATE TABLE headers(data BLOB NOT NULL);
 CREATE TABLE parameters(data BLOB NOT NULL);
 CREATE TABLE tree_nodes(data BLOB NOT NULL);
@@ -42,10 +42,10 @@ CREATE TABLE about(packages INTEGER, versions INTEGER, distros TEXT, date TEXT);
 """
 """about: one row, see About. package: for each generation of ROS that has it, what its versions offer, what changed
 between them (see surface_changes.py), and what their headers include (see surface_includes.py): a package of ROS 1 and
-one of ROS 2 may share name and version, and be two. elsewhere: names that some version of a package lost, and the
-packages, space separated, that have or had one of that name. headers: one row, packed: headers that do not lie in a
-folder that is called like their package, with the packages that have or had them. parameters: one row, packed: the last
-parts of the names of parameters that came or went for sure, with the packages that declare or declared them.
+one of ROS 2 may share name and version, and be two. elsewhere: one row, packed: names that some version of
+a package lost, with the packages that have or had one of that name. headers: one row, packed: headers that do not lie
+in a folder that is called like their package, with the packages that have or had them. parameters: one row, packed: the
+last parts of the names of parameters that came or went for sure, with the packages that declare or declared them.
 tree_nodes: one row, packed: nodes of behaviour trees, with the packages that register or registered them for sure."""
 _LEVEL = 19
 # (kind, scope, value as JSON-like data)
@@ -246,7 +246,7 @@ def _fill(file: Path, packages: Packages, about: About) -> None:
         db.executemany(
             "INSERT INTO package VALUES(?, ?, ?, ?, ?)", ((*key, *packed) for key, packed in sorted(packages.items()))
         )
-        db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_pack_moved_names(packages).items()))
+        db.execute("INSERT INTO elsewhere VALUES(?)", (_pack_moved_names(packages),))
         db.execute("INSERT INTO headers VALUES(?)", (_pack_headers(packages),))
         db.execute("INSERT INTO parameters VALUES(?)", (_pack_parameters(packages),))
         db.execute("INSERT INTO tree_nodes VALUES(?)", (_pack_tree_nodes(packages),))
@@ -255,7 +255,7 @@ def _fill(file: Path, packages: Packages, about: About) -> None:
         db.execute("VACUUM")
 
 
-def _pack_moved_names(packages: Packages) -> dict[str, str]:
+def _pack_moved_names(packages: Packages) -> bytes:
     """Names that a package lost and others have or had, with those packages."""
     lost: dict[str, set[str]] = {}
     for (package, _), packed in packages.items():
@@ -263,12 +263,12 @@ def _pack_moved_names(packages: Packages) -> dict[str, str]:
         for side in ("c++", "header", "python"):
             for name in events.get(side, ()):
                 lost.setdefault(name, set()).add(package)
-    found: dict[str, set[str]] = {}
-    for (package, _), packed in packages.items():
+    found: dict[str, dict[str, None]] = {}
+    for (package, _), packed in sorted(packages.items()):
         for name in SurfaceHistory(package, packed.data, packed.includes).index_names().keys() & lost.keys():
             if lost[name] != {package}:
-                found.setdefault(name, set()).add(package)
-    return {name: " ".join(sorted(those)) for name, those in found.items()}
+                found.setdefault(name, {})[package] = None
+    return _pack_names(found)
 
 
 def _pack_headers(packages: Packages) -> bytes:

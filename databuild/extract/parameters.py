@@ -20,7 +20,7 @@ import msgspec
 
 from ...edges.documents import load_yaml
 from ...impact.facts.cpp.lexical import scan
-from ...impact.facts.cpp.tree_nodes import SIGNS, RegisteredNode, list_tree_nodes
+from ...impact.facts.cpp.tree_nodes import SIGNS, RegisteredNode
 from ...impact.facts.place import Problem
 from ...impact.facts.python.constants import Constants
 from ...impact.facts.python.source import read
@@ -64,7 +64,7 @@ def extract(data: bytes, language: str) -> ParametersFile:
     if language in ("python", "cfg"):
         source = read(data)
         problems = source.problems or source.python2_only[:1] if source.tree is None else ()
-    tree_nodes = tuple(list_tree_nodes(scan(data))) if any(sign in data for sign in _SIGNS) else ()
+    tree_nodes = tuple(scan(data).list_tree_nodes()) if any(sign in data for sign in _SIGNS) else ()
     return ParametersFile(tuple(dict.fromkeys(readers[language](data))), problems, mentioned, tree_nodes)
 
 

@@ -4,19 +4,13 @@ A name is a literal among the first arguments of `registerNodeType`, `registerBu
 sisters, of `CreateRosNodePlugin`, and of functions and macros that are called alike; or a constant of the same file.
 """
 
-from __future__ import annotations
-
 import re
 import sys
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
 
 import msgspec
 
 from ..condition import Condition
-
-if TYPE_CHECKING:
-    from .lexical import Scan
 
 COMPUTED = "*"
 """Stands for names that the file does not tell."""
@@ -39,25 +33,27 @@ class RegisteredNode(msgspec.Struct, frozen=True, array_like=True, gc=False):
     conditions: tuple[Condition, ...]
 
 
-def list_tree_nodes(scanned: Scan) -> Iterator[RegisteredNode]:
-    """The nodes that a file registers."""
-    if not any(sign in scanned.visible for sign in SIGNS):
+def list_tree_nodes(
+    text: str, visible: str, find_conditions: Callable[[int], tuple[Condition, ...]]
+) -> Iterator[RegisteredNode]:
+    """The nodes that a file registers. text, visible: of its Scan. find_conditions: those around an offset."""
+    if not any(sign in visible for sign in SIGNS):
         return
-    for call in _CALL.finditer(scanned.visible):
-        _, _, conditions = scanned.find_segment(call.start())
+    for call in _CALL.finditer(visible):
+        conditions = find_conditions(call.start())
         type_ = "".join((call["class"] or "").split())
-        literal = _LITERAL.match(scanned.text, call.end())
-        if literal is not None and scanned.visible[literal.end() - 1] == '"':
+        literal = _LITERAL.match(text, call.end())
+        if literal is not None and visible[literal.end() - 1] == '"':
             yield RegisteredNode(sys.intern(literal["name"]), type_, conditions)
         elif call["called"].startswith(_SURE) and call["first"] and call["end"]:
-            name = _find_constant(scanned, call["first"].removesuffix("()").rpartition(":")[2])
+            name = _find_constant(text, visible, call["first"].removesuffix("()").rpartition(":")[2])
             yield RegisteredNode(name or COMPUTED, type_, conditions)
-        elif call["called"].startswith(_SURE) and scanned.text[call.end() : call.end() + 1] == "#":
+        elif call["called"].startswith(_SURE) and text[call.end() : call.end() + 1] == "#":
             yield RegisteredNode(COMPUTED, type_, conditions)
 
 
-def _find_constant(scanned: Scan, name: str) -> str:
+def _find_constant(text: str, visible: str, name: str) -> str:
     """The literal that a file gives to a name; empty where there is none."""
-    assigned = re.search(rf'\b{re.escape(name)}\s*(?:\[\]\s*)?[=({{]\s*(?=")', scanned.visible)
-    literal = _LITERAL.match(scanned.text, assigned.end()) if assigned is not None else None
+    assigned = re.search(rf'\b{re.escape(name)}\s*(?:\[\]\s*)?[=({{]\s*(?=")', visible)
+    literal = _LITERAL.match(text, assigned.end()) if assigned is not None else None
     return sys.intern(literal["name"]) if literal is not None else ""

@@ -453,8 +453,12 @@ class Surfaces(StoredRows):
 
     def list_other_packages(self, name: str) -> tuple[str, ...]:
         """The packages that have, or had, a name that some package lost."""
-        row = next(self.fetch("SELECT packages FROM elsewhere WHERE name = ?", name), None)
-        return tuple(row[0].split()) if row else ()
+        return self._elsewhere.get(name, ())
+
+    @cached_property
+    def _elsewhere(self) -> dict[str, tuple[str, ...]]:
+        (data,) = next(self.fetch("SELECT data FROM elsewhere"))
+        return read_packed(data, dict[str, tuple[str, ...]])
 
     @cached_property
     def stamp(self) -> str:

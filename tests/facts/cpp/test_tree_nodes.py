@@ -2,7 +2,7 @@
 
 import pytest
 from rosimpact.impact.facts.cpp.lexical import extract, scan
-from rosimpact.impact.facts.cpp.tree_nodes import COMPUTED, list_tree_nodes
+from rosimpact.impact.facts.cpp.tree_nodes import COMPUTED
 
 TABLE = [
     ('factory.registerNodeType<nav2::Spin>("Spin");', [("Spin", "nav2::Spin")]),
@@ -24,10 +24,10 @@ TABLE = [
 
 @pytest.mark.parametrize(("text", "expected"), TABLE)
 def test_registered_nodes(text, expected):
-    assert [(node.name, node.type) for node in list_tree_nodes(scan(text.encode()))] == expected
+    assert [(node.name, node.type) for node in scan(text.encode()).list_tree_nodes()] == expected
 
 
 def test_conditions_of_a_registration():
     text = b'#ifdef OLD\nf.registerNodeType<A>("Old");\n#endif\nf.registerNodeType<A>("New");\n'
-    assert [(node.name, len(node.conditions)) for node in list_tree_nodes(scan(text))] == [("Old", 1), ("New", 0)]
+    assert [(node.name, len(node.conditions)) for node in scan(text).list_tree_nodes()] == [("Old", 1), ("New", 0)]
     assert extract(text).tree_nodes == ("New", "Old")
