@@ -24,6 +24,7 @@ from ..impact.targets.parameters import find_last_part
 from ..impact.targets.surface.changes import PARAMETER, Line
 from ..impact.targets.surface.includes import Include, Included, IncludesRow
 from ..impact.targets.surface.store import About, StoredSurfacesError, SurfaceHistory
+from ..impact.targets.surface.surface import TREE_NODE
 from ..impact.targets.unpacked import read_packed
 
 if TYPE_CHECKING:
@@ -33,17 +34,19 @@ if TYPE_CHECKING:
 _SCHEMA = """
 CREATE TABLE package(name TEXT, ros INTEGER, data BLOB NOT NULL, changes BLOB NOT NULL, includes BLOB NOT NULL,
   PRIMARY KEY(name, ros)) WITHOUT ROWID;
-CREATE TABLE elsewhere(name TEXT PRIMARY KEY, packages TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE elsewhere(data BLOB NOT NULL);
 CREATE TABLE headers(data BLOB NOT NULL);
 CREATE TABLE parameters(data BLOB NOT NULL);
+CREATE TABLE tree_nodes(data BLOB NOT NULL);
 CREATE TABLE about(packages INTEGER, versions INTEGER, distros TEXT, date TEXT);
 """
 """about: one row, see About. package: for each generation of ROS that has it, what its versions offer, what changed
 between them (see surface_changes.py), and what their headers include (see surface_includes.py): a package of ROS 1 and
-one of ROS 2 may share name and version, and be two. elsewhere: names that some version of a package lost, and the
-packages, space separated, that have or had one of that name. headers: one row, packed: headers that do not lie in a
-folder that is called like their package, with the packages that have or had them. parameters: one row, packed: the last
-parts of the names of parameters that came or went for sure, with the packages that declare or declared them."""
+one of ROS 2 may share name and version, and be two. elsewhere: one row, packed: names that some version of
+a package lost, with the packages that have or had one of that name. headers: one row, packed: headers that do not lie
+in a folder that is called like their package, with the packages that have or had them. parameters: one row, packed: the
+last parts of the names of parameters that came or went for sure, with the packages that declare or declared them.
+tree_nodes: one row, packed: nodes of behaviour trees, with the packages that register or registered them for sure."""
 _LEVEL = 19
 # (kind, scope, value as JSON-like data)
 _Row = tuple[str, str, Any]
@@ -243,15 +246,16 @@ def _fill(file: Path, packages: Packages, about: About) -> None:
         db.executemany(
             "INSERT INTO package VALUES(?, ?, ?, ?, ?)", ((*key, *packed) for key, packed in sorted(packages.items()))
         )
-        db.executemany("INSERT INTO elsewhere VALUES(?, ?)", sorted(_pack_moved_names(packages).items()))
+        db.execute("INSERT INTO elsewhere VALUES(?)", (_pack_moved_names(packages),))
         db.execute("INSERT INTO headers VALUES(?)", (_pack_headers(packages),))
         db.execute("INSERT INTO parameters VALUES(?)", (_pack_parameters(packages),))
+        db.execute("INSERT INTO tree_nodes VALUES(?)", (_pack_tree_nodes(packages),))
         db.execute("INSERT INTO about VALUES(?, ?, ?, ?)", about)
         db.commit()
         db.execute("VACUUM")
 
 
-def _pack_moved_names(packages: Packages) -> dict[str, str]:
+def _pack_moved_names(packages: Packages) -> bytes:
     """Names that a package lost and others have or had, with those packages."""
     lost: dict[str, set[str]] = {}
     for (package, _), packed in packages.items():
@@ -259,12 +263,12 @@ def _pack_moved_names(packages: Packages) -> dict[str, str]:
         for side in ("c++", "header", "python"):
             for name in events.get(side, ()):
                 lost.setdefault(name, set()).add(package)
-    found: dict[str, set[str]] = {}
-    for (package, _), packed in packages.items():
+    found: dict[str, dict[str, None]] = {}
+    for (package, _), packed in sorted(packages.items()):
         for name in SurfaceHistory(package, packed.data, packed.includes).index_names().keys() & lost.keys():
             if lost[name] != {package}:
-                found.setdefault(name, set()).add(package)
-    return {name: " ".join(sorted(those)) for name, those in found.items()}
+                found.setdefault(name, {})[package] = None
+    return _pack_names(found)
 
 
 def _pack_headers(packages: Packages) -> bytes:
@@ -289,6 +293,16 @@ def _pack_parameters(packages: Packages) -> bytes:
         for name, events in read_packed(packed.changes, Line).events.get(PARAMETER, {}).items():
             if any(t.kind in ("added", "removed") and t.sure >= 1 for event in events for t in event.reported):
                 found.setdefault(find_last_part(name), {})[package] = None
+    return _pack_names(found)
+
+
+def _pack_tree_nodes(packages: Packages) -> bytes:
+    """Nodes of behaviour trees, with the packages of which some version registers them for sure."""
+    found: dict[str, dict[str, None]] = {}
+    for (package, _), packed in sorted(packages.items()):
+        for plugin in SurfaceHistory(package, packed.data, packed.includes).list_all_plugins():
+            if plugin.base == TREE_NODE and plugin.sure:
+                found.setdefault(plugin.name, {})[package] = None
     return _pack_names(found)
 
 

@@ -20,6 +20,7 @@ import msgspec
 
 from ...edges.documents import load_yaml
 from ...impact.facts.cpp.lexical import scan
+from ...impact.facts.cpp.tree_nodes import SIGNS, RegisteredNode
 from ...impact.facts.place import Problem
 from ...impact.facts.python.constants import Constants
 from ...impact.facts.python.source import read
@@ -36,11 +37,13 @@ class DeclaredParameter(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class ParametersFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """parameters: in the order of the file. mentioned: see mentions(), the last parts of names (`scale` of
-    `PathAlign.scale`), each once; comments count too."""
+    `PathAlign.scale`), each once; comments count too. tree_nodes: nodes of behaviour trees, in the order of
+    the file."""
 
     parameters: tuple[DeclaredParameter, ...] = ()
     problems: tuple[Problem, ...] = ()
     mentioned: tuple[str, ...] = ()
+    tree_nodes: tuple[RegisteredNode, ...] = ()
 
 
 Facts = ParametersFile
@@ -61,7 +64,11 @@ def extract(data: bytes, language: str) -> ParametersFile:
     if language in ("python", "cfg"):
         source = read(data)
         problems = source.problems or source.python2_only[:1] if source.tree is None else ()
-    return ParametersFile(tuple(dict.fromkeys(readers[language](data))), problems, mentioned)
+    tree_nodes = tuple(scan(data).list_tree_nodes()) if any(sign in data for sign in _SIGNS) else ()
+    return ParametersFile(tuple(dict.fromkeys(readers[language](data))), problems, mentioned, tree_nodes)
+
+
+_SIGNS = tuple(sign.encode() for sign in SIGNS)
 
 
 _TEXT = re.compile(rb"""["']([A-Za-z_~/.][\w./]{0,80})["']""")

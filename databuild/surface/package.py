@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from ...edges.limits import format_limits
+from ...impact.conditions import Environment, evaluate_all
 from ...impact.facts import kinds
+from ...impact.facts.cpp.tree_nodes import COMPUTED
 from ...impact.facts.interface import Field, Interface, Section
 from ...impact.facts.store import encode_rows
 from ...impact.model.package import find_folder_role
 from ...impact.source_keys import compute_source_key
 from ...impact.targets.parameters import find_last_part
-from ...impact.targets.surface.surface import BuildSurface, Surface
+from ...impact.targets.surface.surface import TREE_NODE, BuildSurface, Plugin, Surface
 from ..extract import cpp, parameters, python
 from . import build as surface_build
 from . import python as surface_python
@@ -75,7 +77,7 @@ def build_surfaces(tree: Tree, store: Store, jobs: int | None = None) -> dict[st
         surfaces[name] = Surface(
             name,
             package.manifest.version,
-            builds[name],
+            _add_tree_nodes(package, builds[name], declared, declaring[name]),
             surface_python.build_surface(package, get_facts),
             tuple((include, keep_compiled_includes(surface)) for include, surface in known if surface is not None),
             tuple(sorted(dict(_list_interfaces(package)).items())),
@@ -118,6 +120,33 @@ def _merge_parameters(
     mentioned.update(find_last_part(name) for name in found)
     parameters = tuple((name, next(iter(each)) if len(each) == 1 else "?") for name, each in sorted(found.items()))
     return parameters, tuple(sorted(mentioned))
+
+
+_NOTHING_KNOWN = Environment()
+
+
+def _add_tree_nodes(
+    package: Package, build: BuildSurface, declared: ExtractedFacts, files: Iterable[str]
+) -> BuildSurface:
+    """A build with the nodes of behaviour trees that its installed libraries register, as plugins of their own kind.
+    files: those that may register some."""
+    installs = (one for one in package.build.installs if one.kind == "targets" and one.destination[:5] != "share")
+    libraries = {name for install in installs for name in install.items}
+    compiled = {
+        path
+        for target in package.build.targets
+        if target.kind in ("library", "module") and target.name in libraries
+        for path in target.sources
+    }
+    found: dict[str, Plugin] = {}
+    for path in sorted(compiled.intersection(files)):
+        facts = declared.get_facts(path) if path in declared.kinds else None
+        for node in facts.facts.tree_nodes if facts is not None and facts.facts is not None else ():
+            holds = evaluate_all(node.conditions, _NOTHING_KNOWN)
+            if holds is not False and node.name != COMPUTED and (holds or node.name not in found):
+                found[node.name] = Plugin(node.name, node.type, TREE_NODE, bool(holds))
+    nodes = (found[name] for name in sorted(found))
+    return msgspec.structs.replace(build, plugins=(*build.plugins, *nodes)) if found else build
 
 
 def build_tree_surfaces(tree: Tree, store: Store, folder: str = "", jobs: int | None = None) -> dict[str, Surface]:

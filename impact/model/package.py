@@ -263,7 +263,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     nothing relative to their package, which a program cannot. plain_scripts: those
     whose first line names `python`, of no version. at_home: Python files whose first line names a Python in the home
     folder of a user, and that. shells: shell scripts without an ending. interpreted: names of
-    Python files that CMake code gives to an interpreter.
+    Python files that CMake code gives to an interpreter. tree_nodes: nodes of behaviour trees that C++ files register,
+    see tree_nodes.py; trees, modelled: see ReferenceFile.
     """
 
     name: str
@@ -291,6 +292,9 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     modules: tuple[str, ...] = ()
     plugins: tuple[tuple[str, PluginClass], ...] = ()
     registered: tuple[str, ...] = ()
+    tree_nodes: tuple[str, ...] = ()
+    trees: tuple[str, ...] = ()
+    modelled: tuple[str, ...] = ()
     setup: tuple[tuple[str, SetupFile], ...] = ()
     allows: tuple[tuple[str, tuple[Allow, ...]], ...] = ()
     problems: tuple[tuple[str, int, str], ...] = ()
@@ -549,6 +553,9 @@ class PackageJoin:
         launches: list[tuple[str, str]] = []
         data_words: list[str] = []
         references, plugins, registered, setup, requirements, interfaces = [], [], [], [], [], []
+        tree_nodes: set[str] = set()
+        trees: set[str] = set()
+        modelled: set[str] = set()
         for path in self.files:
             kind = self.kinds.get(path)
             if kind is None:
@@ -569,6 +576,7 @@ class PackageJoin:
             if isinstance(facts, CppFile):
                 self.cpp[path] = facts
                 registered.extend(getattr(facts, "exports", ()))
+                tree_nodes.update(facts.tree_nodes)
                 references.extend((path, r) for r in getattr(facts, "references", ()))
             elif isinstance(facts, PythonFile):
                 python[path] = facts
@@ -597,6 +605,8 @@ class PackageJoin:
                     leftover.add(path)
                 references.extend((path, r) for r in getattr(facts, "references", ()))
                 plugins.extend((path, p) for p in getattr(facts, "plugins", ()))
+                trees.update(getattr(facts, "trees", ()))
+                modelled.update(getattr(facts, "modelled", ()))
         unused |= leftover
         if self.build_type == "catkin":  # which starts programs from the source space too
             own = (r for p, r in references if r.package == self.name and self.find_role(p) is None)
@@ -660,6 +670,9 @@ class PackageJoin:
             modules=tuple(sorted(modules)),
             plugins=tuple(plugins),
             registered=tuple(registered),
+            tree_nodes=tuple(sorted(tree_nodes)),
+            trees=tuple(sorted(trees)),
+            modelled=tuple(sorted(modelled)),
             testing=tuple(path for path in self.cpp if not _OF_TESTS.isdisjoint(self.list_words(path))),
             setup=tuple(setup),
             allows=tuple(allows),

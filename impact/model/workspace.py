@@ -608,11 +608,13 @@ def _join(linker: _Linker, tasks: dict[str, tuple[PackagePlace, _Stale | None]],
     return joined._replace(linked=None) if joined.packed else joined
 
 
-def _detect_build_type(build: Build, declared: str) -> str:
+def _detect_build_type(build: Build, manifest: Manifest, ros: int) -> str:
     """The build type of a package by what its CMake calls, where that is one of the two alone: a manifest often still
-    says what the package was ported from."""
+    says what the package was ported from, unless it chooses by the generation."""
+    declared = build_type_of(manifest, ros)
     catkin, ament = build.catkin_package is not None, build.ament_package is not None
-    if catkin == ament or declared not in ("catkin", "ament_cmake"):
+    chooses = any(condition for _, condition in manifest.build_types)
+    if catkin == ament or chooses or declared not in ("catkin", "ament_cmake"):
         return declared
     return "catkin" if catkin else "ament_cmake"
 
@@ -814,7 +816,7 @@ class _Linker:
         build = structs.replace(build, made=(*build.made, *ignored)) if ignored else build
         if before is not None and build == before.linked.build:
             return before.linked, {**read, **before.headers}
-        build_type = _detect_build_type(build, build_type_of(manifest, self.ros))
+        build_type = _detect_build_type(build, manifest, self.ros)
         joined = PackageJoin(
             *(place, manifest, build, build_type, files, extraction),
             *(self.watched, self.home, self.asked, self.changing, self.offered),

@@ -19,6 +19,7 @@ import msgspec
 
 from ..condition import Condition
 from ..place import Problem, Reference
+from .tree_nodes import RegisteredNode, list_tree_nodes
 
 
 class Include(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -56,7 +57,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     pointer or reference. made: classes of which it makes objects by `new`, make_shared() or make_unique(). parents:
     derived classes and aliases of types, with the words of their bases or of what they stand for. initializes: a
     constructor may initialize members, or a container makes elements (`emplace_back`). code: a digest of all but
-    comments, literals, includes and blanks.
+    comments, literals, includes and blanks. tree_nodes: names of nodes of behaviour trees, see tree_nodes.py.
     """
 
     includes: tuple[Include, ...]
@@ -79,6 +80,7 @@ class CppFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     parents: tuple[tuple[str, str], ...] = ()
     initializes: bool = False
     code: str = ""
+    tree_nodes: tuple[str, ...] = ()
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -329,6 +331,10 @@ class Scan:
         """The stretch around an offset; inside a directive the one that follows."""
         return self.segments[min(bisect_right(self.ends, offset), len(self.segments) - 1)]
 
+    def list_tree_nodes(self) -> Iterator[RegisteredNode]:
+        """The nodes of behaviour trees that the file registers."""
+        return list_tree_nodes(self.text, self.visible, lambda offset: self.find_segment(offset)[2])
+
     def find_conditions(self, offset: int) -> tuple[Condition, ...] | None:
         """The conditions around an offset, None inside a directive."""
         start, _, conditions = self.find_segment(offset)
@@ -560,6 +566,7 @@ def extract(data: bytes) -> CppFile:
         parents=parents,
         initializes="emplace" in tokens_text or _INITIALIZES.search(visible) is not None,
         code=hashlib.sha1(visible.encode().translate(None, b" \t\r\n")).hexdigest()[:16],
+        tree_nodes=tuple(sorted({node.name for node in scanned.list_tree_nodes()})),
     )
 
 

@@ -35,6 +35,8 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     files, YAML and robot descriptions, see list_words().
 
     Besides the kinds of Reference in general, `model` is a `model://` path (Gazebo finds it on its own search path).
+    trees: behaviour trees that a file of BehaviorTree.CPP defines, which others include by their name; modelled: nodes
+    of which it lists the ports for editors.
     generation: of a launch file, as LaunchFile has it; of a script, the one whose commands alone it calls, else 0.
     """
 
@@ -44,6 +46,8 @@ class ReferenceFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
     unresolved: tuple[Problem, ...] = ()
     words: str = ""
     generation: int = 0
+    trees: tuple[str, ...] = ()
+    modelled: tuple[str, ...] = ()
 
 
 PACKAGE = re.compile(r"[A-Za-z][A-Za-z0-9_-]*\Z")
@@ -143,7 +147,7 @@ def extract(data: bytes, kind: str) -> ReferenceFile:
     """References of a file of the kind launch_xml, launch_yaml, xacro, plugin_xml, xml, params or shell; never raises.
 
     XML that is not well-formed is a problem, and is read on; `xml` and `plugin_xml` are told by their root element, so
-    that XML of other trades (behaviour trees, GUI layouts) gives nothing at all.
+    that XML of other trades (GUI layouts, feeds) gives nothing at all.
     """
     facts = READERS[kind](data)
     return structs.replace(facts, words=list_words(data)) if kind in _SPOKEN else facts
@@ -161,7 +165,7 @@ def _read_xml(data: bytes) -> ReferenceFile:
         return _read_launch(data)
     if root in ("robot", "sdf", "gazebo", "world", "model"):
         return _read_robot_description(data)
-    return ReferenceFile(())
+    return _read_behavior_trees(data) if root == "root" else ReferenceFile(())
 
 
 def _read_plugin_xml(data: bytes) -> ReferenceFile:
@@ -344,6 +348,36 @@ def _read_robot_description(data: bytes) -> ReferenceFile:
     # xacro reads with Python's strict parser, URDF and SDF are read with TinyXML
     problems = document.problems if "xacro" in document.text else _drop_tolerated(data, document.problems)
     return found.make_file(*problems)
+
+
+# What an element is called that names its node by `ID`; any other is called like its node.
+_EXPLICIT = frozenset(("Action", "Condition", "Control", "Decorator"))
+_PARTS_OF_NODES = frozenset(("remap", "Metadata"))
+
+
+def _read_behavior_trees(data: bytes) -> ReferenceFile:
+    """The nodes of trees of BehaviorTree.CPP, version 3 or 4."""
+    document = scan(data)
+    found = _Found(document.locate)
+    trees: list[str] = []
+    modelled: list[str] = []
+    inside: list[str] = []
+    for element in document.elements:
+        above = inside[element.parent] if element.parent >= 0 else ""
+        inside.append(element.name if element.name in ("BehaviorTree", "TreeNodesModel") else above)
+        if element.name == "BehaviorTree":
+            trees.append(element.get("ID"))
+        elif above == "TreeNodesModel" and (name := element.get("ID")):
+            modelled.append(name)
+        elif above == "BehaviorTree" and element.name not in _PARTS_OF_NODES:
+            attribute = element.find("ID") if element.name in _EXPLICIT else None
+            name, offset = (attribute.value, attribute.offset) if attribute else (element.name, element.offset + 1)
+            if name not in _EXPLICIT and _TREE_NODE.match(name):
+                found.add("tree node", "", name, offset, False)
+    return structs.replace(found.make_file(), trees=tuple(trees), modelled=tuple(modelled))
+
+
+_TREE_NODE = re.compile(r"\w[\w .-]*\Z")
 
 
 def _read_plugin_description(data: bytes) -> ReferenceFile:

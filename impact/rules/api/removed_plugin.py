@@ -3,7 +3,8 @@
 What it does
     Reports names of plugins and components in parameter files, launch files and robot descriptions that an earlier or
     later version of the package declares and the target's does not; names from packages that the target does not have
-    and package.xml does not declare; misspelt names; and names that a package of the workspace does not declare.
+    and package.xml does not declare; libraries that Gazebo loads and that only the other ROS has; misspelt names; and
+    names that a package of the workspace does not declare.
 
 Why it breaks
     pluginlib finds no class of that name, so the node that asks for it does not start.
@@ -46,6 +47,8 @@ from .diagnosis import (
     texts={
         **build_availability_texts(),
         "package": GONE_PACKAGE,
+        "library": Text("`{subject}` is not available in {upstream} {version}, only in ROS {other}"),
+        "generation": Text("`{subject}` belongs to {upstream}, which is only released for ROS {other}"),
         "own": Text("`{subject}` is not declared by {upstream}", help="[[did you mean `{alike}`?]]"),
     },
 )
@@ -75,6 +78,12 @@ def removed_plugin(view: TargetView, package: Package):
             owner = "" if use.reference.conditional else _find_lost_owner(view, library[1])
             if owner:
                 yield from find_gone_package(view, package, use, owner, name)
+            elif not use.reference.conditional and (owner := _find_other_generation(view, library[1])):
+                version = view.target.find_version(owner) or ""
+                data = {"upstream": owner, "version": version, "other": 3 - view.target.ros}
+                kind = "library" if version else "generation"
+                doubts = (*list_place_doubts(view, use.role), Doubt.LATE)
+                yield Diagnostic(use.at, name, package.name, data, kind, doubts)
             continue
         found = find_missing(view, "plugin", name, _list_candidates(view, package, use))
         if found is None:
@@ -92,11 +101,36 @@ _LIBRARY = re.compile(r"(?:lib)?([\w-]+)\.so")
 
 def _find_lost_owner(view: TargetView, library: str) -> str:
     """A package that installed a library, where none that the target or the workspace has does; else empty."""
-    made = (target.output_name or target.name for package in view.workspace for target in package.build.targets)
-    if library in made:
+    if library in _list_made_libraries(view):
         return ""
     owners = view.offers.list_library_owners(library)
     return owners[0] if owners and not any(map(view.is_available, owners)) else ""
+
+
+def _find_other_generation(view: TargetView, library: str) -> str:
+    """A package that installs a library in the other ROS generation, and here none of the name, or that this one never
+    had; else empty."""
+    if library in _list_made_libraries(view) or view.offers.list_library_owners(library):
+        return ""
+    for owner in view.offers.list_library_owners(library, 3 - view.target.ros):
+        offer = view.offers.find_package(owner)
+        if view.target.ros == 2 and view.target.is_other_generation(owner) and not view.may_have(owner):
+            return owner
+        if offer is None or not offer.exact or not offer.build.libraries:
+            continue
+        if library not in offer.line.events.get("library", {}) and not any(
+            part in ("libraries", "targets") for part, _ in offer.build.unknown
+        ):
+            return owner
+    return ""
+
+
+@cache_in_derived
+def _list_made_libraries(view: TargetView) -> frozenset[str]:
+    """The names of the libraries that the workspace builds."""
+    return frozenset(
+        target.output_name or target.name for package in view.workspace for target in package.build.targets
+    )
 
 
 @cache_in_derived

@@ -90,15 +90,15 @@ class Offers:
         return self.surfaces.find_history(package, self.target.ros)
 
     @cache_method
-    def list_library_owners(self, library: str) -> list[str]:
-        """Packages of the target's ROS generation whose newest stored version has a library of this name, of those
-        that are called after it: they begin with the same word."""
+    def list_library_owners(self, library: str, ros: int = 0) -> list[str]:
+        """Packages whose newest stored version has a library of this name, of those that are called after it: they
+        begin with the same word. ros: their ROS generation, by default the target's."""
         word = re.split(r"[_-]", library)[0]
         alike = sorted(name for name in self.surfaces.packages if re.split(r"[_-]", name)[0] == word)
-        return [name for name in alike if library in self._list_libraries(name)]
+        return [name for name in alike if library in self._list_libraries(name, ros or self.target.ros)]
 
-    def _list_libraries(self, package: str) -> tuple[str, ...]:
-        history = self.find_history(package)
+    def _list_libraries(self, package: str, ros: int) -> tuple[str, ...]:
+        history = self.surfaces.find_history(package, ros)
         build = history.build(history.versions[-1], ("libraries",)) if history is not None else None
         return build.libraries if build is not None else ()
 

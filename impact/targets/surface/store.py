@@ -28,7 +28,7 @@ from ..tables import find_table, suggest_repair
 from ..unpacked import SnapshotError, make_decoder, read_packed
 from .changes import Line
 from .includes import Included, covers
-from .surface import BuildSurface, InstalledModule, PythonSurface, Surface
+from .surface import BuildSurface, InstalledModule, Plugin, PythonSurface, Surface
 
 TYPES = CLASSES | {"enum", "alias"}
 """The kinds of types."""
@@ -108,6 +108,11 @@ class SurfaceHistory:
             for name, values in build.items()
         }
         return BuildSurface(self.package, version, **given)
+
+    def list_all_plugins(self) -> list[Plugin]:
+        """The plugins of all versions."""
+        decode = make_decoder(Plugin)
+        return [decode(value) for scope, value, _ in self._rows.get("build", ()) if scope == "plugins"]
 
     def list_exports(self, version: str) -> tuple[str, ...] | None:
         """The packages, and the CMake names of system libraries, that a version hands on to its dependants; None for
@@ -436,14 +441,24 @@ class Surfaces(StoredRows):
         return read_packed(data, dict[str, frozenset[str]])
 
     @cached_property
+    def tree_nodes(self) -> dict[str, tuple[str, ...]]:
+        """Nodes of behaviour trees that some version of a package surely registers, with those packages."""
+        (data,) = next(self.fetch("SELECT data FROM tree_nodes"))
+        return read_packed(data, dict[str, tuple[str, ...]])
+
+    @cached_property
     def about(self) -> About:
         """What the file holds."""
         return About(*next(self.fetch("SELECT packages, versions, distros, date FROM about")))
 
     def list_other_packages(self, name: str) -> tuple[str, ...]:
         """The packages that have, or had, a name that some package lost."""
-        row = next(self.fetch("SELECT packages FROM elsewhere WHERE name = ?", name), None)
-        return tuple(row[0].split()) if row else ()
+        return self._elsewhere.get(name, ())
+
+    @cached_property
+    def _elsewhere(self) -> dict[str, tuple[str, ...]]:
+        (data,) = next(self.fetch("SELECT data FROM elsewhere"))
+        return read_packed(data, dict[str, tuple[str, ...]])
 
     @cached_property
     def stamp(self) -> str:

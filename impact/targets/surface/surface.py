@@ -80,8 +80,12 @@ class InstalledProgram(msgspec.Struct, frozen=True, array_like=True, gc=False):
     sure: bool = True
 
 
+TREE_NODE = "BT::TreeNode"
+
+
 class Plugin(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A plugin: lookup name, type, base class. A component has the base `rclcpp_components`."""
+    """A plugin: lookup name, type, base class. A component has the base `rclcpp_components`, a node of behaviour trees
+    TREE_NODE."""
 
     name: str
     type: str

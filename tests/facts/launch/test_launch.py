@@ -353,3 +353,29 @@ def test_never_raises_and_lines_lie_in_the_file(kind, data):
     last = data.count(b"\n") + 1
     lines = [x.line for x in (*facts.references, *facts.plugins, *facts.problems, *facts.unresolved)]
     assert all(1 <= line <= last for line in lines)
+
+
+TREES = """\
+<root BTCPP_format="4">
+  <include path="other.xml"/>
+  <BehaviorTree ID="Main">
+    <Sequence>
+      <Action ID="Wave" times="2"/>
+      <Condition/>
+      <SubTree ID="Home"><remap internal="a" external="b"/></SubTree>
+      <Decorator ID="{kind}"><Wait/></Decorator>
+    </Sequence>
+  </BehaviorTree>
+  <BehaviorTree ID="Home"/>
+  <TreeNodesModel><Action ID="Dance"><input_port name="x"/></Action></TreeNodesModel>
+</root>
+"""
+
+
+def test_nodes_of_behaviour_trees():
+    facts = extract(TREES.encode(), "xml")
+    assert [(r.kind, r.name, r.line) for r in facts.references] == [
+        ("tree node", "Sequence", 4), ("tree node", "Wave", 5), ("tree node", "SubTree", 7), ("tree node", "Wait", 8),
+    ]  # fmt: skip
+    assert (facts.trees, facts.modelled) == (("Main", "Home"), ("Dance",))
+    assert extract(b"<root><Sequence/></root>", "xml").references == ()
