@@ -22,7 +22,7 @@ import zstandard
 from ..edges.files import write_file
 from ..impact.facts.cmake import extract
 from ..impact.targets.gz_systems import PREFIXES, GzSystems
-from ..impact.targets.snapshot import DATA
+from ..impact.targets.tables import DATA
 from ..impact.targets.version import parse
 from .git import BuildError, open_repository
 from .surface.releases import find_git_directory

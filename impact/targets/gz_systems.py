@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from .snapshot import DATA, read_table
 from .surface.includes import covers
+from .tables import find_table
+from .unpacked import read_table
 from .version import find_newest_up_to
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ class GzSystems(msgspec.Struct, frozen=True):
 @cache
 def load_gz_systems() -> GzSystems:
     """The shipped table. Raises SnapshotError."""
-    return read_table(DATA / "gz_systems.json.zst", GzSystems)
+    return read_table(find_table("gz_systems.json.zst"), GzSystems)
 
 
 class SystemName(NamedTuple):
