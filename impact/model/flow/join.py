@@ -15,7 +15,7 @@ from ....edges.reach import walk
 from ...facts.flow import FlowExpr, FlowFile, Guard
 from ..launch.result import Launched, Started
 from . import nodes as programs_of
-from .calls import Calls, FrameworkCall
+from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, get_tail, list_made
 from .defined import DefinedInterfaces
 from .endpoints import Site, Sites, Statement, unparse
@@ -338,6 +338,7 @@ class Join:
         owners = _Owners(self, list(self.add_loaded(running)), launch is not None)
         count = _Count(list(missing))
         endpoints = dict.fromkeys(self._list_endpoints(owners, count))
+        self._count_foreign(owners, count)
         publishes = dict.fromkeys(self._list_publishes(owners, count))
         timers = dict.fromkeys(self._list_timers(owners))
         parameters = dict.fromkeys(self._list_parameters(owners, count))
@@ -368,6 +369,13 @@ class Join:
                 for value in here.names:
                     for type_ in _select_types(here, owner):
                         yield self._make_endpoint(here, value, type_, owner)
+
+    def _count_foreign(self, owners: _Owners, count: _Count) -> None:
+        """Counts calls that look like a framework's, on objects of classes that are not in the code."""
+        for use in self.calls.select_uses(FOREIGN):
+            if owners.list_owners(use):
+                reason = f"whether it is called on an object of {use.row.framework} is not known"
+                count.call(Unresolved("call", reason, *_get_place(use), use.call.callee), ())
 
     def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:
