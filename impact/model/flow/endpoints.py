@@ -756,7 +756,7 @@ class Sites:
 
     def _resolve_namespace(self, value: FlowExpr, fn: Fn) -> str:
         """What a namespace is that is given to a handle."""
-        text = self.values.evaluate(value, fn)[0].text
+        text = self.values.find_only_text(value, fn)
         return LOST if text is None else text
 
     @cached_property

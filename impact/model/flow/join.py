@@ -384,7 +384,7 @@ class Join:
                 continue
             if not statement.through:  # else counted where it sends
                 sites = [self._adapt_site(site, those[0]) if owners.launched else site for site in statement.sites]
-                reason = statement.reason or next((s.names[0].reason for s in sites if s.names[0].text is None), "")
+                reason = statement.reason or next((n.reason for s in sites for n in s.names if n.text is None), "")
                 receiver = self.calls.get_receiver(statement.use)
                 lost = Unresolved("publish", reason, *_get_place(statement.use), receiver) if reason else None
                 count.call(lost, statement.sites)
@@ -428,9 +428,9 @@ class Join:
         return Node(id, "", package, "library", executable=name, language=fn.source.facts.language, path=path)
 
     def _find_missing(self, site: Site) -> tuple[str, str] | None:
-        known = [value for value in site.names if value.text is not None]
-        if not known:
-            return f"{site.role} name", site.names[0].reason if site.names else "no name is given"
+        unknown = [value for value in site.names if value.text is None]
+        if unknown or not site.names:
+            return f"{site.role} name", unknown[0].reason if unknown else "no name is given"
         if not site.type and not site.types:
             name = self.sites.find_template_parameter(site.use)
             reason = f"nothing here fixes the parameter `{name}` of the template" if name else ""
@@ -469,6 +469,8 @@ class Join:
             policies = list_overridable(use) if any(map(_OVERRIDES, owner.values.settings)) else ()
             qos = override_qos(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         only_if = "" if site.implied else self._describe_condition(use, owner)
+        if value.how == "partly":
+            only_if = " && ".join(filter(None, (only_if, "the name is not replaced")))
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
@@ -529,7 +531,7 @@ class Join:
                 name = plain if instance is None else instance.remap_name(text, 2, kind)
         except NameRefused as error:
             return "", "unresolved", str(error)
-        if is_open(name):
+        if is_open(name) or value.how == "partly":
             return name, "partly", ""
         if name != plain:
             return name, "launch", ""
