@@ -104,7 +104,7 @@ class Join:
         self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
         # By the functions that run and the arguments given: the settings that it rests on, and what it is under these.
         # With who runs it, so that nothing else comes by the same id().
-        self._sites_of: dict[tuple, list[tuple[Running, dict[str, str | None], Site]]] = {}
+        self._sites_of: dict[tuple, list[tuple[Running, dict[str, FlowValue | None], Site]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[Fn, frozenset[Fn]], list[Way]] = {}
 
@@ -191,7 +191,8 @@ class Join:
                     part.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
                     uncertain=instance.uncertain,
                 )  # fmt: skip
-                values = self.values.apply_launch(instance.settings, known)
+                name = instance.name if start.generation == 1 else ""
+                values = self.values.apply_launch(instance.settings, known, name)
                 found.append(part._replace(node=node, instance=instance, values=values))
         return found, missing
 
@@ -203,7 +204,8 @@ class Join:
             for loaded in list_loaded(self.calls, one.functions, one.values, one.node.name):
                 part = next((p for p in programs if self._is_plugin(p.program, loaded.plugin)), None)
                 if part is not None:
-                    yield part._replace(node=one.node, values=one.values, instance=one.instance, loaded=loaded)
+                    values = one.values.rename(loaded.name)
+                    yield part._replace(node=one.node, values=values, instance=one.instance, loaded=loaded)
 
     def _is_plugin(self, program: StartableProgram, name: str) -> bool:
         """Whether a program is what pluginlib knows by a name."""
@@ -443,10 +445,10 @@ class Join:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
             return site
-        settings, arguments = owner.values.settings, owner.values.arguments
+        arguments = owner.values.arguments
         known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments), [])
         for _, rests_on, found in known:
-            if all(settings.get(name) == value for name, value in rests_on.items()):
+            if all(owner.values.find_setting(name) == value for name, value in rests_on.items()):
                 return found
         self.values.asked.clear()
         # What code that the node does not run passes to its functions is none of its names.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
@@ -13,12 +13,15 @@ from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Variable, find_argument, find_parameter, get_tail
 from .graph import How
+from .names import resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues, list_guards_around
 from .types import split_name
 
 NODE, NAMESPACE = "{node}", "{ns}"
 """Stand in a value for the name and the namespace of the node that evaluates it (ROS 2 writes them so in names)."""
+LOST = "?"
+"""Begins the namespace of a node handle that is not known."""
 _MOST = 12
 _DEEPEST = 12
 _FAR = 6
@@ -55,34 +58,47 @@ class FlowValues:
         arguments: tuple[str, ...] | None = None,
         way: Mapping[Fn, FlowCall] | None = None,
         within: Collection[Fn] | None = None,
+        node: str = "",
     ):
-        """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`).
-        arguments: of the command line, without the program's name; None where they are not known. way: the only call
-        through which a function is reached, by the function. within: the functions that run, all when None."""
+        """settings: values of parameters that a launch sets, by name; in ROS 1 by the global name, and node is the full
+        name of the node then. arguments: of the command line, without the program's name; None where they are not
+        known. way: the only call through which a function is reached, by the function. within: the functions that run,
+        all when None."""
         self.calls, self.code = calls, calls.code
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
+        self.node = node
+        # The namespace of the node handle that a use is called on, and what is known of that, by the call.
+        self.find_prefix: Callable[[FrameworkCall], str] = lambda use: ""
+        self._prefixes: dict[int, str] = {}
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
         # Settings that were asked for, by name, with what they are.
-        self.asked: dict[str, str | None] = {}
+        self.asked: dict[str, FlowValue | None] = {}
 
-    def apply_launch(self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None) -> FlowValues:
-        """The same code where a launch sets parameters and gives arguments."""
-        return self._make_copy(settings, arguments, self.way, self.within)
+    def apply_launch(
+        self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
+    ) -> FlowValues:
+        """The same code where a launch sets parameters and gives arguments; as for FlowValues()."""
+        return self._make_copy(settings, arguments, self.way, self.within, node)
+
+    def rename(self, node: str) -> FlowValues:
+        """The same where the code is a nodelet of another name."""
+        return self.apply_launch(self.settings, self.arguments, node) if self.node else self
 
     def run(self, functions: Collection[Fn]) -> FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
-        return self._make_copy(self.settings, self.arguments, self.way, functions)
+        return self._make_copy(self.settings, self.arguments, self.way, functions, self.node)
 
     def limit_to_calls(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
         """The same code as far as it is reached through some calls, by the function called."""
-        return self._make_copy(self.settings, self.arguments, way, self.within) if way else self
+        return self._make_copy(self.settings, self.arguments, way, self.within, self.node) if way else self
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
         for name in ("filled", "declared", "command_line", "origins"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other.asked = self._budget, self.asked
+        other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
@@ -504,6 +520,29 @@ class FlowValues:
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
 
+    def _make_setting_name(self, name: str, use: FrameworkCall) -> str:
+        """The name of a parameter in the namespace of the node handle that it is asked of."""
+        if not self.node or name[:1] in ("/", "~"):
+            return name
+        if id(use.call) not in self._prefixes:
+            self._prefixes[id(use.call)] = LOST  # as long as it rests on itself
+            self._prefixes[id(use.call)] = self.find_prefix(use)
+        prefix = self._prefixes[id(use.call)]
+        return f"~{name}" if prefix == "~" else f"{prefix}/{name}" if prefix else name
+
+    def find_setting(self, name: str) -> FlowValue | None:
+        """What a launch sets a parameter to; None for nothing. name: in the namespace of its node handle."""
+        if not self.node:
+            given = self.settings.get(name.lstrip("~").lstrip("/"))
+        elif not name.startswith(LOST):
+            given = self.settings.get(resolve_ros1_name(name, self.node))
+        elif any(key.endswith(name[len(LOST) :]) for key in self.settings):
+            reason = f"the parameter `{name}`: the namespace of its node handle is not known"
+            return FlowValue(None, "given", reason, beside=True)
+        else:
+            given = None
+        return FlowValue(given, "launch") if given is not None else None
+
     def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
         """The default of the parameter that a use declares or reads."""
         names = [
@@ -511,11 +550,10 @@ class FlowValues:
             for one in self._evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line, seen)
         ]
         name = names[0] if names and names[0] is not None else ""
-        setting = name.lstrip("~").lstrip("/")
-        given = self.settings.get(setting) if name else None
-        self.asked[setting] = given
+        setting = self._make_setting_name(name, use)
+        given = self.asked[setting] = self.find_setting(setting) if name else None
         if given is not None:
-            yield FlowValue(given, "launch")
+            yield given
             return
         default = self.calls.find_argument(use, use.row.default) if use.row.default else None
         target = self.calls.find_argument(use, use.row.variable) if use.row.variable else None
