@@ -100,17 +100,24 @@ class CommandLine:
 
         arguments: what is given to the program, None where that is not known. Nothing where it is none of argparse's.
         """
-        head, name = get_outer(path), get_tail(path)
+        for writer, parser in self._list_parsing(path, fn):
+            found = _read(list(self._list_options(parser, writer)), get_tail(path), arguments)
+            if found is not None:
+                yield found
+
+    def is_parsed(self, path: str, fn: Fn) -> bool:
+        """Whether a path is an argument that argparse reads."""
+        return any(self._list_parsing(path, fn))
+
+    def _list_parsing(self, path: str, fn: Fn) -> Iterator[tuple[Fn, str]]:
+        """The parsers that may give what a path is a member of, and the functions in which they do."""
+        head = get_outer(path)
         if not head or fn.source.facts.language != "python":
             return
         for writer, each in self.code.list_writes(self.code.identify(head, fn)):
             value = each.value.parts[0] if each.value.kind == "index" and each.value.parts else each.value
-            if value.kind != "call" or get_tail(value.text) not in ("parse_args", "parse_known_args"):
-                continue
-            options = list(self._list_options(get_outer(value.text), writer))
-            found = _read(options, name, arguments)
-            if found is not None:
-                yield found
+            if value.kind == "call" and get_tail(value.text) in ("parse_args", "parse_known_args"):
+                yield writer, get_outer(value.text)
 
     def _list_options(self, parser: str, fn: Fn) -> Iterator[tuple[tuple[str, ...], dict[str, object]]]:
         """What `parser.add_argument()` is told, as far as it is literal."""

@@ -22,6 +22,9 @@ _COMMON = frozenset(
      "Notify", "load", "Subscriber", "Publisher", "Service", "Timer", "ActionServer", "ActionClient")
 )  # fmt: skip
 
+# What the call of a method does that no class of the code has, on an object that is not known to be of the framework.
+FOREIGN = "foreign"
+
 
 class FrameworkCall(NamedTuple):
     """A call, or an object that is made, that a row describes. call: with the arguments; for an object a call of its
@@ -125,10 +128,15 @@ class Calls:
                     return FrameworkCall(fn, row, call)
                 if kinds & set(row.on):
                     return FrameworkCall(fn, row, call)
-                unknown = row.on and receiver and not kinds and not self.code.list_targets(call.callee, fn)
-                # A receiver of a type that is none of ours is not of the framework.
-                if weak is None and unknown and not self._has_type(receiver, fn) and self._is_distinct(row, call):
+                inside = receiver or (free == "" and fn.facts.owner)
+                unknown = row.on and inside and not kinds and not self.code.list_targets(call.callee, fn)
+                if weak is not None or not unknown:
+                    continue
+                # A receiver of a type that is none of ours is not of the framework, as far as the code has the type.
+                if receiver and not self._has_type(receiver, fn) and self._is_distinct(row, call):
                     weak = FrameworkCall(fn, row, call, False)
+                elif row.does in ("publisher", "subscriber", "server", "client") and call.types:
+                    weak = FrameworkCall(fn, FrameworkRow(row.framework, FOREIGN), call, False)
                 continue
             if free is not None and free not in ("rclcpp", "this", "") and "::" in call.callee:
                 continue

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import posixpath
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 from operator import itemgetter
 from typing import Generic, NamedTuple, TypeVar
@@ -20,6 +20,7 @@ from ...facts.flow import (
     FlowFunction,
     FlowParameter,
 )
+from .includes import SeenFiles
 from .modules import CodeFile, PythonModules
 from .types import UNKNOWN, Cls, FlowType, parse_flow_type, split_name
 
@@ -86,10 +87,11 @@ class Variable(NamedTuple):
     name: str
 
 
-def _collect_names(source: CodeFile) -> tuple[object, ...]:
-    """What a file contributes to what names mean: where they are equal, names mean the same."""
+def _collect_names(source: CodeFile, files: Collection[str]) -> tuple[object, ...]:
+    """What a file contributes to what names mean: where they are equal, names mean the same. files: the names of all,
+    without their folders."""
     facts = source.facts
-    included = tuple(header for header in facts.includes if header.endswith(_SOURCES))
+    included = tuple(header for header in facts.includes if posixpath.basename(header) in files)
     return source.path, source.package, facts.language, facts.aliases, included, id(facts) if facts.classes else 0
 
 
@@ -158,7 +160,8 @@ class FlowCode:
 
     def __init__(self, sources: Iterable[CodeFile], before: FlowCode | None = None):
         self.sources = list(sources)
-        self.names = tuple(_collect_names(source) for source in self.sources)
+        files = {posixpath.basename(source.path) for source in self.sources}
+        self.names = tuple(_collect_names(source, files) for source in self.sources)
         if before is not None and before.names != self.names:
             before = None
         self.functions: list[Fn] = []
@@ -168,10 +171,8 @@ class FlowCode:
         # Objects that have an equal class each: what was found out about one holds for no other.
         self.classes: dict[str, list[Cls]] = before.classes if before is not None else {}
         self.aliases: dict[str, dict[str, list[Alias]]] = {}
-        self.shared_aliases: dict[tuple[str, str], list[Alias]] = {}
-        self._qualified: dict[str, list[tuple[str, Alias]]] = {}
-        # Names in C++ that stand for others.
-        self._renamed: set[str] = set()
+        # Of C++, by the name: with the path of the file.
+        self._shared: dict[str, list[tuple[str, Alias]]] = {}
         # Sources in C++ that others include.
         included = {header.rpartition("/")[2] for source in self.sources for header in source.facts.includes}
         for place, source in enumerate(self.sources):
@@ -179,10 +180,7 @@ class FlowCode:
             for alias in source.facts.aliases:
                 known.setdefault(alias.name, []).append(alias)
                 if source.facts.language == "cpp" and alias.name != "*":
-                    self.shared_aliases.setdefault((source.package, alias.name), []).append(alias)
-                    self._renamed.add(alias.name)
-                    if alias.scope:
-                        self._qualified.setdefault(alias.name, []).append((source.package, alias))
+                    self._shared.setdefault(alias.name, []).append((source.path, alias))
             is_source = source.path.endswith(_SOURCES) and source.path.rpartition("/")[2] not in included
             is_local = is_source or source.facts.language == "python"
             for cls in source.facts.classes if before is None else ():
@@ -267,7 +265,7 @@ class FlowCode:
     def _find_alias(self, head: str, source: CodeFile, scope: str) -> Alias | None:
         found = self.aliases[source.path].get(head)
         if found is None and source.facts.language == "cpp":
-            found = self.shared_aliases.get((source.package, head))
+            found = self._list_seen_aliases(head, source)
         if not found:
             return None
         fitting = [alias for alias in found if not alias.scope or _is_within(scope, alias.scope)]
@@ -276,19 +274,26 @@ class FlowCode:
         return max(fitting, key=lambda alias: len(alias.scope), default=None)
 
     def _find_qualified_alias(self, name: str, source: CodeFile) -> Alias | None:
-        """What `ns::Name` is another name of, in C++; of several packages' the own one's."""
+        """What `ns::Name` is another name of, in C++."""
         if source.facts.language != "cpp" or "::" not in name:
             return None
         wanted = split_name(name)
-        if not wanted or wanted[-1] not in self._qualified:
-            return None
         found = [
-            (package, alias)
-            for package, alias in self._qualified.get(wanted[-1], ())
-            if (*split_name(alias.scope), alias.name)[-len(wanted) :] == wanted
+            alias
+            for alias in self._list_seen_aliases(wanted[-1], source)
+            if alias.scope and (*split_name(alias.scope), alias.name)[-len(wanted) :] == wanted
         ]
-        own = [alias for package, alias in found if package == source.package] or [alias for _, alias in found]
-        return own[0] if own and len({alias.target for alias in own}) == 1 else None
+        return found[0] if len({alias.target for alias in found}) == 1 else None
+
+    def _list_seen_aliases(self, name: str, source: CodeFile) -> list[Alias]:
+        """The aliases of a name in C++ that a file sees."""
+        found = self._shared.get(name, ())
+        seen = self._seen_files.list_seen(source.path) if found else ()
+        return [alias for path, alias in found if path in seen]
+
+    @cached_property
+    def _seen_files(self) -> SeenFiles:
+        return SeenFiles(self.sources)
 
     def find_class(self, name: str, source: CodeFile, scope: str = "") -> Cls | None:
         """The class that a name means in a file and scope; None when there is none, or several that fit as well."""
@@ -309,6 +314,8 @@ class FlowCode:
             named = self.classes.get(wanted[-1], ()) if wanted else ()
             found = [cls for cls in named if cls.parts[-len(wanted) :] == wanted and cls.source.facts.language == "cpp"]
         if len(found) > 1:
+            seen = self._seen_files.list_seen(source.path) if source.facts.language == "cpp" else ()
+            found = [cls for cls in found if cls.source.path in seen] or found
             groups = group_pairs((_rate_nearness(cls, source, scope), cls) for cls in found)
             found = groups[max(groups)]
         # Of several bodies under one name (behind `#if`, say) the largest.
@@ -902,7 +909,7 @@ class FlowCode:
         for fn in self.functions:
             for name, arguments, line in list_made(fn, self):
                 last = get_tail(name)
-                if last in self.classes or last in self._renamed:
+                if last in self.classes or last in self._shared:
                     cls = self.find_class(name, fn.source, fn.scope)
                     if cls is not None:
                         found.setdefault(cls.key, []).append((fn, arguments, line))

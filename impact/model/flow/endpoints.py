@@ -21,11 +21,9 @@ from .defined import DefinedInterfaces
 from .graph import Role
 from .templates import Templates
 from .types import find_header_interface, find_interface, parse_flow_type
-from .values import FlowValue, FlowValues, make_sibling
+from .values import LOST, FlowValue, FlowValues, make_sibling
 
 _HANDLES = frozenset(("handle", "image_transport", "cloud_transport"))
-LOST = "?"
-"""Begins the namespace of a node handle that is not known."""
 _CONNECTS = ("connectInput", "reset")
 _PUTS = frozenset(("push_back", "emplace_back", "emplace", "insert", "append", "make_pair", "reset"))
 _ROLES: dict[str, Role] = {role: role for role in get_args(Role)}
@@ -146,6 +144,7 @@ class Sites:
     def __init__(self, code: FlowCode, calls: Calls, values: FlowValues, defined: DefinedInterfaces):
         self.code, self.calls, self.values, self.defined = code, calls, values, defined
         self.templates = Templates(code)
+        values.find_prefix = self.find_prefix
 
     @cached_property
     def endpoints(self) -> list[Site]:
@@ -756,7 +755,7 @@ class Sites:
 
     def _resolve_namespace(self, value: FlowExpr, fn: Fn) -> str:
         """What a namespace is that is given to a handle."""
-        text = self.values.evaluate(value, fn)[0].text
+        text = self.values.find_only_text(value, fn)
         return LOST if text is None else text
 
     @cached_property

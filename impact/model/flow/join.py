@@ -15,7 +15,7 @@ from ....edges.reach import walk
 from ...facts.flow import FlowExpr, FlowFile, Guard
 from ..launch.result import Launched, Started
 from . import nodes as programs_of
-from .calls import Calls, FrameworkCall
+from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, get_tail, list_made
 from .defined import DefinedInterfaces
 from .endpoints import Site, Sites, Statement, unparse
@@ -104,7 +104,7 @@ class Join:
         self._started: tuple[Launched, tuple[list[Running], list[Unresolved]]] | None = None
         # By the functions that run and the arguments given: the settings that it rests on, and what it is under these.
         # With who runs it, so that nothing else comes by the same id().
-        self._sites_of: dict[tuple, list[tuple[Running, dict[str, str | None], Site]]] = {}
+        self._sites_of: dict[tuple, list[tuple[Running, dict[str, FlowValue | None], Site]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
         self._ways: dict[tuple[Fn, frozenset[Fn]], list[Way]] = {}
 
@@ -191,7 +191,8 @@ class Join:
                     part.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
                     uncertain=instance.uncertain,
                 )  # fmt: skip
-                values = self.values.apply_launch(instance.settings, known)
+                name = instance.name if start.generation == 1 else ""
+                values = self.values.apply_launch(instance.settings, known, name)
                 found.append(part._replace(node=node, instance=instance, values=values))
         return found, missing
 
@@ -203,7 +204,8 @@ class Join:
             for loaded in list_loaded(self.calls, one.functions, one.values, one.node.name):
                 part = next((p for p in programs if self._is_plugin(p.program, loaded.plugin)), None)
                 if part is not None:
-                    yield part._replace(node=one.node, values=one.values, instance=one.instance, loaded=loaded)
+                    values = one.values.rename(loaded.name)
+                    yield part._replace(node=one.node, values=values, instance=one.instance, loaded=loaded)
 
     def _is_plugin(self, program: StartableProgram, name: str) -> bool:
         """Whether a program is what pluginlib knows by a name."""
@@ -338,6 +340,7 @@ class Join:
         owners = _Owners(self, list(self.add_loaded(running)), launch is not None)
         count = _Count(list(missing))
         endpoints = dict.fromkeys(self._list_endpoints(owners, count))
+        self._count_foreign(owners, count)
         publishes = dict.fromkeys(self._list_publishes(owners, count))
         timers = dict.fromkeys(self._list_timers(owners))
         parameters = dict.fromkeys(self._list_parameters(owners, count))
@@ -369,6 +372,13 @@ class Join:
                     for type_ in _select_types(here, owner):
                         yield self._make_endpoint(here, value, type_, owner)
 
+    def _count_foreign(self, owners: _Owners, count: _Count) -> None:
+        """Counts calls that look like a framework's, on objects of classes that are not in the code."""
+        for use in self.calls.select_uses(FOREIGN):
+            if owners.list_owners(use):
+                reason = f"whether it is called on an object of {use.row.framework} is not known"
+                count.call(Unresolved("call", reason, *_get_place(use), use.call.callee), ())
+
     def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:
             those = owners.list_owners(statement.use)
@@ -376,7 +386,7 @@ class Join:
                 continue
             if not statement.through:  # else counted where it sends
                 sites = [self._adapt_site(site, those[0]) if owners.launched else site for site in statement.sites]
-                reason = statement.reason or next((s.names[0].reason for s in sites if s.names[0].text is None), "")
+                reason = statement.reason or next((n.reason for s in sites for n in s.names if n.text is None), "")
                 receiver = self.calls.get_receiver(statement.use)
                 lost = Unresolved("publish", reason, *_get_place(statement.use), receiver) if reason else None
                 count.call(lost, statement.sites)
@@ -420,9 +430,9 @@ class Join:
         return Node(id, "", package, "library", executable=name, language=fn.source.facts.language, path=path)
 
     def _find_missing(self, site: Site) -> tuple[str, str] | None:
-        known = [value for value in site.names if value.text is not None]
-        if not known:
-            return f"{site.role} name", site.names[0].reason if site.names else "no name is given"
+        unknown = [value for value in site.names if value.text is None]
+        if unknown or not site.names:
+            return f"{site.role} name", unknown[0].reason if unknown else "no name is given"
         if not site.type and not site.types:
             name = self.sites.find_template_parameter(site.use)
             reason = f"nothing here fixes the parameter `{name}` of the template" if name else ""
@@ -435,10 +445,10 @@ class Join:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
             return site
-        settings, arguments = owner.values.settings, owner.values.arguments
+        arguments = owner.values.arguments
         known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments), [])
         for _, rests_on, found in known:
-            if all(settings.get(name) == value for name, value in rests_on.items()):
+            if all(owner.values.find_setting(name) == value for name, value in rests_on.items()):
                 return found
         self.values.asked.clear()
         # What code that the node does not run passes to its functions is none of its names.
@@ -461,6 +471,8 @@ class Join:
             policies = list_overridable(use) if any(map(_OVERRIDES, owner.values.settings)) else ()
             qos = override_qos(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         only_if = "" if site.implied else self._describe_condition(use, owner)
+        if value.how == "partly":
+            only_if = " && ".join(filter(None, (only_if, "the name is not replaced")))
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
@@ -521,7 +533,7 @@ class Join:
                 name = plain if instance is None else instance.remap_name(text, 2, kind)
         except NameRefused as error:
             return "", "unresolved", str(error)
-        if is_open(name):
+        if is_open(name) or value.how == "partly":
             return name, "partly", ""
         if name != plain:
             return name, "launch", ""

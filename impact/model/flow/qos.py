@@ -131,7 +131,7 @@ _SIDES = {"publisher": "publisher", "subscriber": "subscription"}
 def _evaluate_number(value: FlowExpr | None, fn: Fn, values: FlowValues) -> int:
     if value is None:
         return -1
-    text = values.evaluate(value, fn)[0].text
+    text = values.find_only_text(value, fn)
     return int(text) if text and is_number(text) else -1
 
 
@@ -158,7 +158,7 @@ def _evaluate(value: FlowExpr, fn: Fn, calls: Calls, values: FlowValues, depth: 
         ]
         if found:
             return _set_later(_merge_common([qos for qos, _ in found]), value.text, found[0][1], values)
-        text = values.evaluate(value, fn)[0].text
+        text = values.find_only_text(value, fn)
         if text and is_number(text):
             return Qos("reliable", "volatile", "keep_last", int(text))
     if value.kind == "list" and value.parts:

@@ -81,8 +81,9 @@ def follow_workspace_launch(
 
 
 class Instance(NamedTuple):
-    """A node as a launch starts it. name: full. settings: values of its parameters. uncertain: why its name, or whether
-    it is started at all, is not sure. What is not known of names and values stands in brackets (`/<$ROBOT>/camera`)."""
+    """A node as a launch starts it. name: full. settings: values of its parameters; in ROS 1 of all on the parameter
+    server, by their global names. uncertain: why its name, or whether it is started at all, is not sure. What is not
+    known of names and values stands in brackets (`/<$ROBOT>/camera`)."""
 
     started: Started
     name: str
@@ -107,7 +108,9 @@ def make_instance(all_started: Launched, own_name: str, started: Started) -> Ins
     """A start of a node whose code calls itself own_name (without a namespace)."""
     name = _fill(started.name) or own_name
     full = join_name("/" + _fill(started.namespace).lstrip("/"), name)
-    settings = {key: _fill(one.text) for key, one in all_started.collect_parameters(started, full).items()}
+    one = started.generation == 1
+    given = all_started.server if one else all_started.collect_parameters(started, full)
+    settings = {key: _fill(one.text) for key, one in given.items()}
     uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
     return Instance(started, full, settings, started.remaps, uncertain)
 

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import cached_property
 from itertools import islice, product
-from operator import attrgetter
-from typing import NamedTuple
+from operator import itemgetter
 
+from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Variable, find_argument, find_parameter, get_tail
 from .graph import How
+from .names import resolve_ros1_name
 from .origins import ObjectOrigins, Origins
+from .reaching import LOOPS, FlowValue, ReachingValues, list_guards_around
 from .types import split_name
 
 NODE, NAMESPACE = "{node}", "{ns}"
 """Stand in a value for the name and the namespace of the node that evaluates it (ROS 2 writes them so in names)."""
+LOST = "?"
+"""Begins the namespace of a node handle that is not known."""
 _MOST = 12
 _DEEPEST = 12
 _FAR = 6
@@ -37,20 +41,11 @@ _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "
                        "resolve_service_name", "resolve_topic_or_service_name"))  # fmt: skip
 # What is least certain of a text that is put together, first.
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
-_LOOPS = frozenset(("for", "while", "do"))
 _PUT = frozenset(("push_back", "emplace_back", "append"))
 # Functions that give a topic's type, and its name beside it.
 _TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
 _NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
 _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
-
-
-class FlowValue(NamedTuple):
-    """text: what it is worth, None when it is not known; reason says why then."""
-
-    text: str | None
-    how: How = "literal"
-    reason: str = ""
 
 
 class FlowValues:
@@ -63,42 +58,64 @@ class FlowValues:
         arguments: tuple[str, ...] | None = None,
         way: Mapping[Fn, FlowCall] | None = None,
         within: Collection[Fn] | None = None,
+        node: str = "",
     ):
-        """settings: values of parameters that a launch sets, by name (private ones of ROS 1 with or without `~`).
-        arguments: of the command line, without the program's name; None where they are not known. way: the only call
-        through which a function is reached, by the function. within: the functions that run, all when None."""
+        """settings: values of parameters that a launch sets, by name; in ROS 1 by the global name, and node is the full
+        name of the node then. arguments: of the command line, without the program's name; None where they are not
+        known. way: the only call through which a function is reached, by the function. within: the functions that run,
+        all when None."""
         self.calls, self.code = calls, calls.code
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
+        self.node = node
+        # The namespace of the node handle that a use is called on, and what is known of that, by the call.
+        self.find_prefix: Callable[[FrameworkCall], str] = lambda use: ""
+        self._prefixes: dict[int, str] = {}
         self._left = _MOST_STEPS
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
         # Settings that were asked for, by name, with what they are.
-        self.asked: dict[str, str | None] = {}
+        self.asked: dict[str, FlowValue | None] = {}
 
-    def apply_launch(self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None) -> FlowValues:
-        """The same code where a launch sets parameters and gives arguments."""
-        return self._make_copy(settings, arguments, self.way, self.within)
+    def apply_launch(
+        self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
+    ) -> FlowValues:
+        """The same code where a launch sets parameters and gives arguments; as for FlowValues()."""
+        return self._make_copy(settings, arguments, self.way, self.within, node)
+
+    def rename(self, node: str) -> FlowValues:
+        """The same where the code is a nodelet of another name."""
+        return self.apply_launch(self.settings, self.arguments, node) if self.node else self
 
     def run(self, functions: Collection[Fn]) -> FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
-        return self._make_copy(self.settings, self.arguments, self.way, functions)
+        return self._make_copy(self.settings, self.arguments, self.way, functions, self.node)
 
     def limit_to_calls(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
         """The same code as far as it is reached through some calls, by the function called."""
-        return self._make_copy(self.settings, self.arguments, way, self.within) if way else self
+        return self._make_copy(self.settings, self.arguments, way, self.within, self.node) if way else self
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
         for name in ("filled", "declared", "command_line", "origins"):
             other.__dict__[name] = getattr(self, name)
         other._budget, other.asked = self._budget, self.asked
+        other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         return other
 
     def evaluate(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
-        """What an expression may be worth, each once; where nothing of it is known, one value that says why. line: of
-        the statement it stands in."""
+        """What an expression may be worth, each once; where nothing of it is known, one value that says why. Where
+        something unknown may be in place of what is known, this is known in part, and one value that says why comes
+        last. line: of the statement it stands in."""
         found = self.list_values(value, fn, line)
         known = [one for one in found if one.text is not None]
+        beside = [one for one in found if one.beside][:1]
+        if known and beside:
+            return [*(one._replace(how="partly") for one in known), *beside]
         return known or found[:1] or [FlowValue(None, "unresolved", "no value is given")]
+
+    def find_only_text(self, value: FlowExpr, fn: Fn) -> str | None:
+        """The first text that an expression may be worth, None where something unknown may be in its place."""
+        found = self.evaluate(value, fn)
+        return None if found[-1].text is None else found[0].text
 
     def list_values(self, value: FlowExpr | None, fn: Fn, line: int = 0) -> list[FlowValue]:
         """The same with all that is not known."""
@@ -124,8 +141,8 @@ class FlowValues:
         elif kind == "join":
             yield from self._evaluate_join(value, fn, line, seen)
         elif kind == "choice" and len(value.parts) == 3:
-            yield from self._evaluate(value.parts[1], fn, line, seen)
-            yield from self._evaluate(value.parts[2], fn, line, seen)
+            parts = (_mark_unknown(self._evaluate(part, fn, line, seen)) for part in value.parts[1:])
+            yield from _restore_alone([one for part in parts for one in part])
         elif kind == "call":
             yield from self._call(value, fn, line, seen)
         elif kind in ("make", "keyword", "list") and len(value.parts) == 1:
@@ -141,17 +158,7 @@ class FlowValues:
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
         for row in islice(product(*pieces), _MOST):
-            unknown = next((one for one in row if one.text is None), None)
-            if unknown is not None:
-                yield unknown
-                continue
-            if sum(len(one.text or "") for one in row) > _LONGEST:
-                yield FlowValue(None, "unresolved", f"longer than {_LONGEST:,} characters")
-                continue
-            hows = {one.how for one in row}
-            known: list[How] = [how for how in _LEAST if how in hows]
-            how = known[0] if known else _LEAST[-1]
-            yield FlowValue("".join(one.text or "" for one in row), how)
+            yield _join(row)
 
     @cached_property
     def command_line(self) -> CommandLine:
@@ -163,13 +170,13 @@ class FlowValues:
         places = self.command_line.find_places(container, index, fn) if len(value.parts) == 2 else None
         if places is not None:
             if self.arguments is None:
-                yield FlowValue(None, "unresolved", "an argument of the command line")
+                yield FlowValue(None, "given", "an argument of the command line")
             else:
                 given = self.arguments[max(places.start, 1) - 1 : places.stop - 1]
                 if len(given) == 1 or places.stop - places.start == 1 or self._runs_over_all(fn, line):
                     yield from (FlowValue(argument, "given") for argument in given)
                 else:
-                    yield FlowValue(None, "unresolved", "one of several arguments of the command line")
+                    yield FlowValue(None, "given", "one of several arguments of the command line")
         elif container.kind == "call" and get_tail(container.text) in _TELLS_TOPIC and container.parts:
             yield from self._evaluate(container.parts[0], fn, line, seen)
         else:
@@ -219,11 +226,14 @@ class FlowValues:
         for text, how in self.command_line.list_parsed_texts(path, fn, self.arguments) if "." in path else ():
             yield FlowValue(text, "given" if how == "given" else "default")
             return
-        found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), line))
+        # What other objects have is not written in turn here.
+        at = 0 if "." in path.removeprefix("this.") else line
+        found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at))
         if found:
             yield from found
         else:
-            yield FlowValue(None, "unresolved", f"nothing tells what `{path}` is")
+            how = "given" if "." in path and self.command_line.is_parsed(path, fn) else "unresolved"
+            yield FlowValue(None, how, f"nothing tells what `{path}` is")
 
     def _find_origins(self, path: str, fn: Fn) -> Origins | None:
         """The origins of the objects of which a path names a member, None where they may be any of their class."""
@@ -240,6 +250,55 @@ class FlowValues:
     ) -> Iterator[FlowValue]:
         """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed. origins:
         of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any."""
+        rows = [row for row in self.code.list_writes(variable) if self._may_write(row[1], row[0], origins)]
+        own = [each for writer, each in rows if writer is fn and line]
+        around = list_guards_around(fn, _find_guard(fn, line)) if line else []
+        found = ReachingValues(fn, around, lambda path: self.code.identify(path, fn) == variable)
+        # What stands before the last that is surely assigned is of no interest.
+        sure = [each for each in own if each.line < line and each.operator == "=" and found.is_sure(each.guard)]
+        begun = max((each.line for each in sure), default=0)
+        filled = self._list_filled(variable, seen, origins)
+        # In Python that is an assignment too.
+        if not begun and (not rows or fn.source.facts.language == "cpp"):
+            found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
+        for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
+            found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
+        here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
+        for use, values in filled:
+            if not (use.fn is fn and use.call.line < line):
+                found.add(values, rank=2, stays=True)
+        if not rows or variable.kind == "local":
+            found.add(self._evaluate_references(variable, seen), rank=3, stays=True)
+        if variable.kind == "local" and not begun:
+            found.add(self._evaluate_parameters(variable, fn, seen), rank=4)
+        steps: list[tuple[int, Assignment | FrameworkCall, list[FlowValue]]] = [
+            (use.call.line, use, values) for use, values in here if use.call.line >= begun
+        ]
+        steps += [(each.line, each, []) for each in own if begun <= each.line < line]
+        for _, step, values in sorted(steps, key=itemgetter(0)):
+            if isinstance(step, Assignment):
+                # What is made of the variable itself is made of what it was before.
+                itself = _mentions(step.value, step.target)
+                before = tuple(one for one in seen if one != variable) if itself else seen
+                self._follow(step, fn, found, origins, before)
+            elif _is_sure(values):
+                found.assign(values, step.call.guard, 2)
+            else:
+                found.add(values, step.call.guard, 2)
+        # In the next turn of a loop.
+        loops = {guard for guard in around if fn.facts.guards[guard].kind in LOOPS}
+        last = [each for each in sure if each.line == begun]
+        again = not begun or any(not loops <= set(list_guards_around(fn, each.guard)) for each in last)
+        for each in own:
+            if each.line >= line and (again or each.operator == "for") and (loops or variable.kind != "local"):
+                found.add(self._evaluate_written(each, fn, origins, seen))
+        values = found.list_values()
+        if found.held and not values:
+            yield FlowValue(None, "given", f"`{variable.name}` has no known value that passes the conditions around")
+        yield from _restore_alone(values)
+
+    def _evaluate_beginning(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
+        """What a member or a variable outside of functions is declared with."""
         if variable.kind == "member":
             for cls in self.code.list_class_bodies(variable.owner):
                 for member in cls.facts.members:
@@ -249,78 +308,88 @@ class FlowValues:
                             yield from self._evaluate(member.value, holder, member.line, seen)
         elif variable.kind == "global":
             yield from self._evaluate_constant(variable, fn, seen)
-        filled = [
-            (use, values)
+
+    def _evaluate_parameters(self, variable: Variable, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
+        """What is passed for a parameter of a function, or of one around it."""
+        for one in self.code.list_enclosing_chain(fn):
+            place = find_parameter(one, variable.name)
+            if place is not None:
+                yield from self._evaluate_passed(one, *place, seen)
+                break
+
+    def _list_filled(
+        self, variable: Variable, seen: tuple, origins: Origins | None
+    ) -> list[tuple[FrameworkCall, list[FlowValue]]]:
+        """The calls that read a parameter into a variable, with what it is then."""
+        return [
+            (use, list(self._evaluate_parameter(use, seen)))
             for use in self.filled.get(variable, ())
             if origins is None
             or (target := self.calls.find_argument(use, use.row.variable)) is None
             or self.origins.may_be_of(target.text, use.fn, origins)
-            for values in [list(self._evaluate_parameter(use, seen))]
         ]
-        # What a parameter that surely has a value is read into is worth nothing else any more.
-        sure = [use for use, values in filled if values and all(one.how in ("launch", "default") for one in values)]
-        for writer, each in self._list_reaching(variable, fn, line):
-            if any(use.fn is writer and each.line < use.call.line and each.guard == use.call.guard for use in sure):
-                continue
-            if origins is not None and not self.origins.may_be_of(each.target, writer, origins):
-                continue
-            if self.arguments is not None and self.command_line.excludes(writer, each.guard, len(self.arguments) + 1):
-                continue
-            if each.operator == "=":
-                if variable.kind == "member" and each.value.kind == "list" and len(each.value.parts) > 1:
-                    continue
-                if origins is not None and (place := self._find_given(each.value, writer)) is not None:
-                    yield from self._evaluate_given(writer, place, origins, seen)
-                    continue
-                yield from self._evaluate(each.value, writer, each.line, seen)
-            elif each.operator == "for":
-                yield from self._evaluate_elements(each.value, writer, each.line, seen)
-            elif each.operator == "+=":
-                yield FlowValue(None, "unresolved", f"`{variable.name}` is put together in steps")
-        for _, values in filled:
-            yield from values
-        if not self.code.list_writes(variable) or variable.kind == "local":
-            yield from self._evaluate_references(variable, seen)
-        if variable.kind == "local":
-            for one in self.code.list_enclosing_chain(fn):
-                place = find_parameter(one, variable.name)
-                if place is not None:
-                    yield from self._evaluate_passed(one, *place, seen)
-                    break
 
-    def _list_reaching(self, variable: Variable, fn: Fn, line: int) -> Iterable[tuple[Fn, Assignment]]:
-        """The assignments to a variable that may hold at a line of a function; those of a local variable that it is
-        surely assigned anew behind are none. line: 0 for any."""
-        rows = self.code.list_writes(variable)
-        own = [each for writer, each in rows if writer is fn and each.operator == "="]
-        if variable.kind != "local" or not line or len(own) < 2:
-            return rows
-        around = self._list_guards_around(fn, _find_guard(fn, line))
-        before = [each for each in own if each.line < line and (each.guard < 0 or each.guard in around)]
-        if not before:
-            return rows
-        last = max(before, key=attrgetter("line"))
-        loops = [guard for guard in around if fn.facts.guards[guard].kind in _LOOPS]
-        again = not set(loops) <= set(self._list_guards_around(fn, last.guard))
-        return [
-            (writer, each)
-            for writer, each in rows
-            if writer is not fn or (each.line >= last.line and (again or each.line < line or each.operator == "for"))
-        ]
+    def _may_write(self, each: Assignment, writer: Fn, origins: Origins | None) -> bool:
+        """Whether an assignment may be made to the objects asked for, with the arguments that are given."""
+        if origins is not None and not self.origins.may_be_of(each.target, writer, origins):
+            return False
+        return self.arguments is None or not self.command_line.excludes(writer, each.guard, len(self.arguments) + 1)
+
+    def _evaluate_elsewhere(
+        self, variable: Variable, writer: Fn, rows: list[Assignment],
+        filled: list[tuple[FrameworkCall, list[FlowValue]]], origins: Origins | None, seen: tuple,
+    ) -> list[FlowValue]:  # fmt: skip
+        """What a function writes into a variable, whichever of it holds where another function reads it."""
+        found = ReachingValues(writer, (), lambda path: self.code.identify(path, writer) == variable)
+        sure = [use for use, values in filled if use.fn is writer and _is_sure(values)]
+        tested = False
+        for each in rows:
+            # What a parameter that surely has a value is read into is worth nothing else any more.
+            if any(each.line < use.call.line and each.guard == use.call.guard for use in sure):
+                continue
+            if found.may_run(each.guard):
+                tested = found.exclude(each.guard) or tested
+                found.add(_mark_unknown(self._evaluate_written(each, writer, origins, seen)), each.guard)
+        return found.list_values() if tested else _restore_alone(found.list_values())
+
+    def _follow(
+        self, each: Assignment, fn: Fn, found: ReachingValues, origins: Origins | None, seen: tuple
+    ) -> None:  # fmt: skip
+        """Goes on with an assignment in the function that reads the variable later."""
+        if not found.may_run(each.guard):
+            return
+        if each.operator == "+=" and _is_string(each.value) and found.is_counted(each.guard):
+            added = list(self._evaluate(each.value, fn, each.line, seen))
+            values = [_join((one.value, more)) for one in found.held[:_MOST] for more in added[:_MOST]][:_MOST]
+        elif _mentions(each.value, each.target) and not found.is_counted(each.guard):
+            values = [FlowValue(None, "unresolved", f"`{each.target}` is put together in steps", beside=True)]
+        else:
+            values = _mark_unknown(self._evaluate_written(each, fn, origins, seen))
+        if each.operator in ("=", "+=") and "." not in each.target.removeprefix("this."):
+            found.assign(values, each.guard)
+        else:
+            found.add(values, each.guard)
+
+    def _evaluate_written(
+        self, each: Assignment, writer: Fn, origins: Origins | None, seen: tuple
+    ) -> Iterator[FlowValue]:  # fmt: skip
+        """What an assignment makes of a variable."""
+        if each.operator == "=":
+            if each.target.startswith("this.") and each.value.kind == "list" and len(each.value.parts) > 1:
+                return
+            if origins is not None and (place := self._find_given(each.value, writer)) is not None:
+                yield from self._evaluate_given(writer, place, origins, seen)
+                return
+            yield from self._evaluate(each.value, writer, each.line, seen)
+        elif each.operator == "for":
+            yield from self._evaluate_elements(each.value, writer, each.line, seen)
+        elif each.operator == "+=":
+            yield FlowValue(None, "unresolved", f"`{each.target}` is put together in steps")
 
     def _runs_over_all(self, fn: Fn, line: int) -> bool:
         """Whether a loop does what stands on a line in every turn, not only for options that it recognises."""
-        around = self._list_guards_around(fn, _find_guard(fn, line))
-        return bool(around) and fn.facts.guards[around[0]].kind in _LOOPS
-
-    @staticmethod
-    def _list_guards_around(fn: Fn, guard: int) -> list[int]:
-        """A guard of a function, by its place, and those around it."""
-        found: list[int] = []
-        while 0 <= guard < len(fn.facts.guards) and len(found) < 64:
-            found.append(guard)
-            guard = fn.facts.guards[guard].outer
-        return found
+        around = list_guards_around(fn, _find_guard(fn, line))
+        return bool(around) and fn.facts.guards[around[0]].kind in LOOPS
 
     def _evaluate_references(self, variable: Variable, seen: tuple) -> Iterator[FlowValue]:
         """What functions write into a variable that is passed to them by reference."""
@@ -373,7 +442,7 @@ class FlowValues:
         if default is not None and (lacking or not given):
             yield from self._evaluate(default, fn, fn.facts.line, seen)
         elif not given:
-            yield FlowValue(None, "unresolved", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
+            yield FlowValue(None, "given", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
@@ -451,6 +520,29 @@ class FlowValues:
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
 
+    def _make_setting_name(self, name: str, use: FrameworkCall) -> str:
+        """The name of a parameter in the namespace of the node handle that it is asked of."""
+        if not self.node or name[:1] in ("/", "~"):
+            return name
+        if id(use.call) not in self._prefixes:
+            self._prefixes[id(use.call)] = LOST  # as long as it rests on itself
+            self._prefixes[id(use.call)] = self.find_prefix(use)
+        prefix = self._prefixes[id(use.call)]
+        return f"~{name}" if prefix == "~" else f"{prefix}/{name}" if prefix else name
+
+    def find_setting(self, name: str) -> FlowValue | None:
+        """What a launch sets a parameter to; None for nothing. name: in the namespace of its node handle."""
+        if not self.node:
+            given = self.settings.get(name.lstrip("~").lstrip("/"))
+        elif not name.startswith(LOST):
+            given = self.settings.get(resolve_ros1_name(name, self.node))
+        elif any(key.endswith(name[len(LOST) :]) for key in self.settings):
+            reason = f"the parameter `{name}`: the namespace of its node handle is not known"
+            return FlowValue(None, "given", reason, beside=True)
+        else:
+            given = None
+        return FlowValue(given, "launch") if given is not None else None
+
     def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
         """The default of the parameter that a use declares or reads."""
         names = [
@@ -458,11 +550,10 @@ class FlowValues:
             for one in self._evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line, seen)
         ]
         name = names[0] if names and names[0] is not None else ""
-        setting = name.lstrip("~").lstrip("/")
-        given = self.settings.get(setting) if name else None
-        self.asked[setting] = given
+        setting = self._make_setting_name(name, use)
+        given = self.asked[setting] = self.find_setting(setting) if name else None
         if given is not None:
-            yield FlowValue(given, "launch")
+            yield given
             return
         default = self.calls.find_argument(use, use.row.default) if use.row.default else None
         target = self.calls.find_argument(use, use.row.variable) if use.row.variable else None
@@ -486,7 +577,7 @@ class FlowValues:
                     yield one
         if not yielded:
             reason = f"the parameter `{name}` has no default here" if name else "which parameter it is, is not known"
-            yield FlowValue(None, "unresolved", reason)
+            yield FlowValue(None, "given", reason)
 
     @cached_property
     def declared(self) -> dict[str, list[FrameworkCall]]:
@@ -518,6 +609,46 @@ def make_sibling(topic: str, name: str) -> str:
     return f"{head}{slash}{name}"
 
 
+def _join(row: tuple[FlowValue, ...]) -> FlowValue:
+    """A text that is put together, unknown where a piece of it is."""
+    unknown = next((one for one in row if one.text is None), None)
+    if unknown is not None:
+        return unknown
+    if sum(len(one.text or "") for one in row) > _LONGEST:
+        return FlowValue(None, "unresolved", f"longer than {_LONGEST:,} characters")
+    hows = {one.how for one in row}
+    known: list[How] = [how for how in _LEAST if how in hows]
+    return FlowValue("".join(one.text or "" for one in row), known[0] if known else _LEAST[-1])
+
+
+def _mark_unknown(values: Iterator[FlowValue]) -> list[FlowValue]:
+    """What is assigned, as what may hold in place of others where nothing of it is known."""
+    found = list(values)
+    return found if any(one.text is not None for one in found) else [one.mark() for one in found]
+
+
+def _mentions(value: FlowExpr, path: str) -> bool:
+    """Whether an expression has a path in it."""
+    named = value.text == path or value.text.startswith(f"{path}.")
+    inner = (*value.parts, *((value.receiver,) if value.receiver is not None else ()))
+    return named or any(_mentions(part, path) for part in inner)
+
+
+def _restore_alone(values: list[FlowValue]) -> list[FlowValue]:
+    """Values, where nothing is known beside which what is not known could hold, without the mark."""
+    return values if any(one.text is not None for one in values) else [one._replace(beside=False) for one in values]
+
+
+def _is_string(value: FlowExpr) -> bool:
+    """Whether an expression shows itself to be a string, and no number."""
+    return value.kind == "text" or (value.kind == "join" and any(map(_is_string, value.parts)))
+
+
+def _is_sure(values: list[FlowValue]) -> bool:
+    """Whether a parameter surely has a value."""
+    return bool(values) and all(one.how in ("launch", "default") for one in values)
+
+
 def _take_first(values: Iterator[FlowValue]) -> list[FlowValue]:
     """The first different values. What comes after them is not worked out."""
     found: dict[FlowValue, None] = {}
@@ -529,5 +660,6 @@ def _take_first(values: Iterator[FlowValue]) -> list[FlowValue]:
 
 
 def _find_guard(fn: Fn, line: int) -> int:
-    """The place of the guard that calls on a line of a function are under, -1 for none."""
-    return next((call.guard for call in fn.facts.calls if call.line == line), -1)
+    """The place of the guard that what stands on a line of a function is under, -1 for none."""
+    rows = (*fn.facts.calls, *fn.facts.assignments)
+    return next((row.guard for row in rows if row.line == line), -1)

@@ -262,6 +262,7 @@ def test_a_class_made_by_an_alias_that_is_spelt_with_its_namespace():
             }
         """,
             "p/a.cpp": """
+            #include "types.h"
             int main(int c, char** v) { ros::init(c, v, "a"); p::KalmanFilter filter; ros::spin(); }
         """,
             "p/b.cpp": """

@@ -158,7 +158,8 @@ FILTER = """
     ],
 )
 def test_a_program_runs_what_it_makes_by_another_name(made):
-    main = f"int main(int c, char** v) {{ rclcpp::NodeOptions options; auto filter = {made}; rclcpp::spin(filter); }}"
+    main = "#include <est/filter.hpp>\n"
+    main += f"int main(int c, char** v) {{ rclcpp::NodeOptions options; auto filter = {made}; rclcpp::spin(filter); }}"
     join = joined({"est/include/est/filter.hpp": FILTER, "est/src/main.cpp": main, "est/src/other.cpp": OTHER})
     assert ends(join.build(), "publisher") == {("est/main", "/filtered", "nav_msgs/Odometry")}
     (one,) = (one for one in join.list_running() if one.program.executable == "main")
