@@ -463,7 +463,7 @@ def _convert_row(kind: str, row: ChangeRow, in_force: str, target: DistroTarget)
     name, other = row.old or row.package, row.new
     since, earlier = "" if row.pattern is not None else row.removed_in, True
     if in_force == "absent":
-        since, earlier = row.new_since, False
+        since, earlier = row.new_in.get(target.distro) or row.new_since, False
         if row.pattern is None:
             state, name, other = "not yet", row.new, row.old
     elif in_force == "deprecated":
@@ -471,7 +471,7 @@ def _convert_row(kind: str, row: ChangeRow, in_force: str, target: DistroTarget)
     form = "renamed" if row.kind.endswith(("-renamed", "-moved")) else ""
     return Availability(Symbol(kind, name), state, row.package, find_row_version(row, target), since, other,
                         library=row.library, evidence=make_evidence(row, in_force),
-                        replacement_since=row.new_since if earlier else "",
+                        replacement_since=row.format_arrival() if earlier else "",
                         form="meaning" if row.kind == "api-changed" else form, earlier=earlier,
                         detail=row.pattern.clause if row.pattern is not None else "")  # fmt: skip
 
