@@ -39,10 +39,9 @@ class NameOffer(NamedTuple):
 
 
 class WhyAnswer(NamedTuple):
-    """What a name is on one target. as_what: header, CMake package, command or target, Python module, executable, package or
-    key.
-    used: `path:line` of uses in the workspace. undeclared: packages that use it and do not declare it. findings: what
-    check reports on it, as `path:line: severity: message [rule]`."""
+    """What a name is on one target. as_what: header, CMake package, command or target, Python module, executable,
+    package or key. used: `path:line` of uses in the workspace. undeclared: packages that use it and do not declare it.
+    findings: what check reports on it, as `path:line: severity: message [rule]`."""
 
     target: str
     as_what: str
