@@ -28,12 +28,60 @@ def _cache(cache, monkeypatch):
         ("vector", "header", "system", ""),
         ("yaml", "Python module", "key", "python3-yaml"),
         ("rclpy.node", "Python module", "package", "rclpy"),
+        ("ament_python_install_package", "CMake command", "package", "ament_cmake_python"),
+        ("rclcpp::rclcpp", "CMake target", "package", "rclcpp"),
     ],
 )
 def test_who_provides_a_name(name, kind, what, provider):
     found = find_answers(name, EXAMPLE, ("jazzy",))
     offers = [offer for answer in found if answer.as_what == kind for offer in answer.offers]
     assert (what, provider) in {(offer.kind, offer.name) for offer in offers}
+
+
+@pytest.mark.parametrize(
+    ("name", "target", "kind", "since"),
+    [
+        # It came with 0.25.10, two years and more after the distro; to Jazzy with 0.36.6.
+        ("tf2/LinearMath/Vector3.hpp", "humble", "package", "2025-01-21"),
+        ("tf2/LinearMath/Vector3.hpp", "humble@2024-03-01", "absent", ""),
+        ("tf2/LinearMath/Vector3.h", "humble", "package", "2022-04-20"),
+        # The command went with 2.8.5; one that stays is there.
+        ("ament_target_dependencies", "lyrical", "absent", ""),
+        ("ament_export_dependencies", "lyrical", "package", "2026-04-29"),
+    ],
+)
+def test_since_when_a_version_has_a_name(name, target, kind, since):
+    (answer,) = find_answers(name, None, (target,))
+    assert [(offer.kind, offer.since) for offer in answer.offers] == [(kind, since)]
+
+
+PACKAGE_OF_TWO = """<package format="2"><name>pool</name><version>1.0.0</version><description>pool</description>
+<maintainer email="robots@example.org">Robots</maintainer><license>Apache-2.0</license>
+<buildtool_depend>catkin</buildtool_depend><exec_depend>python3-scipy</exec_depend></package>
+"""
+
+
+def test_a_key_that_brings_another_one_is_not_used_where_that_is(tmp_path):
+    (tmp_path / "package.xml").write_text(PACKAGE_OF_TWO)
+    (tmp_path / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.0.2)\nproject(pool)\nfind_package(catkin REQUIRED)\ncatkin_package()\n"
+        "catkin_install_python(PROGRAMS swim DESTINATION lib)\n"
+    )
+    (tmp_path / "swim").write_text("#!/usr/bin/env python3\nimport numpy\nimport scipy\n")
+    used = {key: find_answers(key, tmp_path, ("noetic",))[0].used for key in ("python3-scipy", "python3-numpy")}
+    assert used == {"python3-scipy": ("swim:3", "package.xml:3"), "python3-numpy": ("swim:2",)}
+
+
+def test_a_command_of_cmake_is_used_where_it_is_called(tmp_path):
+    (tmp_path / "package.xml").write_text(PACKAGE_OF_TWO.replace("catkin", "ament_cmake"))
+    (tmp_path / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.8)\nproject(pool)\nfind_package(ament_cmake REQUIRED)\n"
+        "AMENT_TARGET_DEPENDENCIES(pool rclcpp)\nament_package()\n"
+    )
+    (answer,) = find_answers("ament_target_dependencies", tmp_path, ("jazzy",))
+    assert (answer.as_what, answer.used) == ("CMake command", ("CMakeLists.txt:4",))
+    (answer,) = find_answers("ament_export_targets", tmp_path, ("jazzy",))
+    assert (answer.as_what, answer.used) == ("CMake command", ())
 
 
 def test_one_answer_for_each_target():

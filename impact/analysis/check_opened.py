@@ -226,14 +226,14 @@ def run_and_merge(
 def is_right_on(action: FixAction, view: TargetView) -> bool:
     """Whether an action of a fix is right on a target where the rule found nothing to fix.
 
-    A declaration is when the package is there, an include when its header surely is, what links when the packages have
-    it for CMake; anything else cannot be known.
+    A declaration is when the package is there and its modules are for the target's Python, an include when its header
+    surely is, what links when the packages have it for CMake; anything else cannot be known.
     """
     if isinstance(action, (Replace, Insert)) and action.needs:
         forms = ((find_link_form(view, package), item) for package, item in action.needs)
         return all(form is not None and item in form.items for form, item in forms)
     if isinstance(action, Declare):
-        return view.is_available(action.name)
+        return view.is_available(action.name) and not view.is_for_other_python(action.name)
     if isinstance(action, Replace):
         return _has_header(view, action.new.strip('<>"'))
     if isinstance(action, Insert):

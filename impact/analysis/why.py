@@ -8,9 +8,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...edges.console import escape, format_count
-from ..model.view import TargetView
+from ..model.cmake.build import At, CMakeUse
+from ..model.view import Need, TargetView
+from ..rules.packages.undeclared_needs import choose_name
 from ..rules.rule import Finding
 from ..targets.changes import iterate_in_force
+from ..targets.evidence import find_arrival
+from ..targets.symbol import Availability, Symbol
+from ..targets.target import Provider
 from ..tree import JoinedTree
 from .check_opened import check_opened
 from .session import Options, open_workspace
@@ -34,9 +39,9 @@ class NameOffer(NamedTuple):
 
 
 class WhyAnswer(NamedTuple):
-    """What a name is on one target. as_what: header, CMake package, Python module, executable, package or key.
-    used: `path:line` of uses in the workspace. undeclared: packages that use it and do not declare it. findings: what
-    check reports on it, as `path:line: severity: message [rule]`."""
+    """What a name is on one target. as_what: header, CMake package, command or target, Python module, executable,
+    package or key. used: `path:line` of uses in the workspace. undeclared: packages that use it and do not declare it.
+    findings: what check reports on it, as `path:line: severity: message [rule]`."""
 
     target: str
     as_what: str
@@ -91,13 +96,19 @@ def find_answers(
 def _find_answers(view: TargetView, name: str, findings: Sequence[Finding]) -> list[WhyAnswer]:
     """findings: what check reports; those at a use of the name, and those that name it, are about it."""
     found = []
-    for what, providers in (
-        ("header", view.find_header(name)),
-        ("CMake package", view.find_cmake(name)),
-        ("Python module", view.find_module(name)),
-        ("executable", tuple(view.providers.find_executable(name))),
+    commands = view.providers.commands.get(view.target.ros, {}).get(name.lower(), "").split()
+    offer = view.offers.find_package(name.partition("::")[0]) if "::" in name else None
+    exported = offer is not None and any(target.name == name for target in offer.build.targets)
+    for what, kind, providers in (
+        ("header", "header", view.find_header(name)),
+        ("CMake package", "", view.find_cmake(name)),
+        ("CMake command", "command", tuple(Provider("ros", package) for package in commands)),
+        ("CMake target", "target", (Provider("ros", name.partition("::")[0]),) if exported else ()),
+        ("Python module", "python", view.find_module(name)),
+        ("executable", "executable", tuple(view.providers.find_executable(name))),
     ):
-        offers = tuple(dict.fromkeys(_offer(view, p.name, p.package) for p in providers if p.name))
+        named = [(p, Symbol(kind, name, (p.name,)) if kind else None) for p in providers if p.name]
+        offers = tuple(dict.fromkeys(_offer(view, p.name, p.package, symbol) for p, symbol in named))
         # What is not there is told only where nothing else is.
         offers = tuple(offer for offer in offers if offer.kind != "absent") or offers[:1]
         if not offers and any(not p.name for p in providers):
@@ -111,7 +122,7 @@ def _find_answers(view: TargetView, name: str, findings: Sequence[Finding]) -> l
     changes = tuple(
         f"{row.kind}: `{row.old}`"
         + (f" → `{row.new}`" if row.new else "")
-        + f" ({state}{', since ' + row.new_since if row.new_since else ''})"
+        + f" ({state}{', since ' + since if (since := row.format_arrival()) else ''})"
         for row, state in iterate_in_force(view.target)
         if name in (row.old, row.new, row.package) or name == row.old.rsplit("::", 1)[-1]
     )
@@ -138,14 +149,21 @@ def _is_about(finding: Finding, name: str) -> bool:
     return name in (finding.subject, changed) or f"`{name}`" in finding.message
 
 
-def _offer(view: TargetView, name: str, package: str) -> NameOffer:
+def _offer(view: TargetView, name: str, package: str, symbol: Symbol | None = None) -> NameOffer:
+    """How a package or key is there. symbol: what is asked of it, where that is not its name."""
     target = view.target
     here = view.workspace.packages.get(name)
     if here is not None:
         return NameOffer("workspace", name, here.manifest.version, "", here.path)
     version = target.find_version(name)
-    if version is not None:
+    if version is not None and symbol is None:
         return NameOffer("package", name, version, target.find_first_day(name), "")
+    if version is not None and symbol is not None:
+        found = view.find_availability(symbol)
+        if found.is_missing:
+            return NameOffer("absent", name, version, "", f"does not have it ({_tell_change(found)})")
+        since = find_arrival(symbol.kind, symbol.name, name, target, view.providers)
+        return NameOffer("package", name, version, since, "")
     resolution = target.resolve(name)
     if resolution is not None:
         known = ((library, target.find_library(library)) for library in view.list_libraries(name))
@@ -157,23 +175,40 @@ def _offer(view: TargetView, name: str, package: str) -> NameOffer:
     return NameOffer("absent", name, "", "", note)
 
 
+def _calls(use: CMakeUse, name: str) -> bool:
+    """Whether CMake calls a command of a name, or links a target that is so called in a namespace."""
+    return use.name.lower() == name.lower() if use.kind == "command" else use.name == name and "::" in name
+
+
+def _tell_change(found: Availability) -> str:
+    if found.form == "never" or not found.since:
+        return "nor does any known version" if found.form == "never" else found.state
+    return f"{'added' if found.state == 'not yet' else 'removed'} in {found.since}"
+
+
 def _find_uses(view: TargetView, name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     used, undeclared = [], []
     for package in view:
         closure = None
         for need in view.list_needs(package):
-            if need.subject != name and all(p.name != name for p in need.providers):
+            if name not in (need.subject, *_list_names(view, need)):
                 continue
             used.append(f"{need.at.path}:{need.at.line}")
             closure = view.build_environment(package) if closure is None else closure
             if not view.is_met(need.providers, closure) and package.name not in undeclared:
                 undeclared.append(package.name)
-        for dependency in package.manifest.dependencies:
-            if dependency.name == name:
-                place = f"{package.linked.manifest_path}:{dependency.line}"
-                if place not in used:
-                    used.append(place)
+        places = [At(package.linked.manifest_path, d.line) for d in package.manifest.dependencies if d.name == name]
+        places += [use.at for use in package.build.list_uses() if _calls(use, name)]
+        used += [f"{at.path}:{at.line}" for at in places]
+    used = list(dict.fromkeys(used))
     return tuple(used), tuple(undeclared)
+
+
+def _list_names(view: TargetView, need: Need) -> frozenset[str]:
+    """What may be declared for a need: the name that a person would choose, and keys that install the same."""
+    chosen = choose_name(view, need) or need.providers[0].name
+    debs = view.list_debs(chosen)
+    return frozenset((chosen, *(p.name for p in need.providers if debs and view.list_debs(p.name) == debs)))
 
 
 def render_text(name: str, found: list[WhyAnswer], *, looked: bool = True) -> str:

@@ -7,6 +7,7 @@ import re
 
 from ...edges.memory import cache_in_derived
 from ..targets.surface.fields import load_fields
+from ..targets.symbol import Availability
 from .cmake.interpreter import calls_unmodelled
 from .misspelling import is_slip
 from .package import IncludeUse
@@ -52,8 +53,26 @@ def find_standard_header(view: TargetView, path: str) -> str | None:
 
 
 def is_answered(view: TargetView, path: str) -> bool:
-    """Whether somebody may have a header; a package of the workspace has no more than is known of it."""
+    """Whether somebody may have a header; a package of the workspace has no more than is known of it, nor has a
+    release."""
+    found = view.find_header_availability(path)
+    if found is not None and found.form == "never":
+        return False
     return any(p.sure or p.name not in view.workspace.packages for p in view.find_header(path))
+
+
+def find_never_installed(view: TargetView, package: Package, include: IncludeUse) -> Availability | None:
+    """How the target stands to an included header that no version of the released package which it is called after
+    has, or that misses one of its headers by a letter; None where something else may have it."""
+    path = include.path
+    found = view.find_header_availability(path, include.conditions)
+    if found is None or view.underlaid or view.is_private(found.package):
+        return None
+    if found.alike and is_slip(path, found.alike):
+        name = path.rpartition("/")[2]
+        made = name in _list_file_names(view) or view.workspace.unread or is_made(package, name)
+        return None if made else found
+    return found if found.form == "never" and is_nowhere(view, package, include) else None
 
 
 def is_nowhere(view: TargetView, package: Package, include: IncludeUse) -> bool:

@@ -673,6 +673,12 @@ class WorkspaceOnTarget:
         resolution = self.target.resolve(name)
         return frozenset(resolution.packages if resolution else ())
 
+    def is_for_other_python(self, name: str) -> bool:
+        """Whether a rosdep key installs modules of the other Python than the one that the target runs ROS with."""
+        other = "python-" if self.target.python_major >= 3 else "python3-"
+        debs = () if self.is_package(name) else self.list_debs(name)
+        return bool(debs) and all(debian.startswith(other) for debian in debs)
+
     def is_met(self, providers: tuple[Provider, ...], names: Collection[str]) -> bool:
         """True when one of the providers is among the names, as itself, as a key that installs the same package, or
         another version of it that no list of files tells of, or as the package that vendors it."""

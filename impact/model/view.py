@@ -186,6 +186,10 @@ class TargetView(WorkspaceOnTarget):
                 continue
             if not providers[0].name:
                 continue  # the compiler has it, and nobody else is asked
+            if not any(p.sure or p.name in self.workspace.packages for p in providers):
+                found = self.find_header_availability(include.path)
+                if found is not None and found.state == "unknown":
+                    self.unresolved.add(UnresolvedUse(package.name, "include", include.path))
             named = providers[0].kind == "ros" and providers[0].name == include.path.partition("/")[0]
             if not named and self.unknown_contents.is_made_apart(package, include.path):
                 continue

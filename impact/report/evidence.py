@@ -3,6 +3,7 @@
 from typing import Any
 
 from ..rules.rule import Finding
+from ..targets.changes import format_versions
 from ..targets.evidence_record import Evidence, OnTarget
 
 _MOST_DECLARATIONS = 2
@@ -53,6 +54,8 @@ def _format_period(evidence: Evidence) -> str:
     word = evidence.change
     if evidence.last and evidence.first:
         head = f"{word} between {evidence.package} {evidence.last} and {evidence.first}"
+    elif versions := format_versions(dict(evidence.new_in)):
+        head = f"{word} in {versions}"
     elif evidence.first == "ros2":
         head = f"{word} in ROS 2"
     elif evidence.first:

@@ -10,6 +10,7 @@ what the target is going to be as well (see Horizon), so that `upcoming` means t
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
 from itertools import islice
@@ -56,8 +57,11 @@ _BUILT: dict[str, tuple[str, Callable[[BuildSurface], Iterable[str]]]] = {
         "launches",
         lambda build: (f"{launch.path} {name}" for launch in build.launches for name, _ in launch.arguments),
     ),
+    "header": ("headers", lambda build: (header.include for header in build.headers)),
     "plugin": ("plugins", lambda build: (name for plugin in build.plugins for name in (plugin.name, plugin.type))),
 }
+# Tools whose builds are read to the last header that they install; what plain CMake installs is often made by macros.
+_INSTALLING = frozenset(("ament_cmake", "catkin"))
 _WITH_ALIKE = frozenset(("executable", "launch file", "plugin", "target"))
 _STARTED = frozenset(("executable", "launch file", "plugin"))
 """Kinds whose names are misspelt where no version has them and the target's has one like them."""
@@ -139,14 +143,16 @@ class Availabilities:
             return self._find_interface(symbol)
         if symbol.kind == "behaviour":
             return self._find_behaviour(symbol)
-        missing = None
+        missing, nothing = None, Availability(symbol, "unknown")
         for package in symbol.packages:
             found = self._find_header(symbol, package) if symbol.kind == "header" else self._find_other(symbol, package)
             if found.state not in ("unknown", "removed", "not yet"):
                 return found
             if found.state != "unknown":
                 missing = missing or found
-        return missing or self._find_reviewed(symbol) or self._find_library(symbol) or Availability(symbol, "unknown")
+            elif found.alike:
+                nothing = found
+        return missing or self._find_reviewed(symbol) or self._find_library(symbol) or nothing
 
     @cached_property
     def _python_offers(self) -> PythonOffers:
@@ -293,6 +299,9 @@ class Availabilities:
             return Availability(symbol, "present", package, version)
         # `include/PACKAGE` is exported where headers are installed a folder deeper, so that the path stays as it was.
         nested = f"{package}/{symbol.name}" in self._list_made_headers(offer)
+        alone = symbol.packages == (package,) and not self.providers.list_header_spans(package, symbol.name)
+        if found.state == "unknown" and alone and not nested:
+            return self._find_never_installed(symbol, offer)
         hidden = offer.build.has_empty_folders or any(part == "headers" for part, _ in offer.build.unknown)
         closed = not nested and not hidden
         return found if closed else Availability(symbol, "unknown", package, version)
@@ -311,6 +320,24 @@ class Availabilities:
             return Availability(symbol, "unknown", package, version)
         evidence = Evidence(package, "removed" if early else "added", symbol.name, side="header", header=symbol.name)
         return Availability(symbol, "removed" if early else "not yet", package, version, evidence=evidence)
+
+    def _find_never_installed(self, symbol: Symbol, offer: PackageOffer) -> Availability:
+        """How the target stands to a header that no read version of a package has. Where its own was not read as a
+        whole the answer is unknown, and names what is called alike; that is sure where a release between was not read
+        alone, which brings no headers called like others but for their endings."""
+        path, build, package = symbol.name, offer.build, offer.package
+        unknown = Availability(symbol, "unknown", package, offer.version)
+        if build.build_type not in _INSTALLING or not build.headers or offer.stored in offer.line.approximate:
+            return unknown
+        if offer.get("header", path) is not None or _OF_GENERATOR.match(path):
+            return unknown
+        hidden = any(part == "headers" for part, _ in build.unknown)
+        read = offer.exact or self.providers.has_header(package, path, self.target.distro, offer.version) is not None
+        alike = _find_similar_name(offer, "header", path)
+        alike = alike if _is_misspelling(path, alike) else ""
+        if read and not hidden:
+            return unknown._replace(state="not yet", alike=alike, form="never")
+        return unknown._replace(alike=alike, sure=not hidden and path.rpartition(".")[2] == alike.rpartition(".")[2])
 
     @cache_method
     def _list_made_headers(self, offer: PackageOffer) -> frozenset[str]:
@@ -436,7 +463,7 @@ def _convert_row(kind: str, row: ChangeRow, in_force: str, target: DistroTarget)
     name, other = row.old or row.package, row.new
     since, earlier = "" if row.pattern is not None else row.removed_in, True
     if in_force == "absent":
-        since, earlier = row.new_since, False
+        since, earlier = row.new_in.get(target.distro) or row.new_since, False
         if row.pattern is None:
             state, name, other = "not yet", row.new, row.old
     elif in_force == "deprecated":
@@ -444,7 +471,7 @@ def _convert_row(kind: str, row: ChangeRow, in_force: str, target: DistroTarget)
     form = "renamed" if row.kind.endswith(("-renamed", "-moved")) else ""
     return Availability(Symbol(kind, name), state, row.package, find_row_version(row, target), since, other,
                         library=row.library, evidence=make_evidence(row, in_force),
-                        replacement_since=row.new_since if earlier else "",
+                        replacement_since=row.format_arrival() if earlier else "",
                         form="meaning" if row.kind == "api-changed" else form, earlier=earlier,
                         detail=row.pattern.clause if row.pattern is not None else "")  # fmt: skip
 
@@ -508,9 +535,17 @@ def _find_misspelled_name(offer: PackageOffer, side: str, name: str) -> str:
     if not offer.exact or side not in _STARTED or any(one == _BUILT[side][0] for one, _ in offer.build.unknown):
         return ""
     alike = _find_similar_name(offer, side, name)
+    return alike if _is_misspelling(name, alike) else ""
+
+
+def _is_misspelling(name: str, alike: str) -> bool:
+    """Whether only the last part of two names differs, by little."""
     (head, tail), (other_head, other) = _split(name), _split(alike)
-    near = head == other_head and difflib.SequenceMatcher(None, tail, other).ratio() >= _MISSPELT
-    return alike if near else ""
+    return head == other_head and difflib.SequenceMatcher(None, tail, other).ratio() >= _MISSPELT
+
+
+# Headers that generators of rosidl write beside those which users include: parts of them, and of the middleware.
+_OF_GENERATOR = re.compile(r"\w+/(?:msg|srv|action)/(?:.+/|.*__)")
 
 
 def _split(name: str) -> tuple[str, str]:

@@ -11,7 +11,7 @@ for headers of ROS packages whose source trees are in the provider table, by wha
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -95,6 +95,15 @@ class ChangeRow(_Shared, frozen=True, forbid_unknown_fields=True, kw_only=True):
     old: str
     new: str = ""
     pattern: _Use | None = None
+
+    def format_arrival(self) -> str:
+        """Since when the new name is there, as people read it: a version, a distro, or a version of each distro."""
+        return format_versions(self.new_in) or self.new_since
+
+
+def format_versions(new_in: Mapping[str, str]) -> str:
+    """The first version of each distro that has a change; empty where none is known."""
+    return ", ".join(f"{distro} {version}" for distro, version in new_in.items() if version)
 
 
 class TransitiveInclude(NamedTuple):

@@ -160,6 +160,19 @@ def holds_on(evidence: Evidence, target: DistroTarget, providers: Providers) -> 
     return None if found is None else found.holds
 
 
+def find_arrival(side: str, name: str, package: str, target: DistroTarget, providers: Providers) -> str:
+    """ISO day on which a target's distro first had something of a package: that of its first release where all stored
+    versions have it; empty where that is not known. side: as of Evidence, with `executable`."""
+    line = load_shipped().find_line(package, target.ros)
+    events = line.events.get(side, {}).get(name) if line is not None else None
+    if line is not None and not events:
+        return target.find_first_day(package)
+    evidence = Evidence(package, "added", name, side=side, stored=bool(events), header=name if side == "header" else "")
+    day = _find_first_day(evidence, target, True, providers)
+    # What a distro had when it was announced came with the package, before.
+    return target.find_first_day(package) if day and day <= release_day(target.distro) else day
+
+
 def _make_target_state(evidence: Evidence, target: DistroTarget, providers: Providers) -> OnTarget | None:
     # Of a library, only rows that were read from packages tell the last version before.
     version = find_version(evidence.package, evidence.library, target, bool(evidence.last))

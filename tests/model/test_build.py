@@ -94,6 +94,10 @@ FOUND = [
     ("set(W ON CACHE BOOL x)\nif(W)\nfind_package(A)\nendif()", ["A [W]"]),
     ("set(W OFF)\nif(W)\nfind_package(A)\nendif()", []),
     ("set(D a)\nif(X)\nlist(APPEND D b)\nendif()\nforeach(d ${D})\nfind_package(${d})\nendforeach()", ["a", "b [X]"]),
+    # A list that begins with itself, and was not set before, begins empty.
+    ("set(D ${D} a)\nset(D ${D} b)\nfind_package(${D})", ["a"]),
+    ("find_package(x)\nset(x_LIBS ${x_LIBS} a)\nfind_package(${x_LIBS})", ["x"]),
+    ("make_names(D)\nset(D ${D} a)\nfind_package(${D})", []),
     ("if(X)\nset(P Qt4)\nelse()\nset(P Qt5)\nendif()\nfind_package(${P})", ["Qt4 [X]", "Qt5 [!X]"]),
     ("macro(m)\nfind_package(${ARGV0} ${ARGN})\nendmacro()\nm(A REQUIRED)", ["A"]),
     ("function(f x)\nfind_package(${x})\nendfunction()\nf(A)\nf(B)", ["A", "B"]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -178,6 +179,16 @@ UNTOUCHED = {
             ).items()
         },
     ),
+    "the key is another one for each Python": (
+        "undeclared-package",
+        ("melodic", "noetic"),
+        {
+            "CMakeLists.txt": "cmake_minimum_required(VERSION 3.0.2)\nproject(ice)\nfind_package(catkin REQUIRED)\n"
+            "catkin_package()\ncatkin_install_python(PROGRAMS scripts/melt DESTINATION lib)\n",
+            "scripts/melt": "#!/usr/bin/env python\nimport rospy\nimport scipy\n\nprint(rospy, scipy)\n",
+            "package.xml": MANIFEST.format(version=2, tool="catkin", body="  <exec_depend>rospy</exec_depend>\n"),
+        },
+    ),
     "a misspelt tag whose end stands in another line": (
         "invalid-manifest",
         ("jazzy",),
@@ -257,6 +268,31 @@ EDITED = {
         ("  <depend>Eigen</depend>\n", ""),
     ),
 }  # fmt: skip
+
+
+def list_facts(workspace: Path, targets: tuple[str, ...], cache: Path) -> set[tuple[str, str, str, str]]:
+    """What a check finds: rule, path, subject and target of each."""
+    asked = [word for target in targets for word in ("--target", target)]
+    options = ["--preview", "--quiet", "--fail-on", "never", "--format", "json"]
+    outcome = CliRunner().invoke(app, ["check", str(workspace), *asked, *options], env={"ROSIMPACT_CACHE": str(cache)})
+    found = json.loads(outcome.stdout)["findings"]
+    return {(one["rule"], one["path"], one["subject"], target) for one in found for target in one["targets"] or ("",)}
+
+
+WITH_FIX = {
+    **{name: (targets, files) for name, (targets, files, _, _) in EDITED.items()},
+    **{name: (targets, files) for name, (_, targets, files) in UNTOUCHED.items()},
+    # On one target the key of its Python is right; the other target is not asked about.
+    "a module of Python 2": (("melodic",), UNTOUCHED["the key is another one for each Python"][2]),
+}
+
+
+@pytest.mark.parametrize(("targets", "files"), WITH_FIX.values(), ids=WITH_FIX)
+def test_a_fix_causes_nothing_that_the_next_check_reports(targets, files, fix: Fix, cache: Path, tmp_path: Path):
+    workspace = rule_cases.write_files(tmp_path / "ws", files)
+    before = list_facts(workspace, targets, cache)
+    fix(workspace, *targets)
+    assert list_facts(workspace, targets, cache) <= before
 
 
 @pytest.mark.parametrize(("targets", "files", "path", "edit"), EDITED.values(), ids=EDITED)

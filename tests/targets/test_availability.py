@@ -21,7 +21,7 @@ TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
         # Headers that a build makes are in no source tree.
         ("jazzy", Symbol("header", "rclcpp/logging.hpp", ("rclcpp",)), "present", "", ""),
         ("humble", Symbol("header", "message_filters/connection.hpp", ("message_filters",)), "present", "", ""),
-        ("jazzy", Symbol("header", "cv_bridge/no_such.hpp", ("cv_bridge",)), "unknown", "", ""),
+        ("jazzy", Symbol("header", "cv_bridge/no_such.hpp", ("cv_bridge",)), "not yet", "", ""),
         ("jazzy", Symbol("header", "octomap_msgs/conversions.h", ("octomap_msgs",)), "unknown", "", ""),
         # A macro of the package writes its configuration since 0.2.15, so that no command is seen.
         ("noetic", Symbol("command", "target_cxx_version", ("ros_industrial_cmake_boilerplate",)), "unknown", "", ""),

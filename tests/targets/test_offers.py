@@ -219,7 +219,28 @@ def test_an_override_of_what_moved_to_a_base_and_changed_there_is_judged_by_the_
         for n in (1, 2, 3, 4)
     ]  # fmt: skip
     assert found[:3] == [None, None, None]
-    assert (found[3].state, found[3].form, found[3].symbol.name) == ("changed", "override", "arm::Arm::tick")
+    assert (found[3].state, found[3].form, found[3].symbol.name) == ("changed", "override", "arm::Part::tick")
+    # The version that took the form, not that which only declared another one beside it.
+    assert found[3].since == "4.0.0"
+
+
+def test_what_stands_for_a_name_is_there_and_called_the_same_way(store):
+    states = (
+        "struct State; struct Arm {{ void set_state(const State& s); {} }};",
+        "struct State; struct Arm {{ void set_arm_state(const State& s); {} }};",
+        "struct State; struct Arm {{ void set_arm_state(const State& s); void set_state(int a, int b); {} }};",
+    )
+    codes = ("namespace arm { " + code.format("int other();") + " }" for code in states)
+    surfaces = store(*(surface("arm", f"{n}.0.0", code) for n, code in enumerate(codes, 1)))
+
+    def find(version, arguments):
+        found = check_use(Offers(target(arm=version), surfaces), "arm", "arm::Arm::set_state", "call", arguments, ())
+        return found and (found.form or found.state, found.replacement)
+
+    new = "arm::Arm::set_arm_state"
+    assert [find("1.0.0", n) for n in (1, 2)] == [None, ("arguments", "")], "the first version has no other name"
+    assert [find("2.0.0", n) for n in (1, 2)] == [("removed", new), ("removed", "")]
+    assert find("3.0.0", 2) is None
 
 
 def test_a_call_of_what_a_base_has_is_judged_by_the_base(store):

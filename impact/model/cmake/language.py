@@ -7,7 +7,7 @@ from .blocks import CommandCall
 from .build import FoundPackage
 from .conditions import make_version_key
 from .interpreter import BREAK, CONTINUE, FATAL, RETURN, Interpreter, handles
-from .lists import list_items, parse_int
+from .lists import list_items, may_be_set_elsewhere, parse_int
 from .names import MODULES, MODULES_WITH, make_name_set
 from .standard import note_variable
 from .targets import note_written
@@ -43,6 +43,8 @@ def set_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             run.scope.pop(name, None)
         run.assign(run.cache, name, kept if fixed else make_unsure(kept))
         return
+    if run.get(name) is None and not name.startswith("CMAKE_") and not may_be_set_elsewhere(run, name):
+        values = [value for value in values if value != f"${{{name}}}"]  # a list that begins with itself begins empty
     if values and values[-1] == "PARENT_SCOPE":
         values = values[:-1]
         where = run.scopes[-2] if len(run.scopes) > 1 else {}

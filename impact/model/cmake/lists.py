@@ -48,6 +48,14 @@ def _split(text: str) -> list[str]:
 _OF_PACKAGE = re.compile(r"(.+?)_(?:INCLUDE_DIRS?|LIBRARIES|LIBRARY|LIBRARY_DIRS|LIBS|DEFINITIONS|EXPORTED_TARGETS)\Z")
 
 
+def may_be_set_elsewhere(run: Interpreter, name: str) -> bool:
+    """Whether a package that was looked for, or a command of which nothing is known, may set a variable, whose value
+    is then not known."""
+    set_by = _OF_PACKAGE.match(name)
+    stem = set_by[1].lower() if set_by is not None else ""
+    return name in run.maybe_set or any(stem and stem in (f.name.lower(), f.prefix.lower()) for f in run.found)
+
+
 @handles("list", least=2)
 def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """list()."""
@@ -62,12 +70,9 @@ def list_(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
             rest = rest[1:]
         added = add_conditions(split_words(rest), run.conditions)
         if held is None:
-            # What a package that was looked for sets is not known, and is there all the same.
-            set_by = _OF_PACKAGE.match(name)
-            stem = set_by[1].lower() if set_by is not None else ""
-            found = bool(stem) and any(stem in (f.name.lower(), f.prefix.lower()) for f in run.found)
-            before = (wrap(f"${{{name}}}", call.at, (), False),) if found else ()
-            sure = not found and not name.startswith("CMAKE_")
+            unknown = may_be_set_elsewhere(run, name)
+            before = (wrap(f"${{{name}}}", call.at, (), False),) if unknown else ()
+            sure = not unknown and not name.startswith("CMAKE_")
         else:
             before = tuple(item for item in held.words if item)
             sure = held.sure

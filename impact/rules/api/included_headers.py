@@ -62,12 +62,13 @@ class IncludedHeaders:
     def skip(self, path: str) -> None:
         """Leaves a header of which nothing is known to be wrong out from now on, unless a place may say otherwise."""
         known = any(row.state != "deprecated" for row in self._view.find_reviewed("header", path))
-        if not known and is_answered(self._view, path):
+        found = self._view.find_header_availability(path)
+        if not known and is_answered(self._view, path) and (found is None or not found.alike):
             self._quiet.add(path)
 
     def find_loss(self, package: Package, include: IncludeUse) -> HeaderLoss | None:
-        """What reviewed rows, stored releases and platforms tell of an included header; None where they have it, or
-        never had."""
+        """What reviewed rows, stored releases and platforms tell of an included header that another version or platform
+        has; None for all others."""
         view, path = self._view, include.path
         rows = {row.state: row for row in view.find_reviewed("header", path)}
         row = self._find_row(rows) or rows.get("upcoming")
@@ -78,7 +79,7 @@ class IncludedHeaders:
             fix = respell(view, package, include, row.replacement) if as_it_is else ()
             return HeaderLoss(row, fix=fix, ordered=row.state == "upcoming")
         found = view.find_header_availability(path, include.conditions)
-        if found is not None and (found.is_missing or found.state == "upcoming"):
+        if found is not None and found.form != "never" and (found.is_missing or found.state == "upcoming"):
             fix = () if found.state == "not yet" else respell(view, package, include, found.replacement)
             return HeaderLoss(found, fix=fix, ordered=True)
         found = view.find_lost_header(path)

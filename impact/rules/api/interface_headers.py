@@ -8,7 +8,7 @@ from ...model.misspelling import SpellingIndex
 from ...model.package import IncludeUse, is_header
 from ...model.workspace import make_snake_case
 from ...targets.surface.fields import load_fields
-from ...targets.symbol import Availability
+from ...targets.symbol import Availability, Symbol
 from ..vocabulary import Doubt, Package, TargetView, Text, Value
 from .diagnosis import find_missing
 
@@ -108,7 +108,11 @@ def _find_never_generated(view: TargetView, path: str) -> Fault | None:
         return None
     if not _GENERATED_HEADER[view.target.ros].match(rest) or not history.read_up_to(version):
         return None
-    if view.providers.list_header_spans(head, path) or view.has_released_header(head, path) is not False:
+    if view.providers.list_header_spans(head, path) or view.has_released_header(head, path):
+        return None
+    if view.has_released_header(head, path) is None and view.offers.find_package(head) is None:
+        return None
+    if view.find_availability(Symbol("header", path, (head,))).state == "present":
         return None
     stem, _, ending = rest.rpartition(".")
     close = SpellingIndex(s for s in history.by_header if ("/" in s) == ("/" in rest)).find_nearest(stem)

@@ -3,18 +3,20 @@
 What it does
     Reports `#include` lines that no version of any package provides: spellings of generated headers that belong to the
     other ROS generation, or to C where rclcpp is used, in another case, or without their folder; generated headers
-    whose interface no version of the package has, or another package of the workspace has; own headers with a letter,
-    the case or the ending wrong; `<math>` for `<cmath>`; headers that no file of the workspace is called like, where
-    all that the package declares and finds is known; configuration headers of dynamic_reconfigure below a name that no
-    package has.
+    whose interface no version of the package has, or another package of the workspace has; headers that no version of
+    the released package has which they are called after, or that miss one of its headers by a letter; own headers with
+    a letter, the case or the ending wrong; `<math>` for `<cmath>`; headers that no file of the workspace is called
+    like, where all that the package declares and finds is known; configuration headers of dynamic_reconfigure below a
+    name that no package has.
 
 Why it breaks
     The compiler stops with "No such file or directory".
 
 Severity
     error for compiled code that is not guarded, and for an installed header that includes what nobody has, so that
-    nobody can compile it; warning for tests of ROS 1, under CMake conditions that are not known, and for headers of C
-    where nothing else brings the C++ types; note for examples, for other headers that the package does not compile
+    nobody can compile it; warning for tests of ROS 1, under CMake conditions that are not known, for headers of C where
+    nothing else brings the C++ types, and for headers that miss one of a package by a letter which makes others while
+    it is built; note for examples, for other headers that the package does not compile
     itself, and under tests of the code itself.
 
 Example
@@ -25,12 +27,14 @@ Use instead
 
 Not reported
     Includes under `#if __has_include(...)`; ROS 1 names in a package that also includes ROS 1 headers, as bridges do;
-    what a later or an earlier version has (removed-header reports it).
+    what a later or an earlier version has (removed-header reports it); headers of a released package whose list of
+    headers is not completely known, which count as unresolved includes.
 """
 
-from ...model.absent_headers import find_misspelt, find_standard_header, is_bridge, is_nowhere
+from ...model.absent_headers import find_misspelt, find_never_installed, find_standard_header, is_bridge, is_nowhere
 from ...model.package import IncludeUse
 from ..vocabulary import Diagnostic, Doubt, Package, TargetView, Text, rule
+from .diagnosis import build_availability_texts, diagnose
 from .included_headers import get_included_headers
 from .interface_headers import TEXTS, collect_c_header_doubts, find_interface_fault
 
@@ -39,6 +43,7 @@ from .interface_headers import TEXTS, collect_c_header_doubts, find_interface_fa
     group="removed-header",
     texts={
         **TEXTS,
+        "never": build_availability_texts("include")["never"],
         "nowhere": Text(
             "no file of the workspace and no known package has `{subject}`", "include a header that is there, or add it"
         ),
@@ -54,6 +59,10 @@ def unknown_header(view: TargetView, package: Package):
         if own is None and fault is None:
             if (meant := find_standard_header(view, path)) is not None:
                 yield Diagnostic(at, path, package.name, {"replacement": meant}, "standard", doubts)
+            elif (never := find_never_installed(view, package, include)) is not None:
+                data = {"package": never.package, "replacement": never.alike}
+                kind, data = ("", None) if never.form == "never" else ("misspelt", data)
+                yield diagnose(never, at, path, package.name, doubts, kind=kind, data=data)
             elif is_nowhere(view, package, include) and headers.find_loss(package, include) is None:
                 yield Diagnostic(at, path, package.name, {}, "nowhere", doubts)
             continue

@@ -36,8 +36,8 @@ def python2_key(view: TargetView, package: Package):
         return
     for name, at, found in list_unresolved(view, package):
         replacement = name.replace("python-", "python3-", 1)
-        if found is None or found.manager != "apt" or not found.packages or replacement == name:
+        if found is None or found.manager != "apt" or replacement == name:
             continue
-        if all(p.startswith("python-") for p in found.packages) and target.resolve(replacement) is not None:
+        if view.is_for_other_python(name) and target.resolve(replacement) is not None:
             data = {"platform": target.platform, "replacement": replacement}
             yield Diagnostic(at, name, package.name, data)

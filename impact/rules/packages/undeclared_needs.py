@@ -60,7 +60,7 @@ def find_undeclared(view: TargetView, package: Package) -> Undeclared:
     for need in view.list_needs(package):
         if view.is_met(need.providers, declared) or (need.subject.startswith(TEST_HEADERS) and need.role == "test"):
             continue
-        name = _choose_name(view, need)
+        name = choose_name(view, need)
         if name is None or name == package.name or name in elsewhere:
             continue
         system = need.providers[0].kind == "system"
@@ -79,7 +79,7 @@ def list_sources(view: TargetView, package: Package, need: Need) -> tuple[str, .
     return tuple(one for one in declared if view.is_met(need.providers, view.list_transitive([one])))
 
 
-def _choose_name(view: TargetView, need: Need) -> str | None:
+def choose_name(view: TargetView, need: Need) -> str | None:
     """The name a person would put into the manifest for a need: the first provider that can be had on the target, or
     the package that is named by its form, wherever it comes from. Of those that bring a module, what is called as the
     first is, for some version of it or of Python: the others are packages that use it."""

@@ -44,6 +44,36 @@ def check_use(
 ) -> Availability | None:
     """How the target stands to a use of a package's name, where it does not serve it; None where it does, or where that
     cannot be known. The use is described as in model.package.CppApiUse."""
+    found = _check_use(offers, package, name, how, arguments, given, templated)
+    if found is None or not found.replacement or _replaces(offers, found, arguments if how == "call" else -1):
+        return found
+    evidence = found.evidence._replace(instead="") if found.evidence is not None else None
+    return found._replace(replacement="", evidence=evidence)
+
+
+def _replaces(offers: Offers, found: Availability, arguments: int) -> bool:
+    """Whether the target has what stands for a name, and as a function takes so many arguments; -1 for any."""
+    new = found.replacement
+    owners = (found.package, *offers.surfaces.list_other_packages(new))
+    for package in owners:
+        offer = offers.find_package(package)
+        declared = list(offer.history.iterate_entities(new, offer.stored)) if offer is not None else []
+        if offer is not None and declared:
+            functions = any(one.kind in FUNCTIONS for one in declared)
+            return arguments < 0 or not functions or bool(_list_accepting(offer.history, new, offer.stored, arguments))
+    return False
+
+
+def _check_use(
+    offers: Offers,
+    package: str,
+    name: str,
+    how: str,
+    arguments: int,
+    given: tuple[str, ...],
+    templated: int,
+) -> Availability | None:
+    """The same, with what stands for the name by the comparison of versions, whether or not the target has it."""
     offer = offers.find_package(package)
     offered = offer.get("c++", name) if offer is not None else None
     if offer is None or offered is None or offered.state == "moved" or _lies_between(offer, offered):

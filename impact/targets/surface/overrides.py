@@ -64,14 +64,20 @@ class Override:
     def find_lost_change(self, line: Sequence[tuple[str, str]]) -> tuple[Offered, str, bool] | None:
         """The change that the method does not fit to, whether the target has no method of that name (`gone`) or another
         (`override`), and whether it was before the target's version; None where it overrides what the target has, or
-        where that cannot be known. line: packages and names of the method in the base
-        class and in the bases of that."""
+        where that cannot be known. line: packages and names of the method in the base class, and in the bases of that.
+        """
         self.parameters = tuple(
             parameter.name
             for package, name in line
             for one in self._list_entities(package, name.rpartition("::")[0])
             for parameter in one.template or ()
         )
+        # Where others came beside a form that stayed, a later change took that form, maybe from a base class.
+        found = min(self._iterate_lost_changes(line), key=lambda one: one[0], default=None)
+        return found and found[1:]
+
+    def _iterate_lost_changes(self, line: Sequence[tuple[str, str]]) -> Iterator[tuple[bool, Offered, str, bool]]:
+        """The same of all changes, the nearest of each class first, and whether the method fits to both sides of it."""
         methods = [(at, one) for at in line for one in self._list_virtual_methods(*at)]
         fitting = {one.type for at, one in methods if self._fits(make_overload(one), *at)}
         here = [one for _, one in methods]
@@ -83,14 +89,15 @@ class Override:
                 mine = [one for one in list_virtual_forms(form) if self._fits(one, package, name)]
                 if offered is None or not mine or not (earlier or self.says_so):
                     continue
+                beyond = list_virtual_forms(event.has if earlier else event.had)
+                stays = any(self._fits(one, package, name) for one in beyond)
                 if fitting:
                     if self._gives_other(offered, event, earlier, fitting):
-                        return make_offered(self.offers, offered, event, earlier), "override", earlier
+                        yield stays, make_offered(self.offers, offered, event, earlier), "override", earlier
                 elif all(self._differs_surely(make_overload(one), mine, form, offered) for one in here):
                     lost = make_offered(self.offers, offered, event, earlier)
                     left = not earlier or any(self._list_entities(*one) for one in line)
-                    return lost, "override" if left else "gone", earlier
-        return None
+                    yield stays, lost, "override" if left else "gone", earlier
 
     def find_unmatched(self, member: str) -> tuple[Entity, tuple[str, ...]] | None:
         """A method of this name that the base classes have where the method, which is to override one, surely overrides
