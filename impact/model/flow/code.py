@@ -219,7 +219,7 @@ class FlowCode:
             if alias is None and rest:
                 alias = self._find_qualified_alias(name, source)
                 separator, rest = ("", "") if alias is not None else (separator, rest)
-            if alias is None:
+            if alias is None or _is_within(name, alias.target):
                 break
             target = parse_flow_type(alias.target).name if source.facts.language == "cpp" and not rest else alias.target
             new = f"{target}{separator}{rest}" if rest else target
@@ -246,7 +246,7 @@ class FlowCode:
             if alias is None and rest:
                 alias = self._find_qualified_alias(kind.name, source)
                 rest = "" if alias is not None else rest
-            if alias is None:
+            if alias is None or _is_within(kind.name, alias.target):
                 break
             if rest:
                 new = FlowType(

@@ -15,10 +15,12 @@ from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ...facts.cpp.names import split_at_commas
 from ...facts.flow import FlowCall, FlowExpr
+from ...facts.python.text import join_dotted
 from .calls import Calls, FrameworkCall
 from .code import FlowCode, Fn, Variable, find_parameter, get_outer, get_tail, is_number
 from .defined import DefinedInterfaces
 from .graph import Role
+from .modules import CodeFile
 from .templates import Templates
 from .types import find_header_interface, find_interface, parse_flow_type
 from .values import LOST, FlowValue, FlowValues, make_sibling
@@ -411,12 +413,10 @@ class Sites:
         meant = self.code.resolve_name(value.text, fn.source)
         if find_interface(meant):
             return meant
-        if "." not in value.text:
-            # Of two modules that have it, the one that is imported last.
-            stars = [alias.target for alias in self.code.aliases[fn.source.path].get("*", ())]
-            found = [f"{star}.{value.text}" for star in stars if star.endswith((".msg", ".srv", ".action"))]
-            if found and self._is_free(value.text, fn):
-                return self._select_last_existing([find_interface(one) for one in found])
+        if value.kind == "name" and ("." in value.text or self._is_free(value.text, fn)):
+            imported = self._find_imported_type(value.text, fn.source)
+            if imported is not None:
+                return imported
         for one in values.evaluate(value, fn):
             if one.text and find_interface(one.text):
                 return one.text
@@ -431,6 +431,25 @@ class Sites:
                 if find_interface(found):
                     return found
         return meant
+
+    def _find_imported_type(self, name: str, source: CodeFile, depth: int = 0) -> str | None:
+        """The interface that a name of Python means in a file by what that imports, itself or through other modules of
+        the code; empty where several may have it, None where none is known to."""
+        meant = self.code.resolve_name(name, source)
+        known = find_interface(meant)
+        if known or depth > 4:
+            return known or None
+        # Of two modules that have it, the one that is imported last.
+        stars = [alias.target for alias in self.code.aliases[source.path].get("*", ())] if "." not in name else []
+        found = [find_interface(f"{star}.{name}") for star in stars if star.endswith((".msg", ".srv", ".action"))]
+        if found:
+            return self._select_last_existing(found)
+        for target in (meant, *(join_dotted(star, name) for star in reversed(stars))):
+            place = self.code.modules.find_beginning(target, source)
+            imported = self._find_imported_type(place[1], place[0], depth + 1) if place is not None else None
+            if imported is not None:
+                return imported
+        return None
 
     def _find_class_by_name(self, value: FlowExpr, fn: Fn, values: FlowValues, depth: int = 0) -> str:
         """The type of a class that is looked up by its name, `*` for that of whatever a topic has."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import posixpath
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Literal, NamedTuple
 
 from ....edges.groups import group_pairs
 from ...facts.flow import Alias, FlowFile
+from ...facts.python.text import join_dotted
 
 Kind = Literal["class", "function", "constant"]
 # Modules that hand on a name from one another.
@@ -67,22 +68,28 @@ class PythonModules:
         aliases = self._aliases[source.path]
         targets = [f"{alias.target}{dot}{rest}" for alias in aliases.get(head, ()) if not alias.scope]
         stars = [alias.target for alias in aliases.get("*", ())]
-        targets += [f"{star}{'' if star.endswith('.') else '.'}{name}" for star in stars]
+        targets += [join_dotted(star, name) for star in stars]
         # Of several that have it, the last that is imported.
         found = (self._find_imported(kind, target, source, depth + 1) for target in reversed(targets))
         return next(filter(None, found), None)
 
     def _find_imported(self, kind: Kind, target: str, source: CodeFile, depth: int) -> tuple[str, str] | None:
         """What a name with its module means to a file that imports it."""
+        found = (self._find_in(kind, name, module, depth) for module, name in self._list_beginnings(target, source))
+        return next(filter(None, found), None)
+
+    def find_beginning(self, target: str, source: CodeFile) -> tuple[CodeFile, str] | None:
+        """The module that a name with its module begins with, to a file that imports it, and the rest of the name."""
+        return next(self._list_beginnings(target, source), None)
+
+    def _list_beginnings(self, target: str, source: CodeFile) -> Iterator[tuple[CodeFile, str]]:
+        """All of them, the longest first."""
         up = len(target) - len(target.lstrip("."))
         path = target[up:].split(".")
         for cut in range(len(path) - 1, -1 if up else 0, -1):
             module = self.find_module(path[:cut], source, up)
             if module is not None and module is not source:
-                found = self._find_in(kind, ".".join(path[cut:]), module, depth)
-                if found is not None:
-                    return found
-        return None
+                yield module, ".".join(path[cut:])
 
     def find_module(self, module: Sequence[str], source: CodeFile, up: int = 0) -> CodeFile | None:
         """The file that a module is to a file that imports it. up: dots before the module's name."""

@@ -107,6 +107,56 @@ def test_types_of_namespaces_that_are_used_whole(first, last, expected):
     assert ends(found, "publisher") == {("p/talker", "/out", expected)}
 
 
+@pytest.mark.parametrize(
+    "imported, name, expected",
+    [
+        ("import nav_msgs.msg as nav_msgs", "nav_msgs.Path", "nav_msgs/Path"),
+        ("from nav_msgs import msg as nav_msgs", "nav_msgs.Path", "nav_msgs/Path"),
+        ("from nav_msgs import msg", "msg.Path", "nav_msgs/Path"),
+        ("from nav_msgs import msg as m", "m.Path", "nav_msgs/Path"),
+        ("import nav_msgs.msg as nav", "nav.Path", "nav_msgs/Path"),
+        ("import nav_msgs.msg", "nav_msgs.msg.Path", "nav_msgs/Path"),
+        ("import nav_msgs.msg._path as nav_msgs", "nav_msgs.Path", "nav_msgs/Path"),
+        ("from nav_msgs.msg import Path as msg", "msg", "nav_msgs/Path"),
+        ("import other as nav_msgs", "nav_msgs.Path", ""),  # nothing tells what it has
+    ],
+)
+def test_types_by_other_names_of_their_modules(imported, name, expected):
+    text = f"""
+        import rospy
+        {imported}
+        rospy.init_node("walker")
+        rospy.Publisher("way", {name}, queue_size=1)
+    """
+    found = graph({"p/walker.py": text}, 1)
+    assert ends(found, "publisher") == {("p/walker.py", "/way", expected)}
+
+
+@pytest.mark.parametrize(
+    "imported, name, expected",
+    [
+        ("from names import Way", "Way", "nav_msgs/Path"),
+        ("from names import *", "Way", "nav_msgs/Path"),
+        ("import names", "names.Way", "nav_msgs/Path"),
+        ("import names as n", "n.Odometry", "nav_msgs/Odometry"),
+        ("from names import Bool", "Bool", "std_msgs/Bool"),
+        ("from names import Other", "Other", ""),
+        ("from names import Way as Other", "Way", ""),
+        ("import absent", "absent.Path", ""),
+    ],
+)
+def test_types_that_another_module_imports(imported, name, expected):
+    text = f"""
+        import rospy
+        {imported}
+        rospy.init_node("walker")
+        rospy.Publisher("way", {name}, queue_size=1)
+    """
+    names = "from nav_msgs.msg import Path as Way, Odometry\nfrom std_msgs.msg import *\nfrom elsewhere import Other\n"
+    found = graph({"p/walker.py": text, "p/names.py": names}, 1, defined=DefinedInterfaces({}, 1))
+    assert ends(found, "publisher") == {("p/walker.py", "/way", expected)}
+
+
 @pytest.mark.parametrize("name", ['"."', '"..." + name', '"::"'])
 def test_a_topic_of_nothing_but_separators_is_no_fault(name):
     text = f"import rospy\nrospy.init_node('n')\nname = 'x'\nrospy.Publisher({name}, String, queue_size=1)\n"
