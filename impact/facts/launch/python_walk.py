@@ -679,6 +679,11 @@ class Walker:
             if name == "read_text":
                 value = (ValuePart("content", "", (value,)),)
             return TextValue(value)
+        is_finder = isinstance(receiver, TextValue) and not receiver.is_str and value[:1] and value[0].kind in _FINDING
+        if name == "find" and is_finder:
+            # A substitution of a package's folder gives that of any package that it is asked for.
+            asked = arguments[0] if arguments else keywords.get("package_name")
+            return TextValue((make_named(value[0].kind, self.make_text(asked, node)),))
         if name == "joinpath":
             return TextValue((ValuePart("join", "", (value, *(self.make_text(a, node) for a in arguments))),))
         if name == "join" and len(arguments) == 1 and isinstance(arguments[0], Items):
@@ -737,6 +742,7 @@ class Walker:
 
 # Calls whose result is no action, where a lambda stands for an action that is run for its effect.
 _NO_ACTION = ("nothing()", "os.", "shutil.", "logging.", "sys.", "time.", "warnings.", "print(")
+_FINDING = frozenset(("find", "prefix"))
 _BOOLEAN_PIECES = frozenset(("equals", "not", "and", "or", "in"))
 
 

@@ -171,6 +171,10 @@ class ParameterUse(msgspec.Struct, frozen=True):
     default: str = ""
 
 
+LOST_INCLUDE = "included launch file"
+"""What an include is, as Unresolved has it, that is not followed."""
+
+
 class Unresolved(msgspec.Struct, frozen=True):
     """A call that was not resolved. what: `publisher topic`, `subscriber callback`, `publish`, ...; reason: why."""
 

@@ -13,7 +13,7 @@ from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowExpr, FlowFile, Guard
-from ..launch.result import Launched, Started
+from ..launch.result import Launched, ShareLine, Started
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, get_tail, list_made
@@ -21,6 +21,7 @@ from .defined import DefinedInterfaces
 from .endpoints import Site, Sites, Statement, unparse
 from .frameworks import Frameworks, load_frameworks
 from .graph import (
+    LOST_INCLUDE,
     Callback,
     Coverage,
     Endpoint,
@@ -162,10 +163,9 @@ class Join:
 
     def _start(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         found: list[Running] = []
-        missing: list[Unresolved] = []
+        missing = [self._explain_outside(include) for include in launch.outside]
         for start in launch.started:
-            place = self._find_file(start.at.package, start.at.path)
-            at = (place or f"{start.at.package}/{start.at.path}".lstrip("/"), start.at.line)
+            at = self._locate(start.at)
             if start.kind == "process":
                 continue
             what = start.plugin.value or start.executable.value
@@ -195,6 +195,24 @@ class Join:
                 values = self.values.apply_launch(instance.settings, known, name)
                 found.append(part._replace(node=node, instance=instance, values=values))
         return found, missing
+
+    def _locate(self, at: ShareLine) -> tuple[str, int]:
+        """The workspace path and line of a line in a package's share folder."""
+        return self._find_file(at.package, at.path) or f"{at.package}/{at.path}".lstrip("/"), at.line
+
+    def _explain_outside(self, include: Started) -> Unresolved:
+        """Why what a launch file includes is not followed."""
+        package, path, at = include.package.value, include.executable, self._locate(include.at)
+        if not path.value:
+            return Unresolved(LOST_INCLUDE, "; ".join(path.reasons) or "its path is not known", *at, path.shown)
+        if not package:
+            return Unresolved(LOST_INCLUDE, "it is not in the share folder of a package", *at, path.shown)
+        written = f"$(find {package})/{path.value}"
+        if all(one.package != package for one in self.built):
+            return Unresolved(f"{LOST_INCLUDE} of another package", f"`{package}` is not here", *at, written)
+        here = self._find_file(package, path.value)
+        reason = f"`{here}` is no launch file that can be read" if here else f"`{package}` has no such file"
+        return Unresolved(LOST_INCLUDE, reason, *at, written)
 
     def add_loaded(self, running: Iterable[Running]) -> Iterator[Running]:
         """Nodes, each followed by the nodelets that its program loads into it."""

@@ -72,8 +72,8 @@ class LaunchedNode(msgspec.Struct, frozen=True):
 
 class Launch(msgspec.Struct, frozen=True):
     """What a launch file starts. path: in the workspace. graph: of all that it starts. missing: it starts programs too
-    whose code is not in the workspace, or that are not known; elsewhere: the lines, as `path:line`, of the remappings
-    and parameters that those are given."""
+    whose code is not in the workspace, or that are not known, or it includes what is not followed; elsewhere: the
+    lines, as `path:line`, of the remappings and parameters that those programs are given."""
 
     path: str
     graph: Graph
@@ -107,7 +107,7 @@ def _list_first_files(workspace: Workspace) -> list[tuple[str, str, str]]:
 def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) -> Iterator[Launch]:
     files = _list_first_files(workspace)
     if jobs < 2 or len(files) < _ALONE or not processes.may_fork():
-        followed = _select_starting(follow_launch_files(workspace))
+        followed = _select_working(follow_launch_files(workspace))
         yield from _start(workspace, code(), followed) if followed else ()
         return
     workspace.extraction.store.close()  # another process opens it for itself
@@ -117,7 +117,7 @@ def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) ->
         ((_, followed),) = workers.wait_for_finished()
     if isinstance(followed, processes.Died):
         followed = _follow(workspace, files)
-    followed = _select_starting(followed)
+    followed = _select_working(followed)
     _ = join.list_running(), join.sites.statements  # made once, not in every process
     parts = [part for at in range(jobs) if (part := followed[at::jobs])]
     found: dict[str, Launch] = {}
@@ -128,8 +128,8 @@ def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) ->
     yield from (found[path] for path, _ in followed)
 
 
-def _select_starting(followed: Iterable[_Followed]) -> list[_Followed]:
-    return [row for row in followed if row[1].started]
+def _select_working(followed: Iterable[_Followed]) -> list[_Followed]:
+    return [row for row in followed if row[1].started or row[1].outside]
 
 
 def _run_within_limits(task: Callable[..., Iterable[_Row]], *given: Any) -> list[_Row]:

@@ -11,7 +11,7 @@ import msgspec
 
 from ....edges.groups import group_pairs
 from ..launch.result import Launched
-from .graph import Graph
+from .graph import LOST_INCLUDE, Graph
 from .launches import Launch
 
 _Row = TypeVar("_Row")
@@ -40,7 +40,7 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
     """The graph of a system. code: the graph of its code, whose names hold for programs that no launch file starts.
 
     A node that several launch files start under one name is one node, with all names that it has in any of them. What
-    launch files start of other packages is left out: that is most of what they start.
+    launch files start and include of other packages is left out: that is most of what they start.
     """
     if not launches:
         return code
@@ -63,8 +63,12 @@ def merge_launches(code: Graph, launches: Sequence[Launch]) -> Graph:
         for node in graph.nodes
     }
     nodes |= {node.id: node for node in code.nodes if node.id not in started}
+    lost = _drop_repeats(
+        one for graph in graphs for one in graph.coverage.unresolved if one.what == LOST_INCLUDE
+    )
     return msgspec.structs.replace(
         code,
+        coverage=msgspec.structs.replace(code.coverage, unresolved=(*code.coverage.unresolved, *lost)),
         nodes=tuple(sorted(nodes.values(), key=lambda node: node.id)),
         endpoints=merge("endpoints"),
         publishes=merge("publishes"),

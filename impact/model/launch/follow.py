@@ -89,7 +89,7 @@ class _Launch(Filling):
         """Follows a file that an action includes; without one the file that is launched."""
         file = self.sources.find_launch_file(*place)
         if file is None and action is not None:
-            self.note_outside(place, action)
+            self.note_outside(wrap(place[0]), wrap(place[1]), action)
         if file is None or len(self.chain) > DEEPEST or self.chain[:-1].count(place) > 3:
             return
         before = self.scope, self.package, self.path, self.generation
@@ -108,8 +108,9 @@ class _Launch(Filling):
         self.chain.pop()
         self.scope, self.package, self.path, self.generation = before
 
-    def note_outside(self, place: tuple[str, str], action: Action) -> None:
-        """Notes an include of a file that cannot be read, with what it is given."""
+    def note_outside(self, package: LaunchText, path: LaunchText, action: Action) -> None:
+        """Notes an include of a file that is not read, with what it is given. package: empty where the path is not that
+        of a file in a share folder, or not known."""
         at, settings = self.locate_line(action.line), []
         for name, text in self.list_passed(action):
             settings.append(LaunchParameter(name, text, at))
@@ -125,8 +126,8 @@ class _Launch(Filling):
                 self.generation,
                 at,
                 tuple(self.open),
-                wrap(place[0]),
-                wrap(place[1]),
+                package,
+                path,
                 namespace=namespace,
                 remaps=tuple(self.scope.remaps),
                 settings=tuple(settings),
@@ -244,6 +245,8 @@ class _Launch(Filling):
         place = self.split_share_path(file.value) if file.value is not None else None
         if place is not None:
             self.include(place, action)
+        else:
+            self.note_outside(EMPTY, file, action)
 
     def list_passed(self, action: Action) -> Iterator[tuple[str, LaunchText]]:
         """The arguments given to an include, in order, each filled in when it is asked for."""

@@ -94,8 +94,8 @@ class Started(NamedTuple):
 class Launched(NamedTuple):
     """All that a launch does. server: ROS 1's parameters by their global names. files: (package, path) of the launch
     files read; parameter_files: of the parameter files. arguments: those that they declare. actions: how many were
-    done. outside: launch files that are included and cannot be read, as of other packages: executable is their path,
-    settings are their arguments and the parameter files that these name."""
+    done. outside: launch files that are included and cannot be read, as of other packages or by a path that is not
+    known: executable is their path, settings are their arguments and the parameter files that these name."""
 
     started: tuple[Started, ...]
     server: Mapping[str, LaunchParameter]

@@ -3,12 +3,13 @@
 import os
 
 import pytest
-from joining import manifest, write
+from joining import graph_on_disk, manifest, write
 from rosimpact.edges import processes
 from rosimpact.impact.analysis.session import open_tree
 from rosimpact.impact.facts.store import Store
 from rosimpact.impact.model.flow import launches as module
 from rosimpact.impact.model.flow.workspace import get_flow, link_for_flow
+from rosimpact.impact.report.graph import list_unknown_names
 
 EYE = """
     #include <rclcpp/rclcpp.hpp>
@@ -44,6 +45,35 @@ FILES = {
         for number in range(9)
     },
 }
+
+
+# What an include is given, and what is said of it; empty for one that is followed.
+INCLUDES = [
+    ("$(find-pkg-share eyes)/launch/eye0.launch.xml", ""),
+    ("$(dirname)/eye0.launch.xml", ""),
+    ("$(find-pkg-share elsewhere)/launch/ear.launch.py", "of another package"),
+    ("$(find-pkg-share eyes)/launch/absent.launch.xml", "`eyes` has no such file"),
+    ("$(find-pkg-share eyes)/package.txt", "`eyes/package.txt` is no launch file that can be read"),
+    ("$(find-pkg-share eyes)/launch/$(var side).launch.xml", "argument `side` has no value"),
+    ("$(env WHERE)/eye0.launch.xml", "the environment variable `WHERE` is not known"),
+    ("/opt/eyes/eye0.launch.xml", "it is not in the share folder of a package"),
+    ("", "its path is not known"),
+]
+
+
+@pytest.mark.parametrize("written, expected", INCLUDES)
+def test_an_include_that_is_not_followed_is_told(tmp_path, written, expected):
+    top = f'<launch><include file="{written}"/></launch>'
+    files = {**FILES, "eyes/launch/all.launch.xml": top, "eyes/package.txt": "no launch file"}
+    foreign = expected == "of another package"
+    for launch in ("", "eyes/launch/all.launch.xml"):
+        found = graph_on_disk(tmp_path, files, launch)
+        rows = [one for one in found.coverage.unresolved if one.what.startswith("included launch file")]
+        # The whole system leaves out what other packages are started by, as it does the programs of these.
+        said = bool(expected) and not (foreign and not launch)
+        assert [(one.path, one.line) for one in rows] == [("eyes/launch/all.launch.xml", 1)] * said
+        assert all(expected in f"{one.what}: {one.reason}" for one in rows)
+        assert not list_unknown_names(found)
 
 
 @pytest.fixture
