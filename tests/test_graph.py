@@ -154,6 +154,20 @@ def test_a_node_tells_the_launch_files_that_start_it(ws):
     assert nodes["/front/speaker"]["started"] == f"{folder}/talk.launch.xml:3", "a path in the workspace"
 
 
+@pytest.mark.parametrize("text", ["", "no XML", '<package format="3"><name>talk</name><version>0.1', "<package/>"])
+def test_a_manifest_that_colcon_refuses_is_told(ws, tmp_path, text):
+    assert "refuse" not in run(ws)[2]
+    (ws / "src/talk/package.xml").write_text(text)
+    code, out, err = run(ws)
+    assert (code, "/speech" in out) == (0, True)
+    assert err.startswith("rosimpact: src/talk/package.xml:1: ") and "nodes may be missing" in err
+    (tmp_path / "alone").mkdir()
+    (tmp_path / "alone/package.xml").write_text(text)
+    code, out, err = run(tmp_path / "alone")
+    assert (code, out) == (2, "")
+    assert "no package could be read (package.xml:1: " in err
+
+
 def find_data(text: str) -> dict:
     return json.loads(text.partition('id="data">')[2].partition("</script>")[0])
 

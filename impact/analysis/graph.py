@@ -63,7 +63,7 @@ def build_graphs(
         chosen = [one._replace(arguments={**given, **one.arguments}) for one in own]
         how = {"code_alone": code_alone, "jobs": jobs or processes.count_cores()}
         now = make_graph(workspace, store, os.fspath(path), rev, chosen if launch else None, **how)
-        strangers = tuple(_describe_undeclared(workspace, own, given))
+        strangers = (*_describe_refused(path, workspace, now), *_describe_undeclared(workspace, own, given))
         if not base:
             return Graphs(now, None, strangers, workspace)
         from .revision_compare import open_base_tree
@@ -84,6 +84,22 @@ def _find_system(path: Path, tree: Tree, name: str, config: Path | None, follow_
     known = ", ".join(f"`{each}`" for each in sorted(settings.systems))
     remedy = f"known are {known}" if known else "add it with its launch files, or name these with --launch"
     raise CheckError(f"--system {name}: {where} has no [systems.{name}]; {remedy}")
+
+
+def _describe_refused(path: Path, workspace: Workspace, graph: Graph) -> Iterator[str]:
+    """A note on packages whose manifests colcon and catkin refuse, so that little may be known of what they build.
+    Raises CheckError where all are refused and no code was found."""
+    found = [
+        f"{package.linked.manifest_path}:{problem.line}: {problem.message}"
+        for package in workspace
+        for problem in package.manifest.problems[:1]
+    ]
+    more = f"; and {len(found) - 3} more" if len(found) > 3 else ""
+    named = f"{'; '.join(found[:3])}{more}"
+    if found and len(found) == len(workspace.packages) and not graph.coverage.files:
+        raise CheckError(f"{path}: no package could be read ({named}); correct the manifest")
+    if found:
+        yield f"{named}: colcon and catkin refuse such a manifest, so nodes may be missing; correct it"
 
 
 def _describe_undeclared(
