@@ -502,7 +502,7 @@ _QT_OPTIONS = frozenset({"OPTIONS", "TARGET", "DEPENDS"})
 
 @handles("qt4_wrap_cpp", "qt5_wrap_cpp", "qt6_wrap_cpp", "qt_wrap_cpp", "qt4_wrap_ui", "qt5_wrap_ui", "qt6_wrap_ui",
          "qt_wrap_ui", "qt4_add_resources", "qt5_add_resources", "qt6_add_resources", "qt_add_resources",
-         least=2)  # fmt: skip
+         least=1)  # fmt: skip
 def wrap_qt_files(run: Interpreter, call: CommandCall, args: list[Word]) -> None:
     """Qt's generators: the variable lists files of the build folder, named as Qt names them."""
     shape = {"cpp": "moc_{}.cpp", "ui": "ui_{}.h"}.get(call.name.rpartition("_")[2], "qrc_{}.cpp")

@@ -31,7 +31,7 @@ _HEADERS = (".h", ".hpp", ".hh", ".hxx")
 # Bases that call no method of what derives from them by a name of their own.
 _CALL_NOTHING = frozenset(("Node", "object", "Object"))
 # Endings of C++ files that hold no declarations for others.
-_SOURCES = (".cpp", ".cc", ".cxx", ".c++", ".c", ".cu")
+SOURCES = (".cpp", ".cc", ".cxx", ".c++", ".c", ".cu")
 
 
 class Fn:
@@ -181,7 +181,7 @@ class FlowCode:
                 known.setdefault(alias.name, []).append(alias)
                 if source.facts.language == "cpp" and alias.name != "*":
                     self._shared.setdefault(alias.name, []).append((source.path, alias))
-            is_source = source.path.endswith(_SOURCES) and source.path.rpartition("/")[2] not in included
+            is_source = source.path.endswith(SOURCES) and source.path.rpartition("/")[2] not in included
             is_local = is_source or source.facts.language == "python"
             for cls in source.facts.classes if before is None else ():
                 self.classes.setdefault(get_tail(cls.name), []).append(Cls(source, cls, is_local))
@@ -481,7 +481,7 @@ class FlowCode:
             return ""
         by_path = self._constants.get(get_tail(name), {})
         beside = [path for path, rows in by_path.items() if rows[0][1].package == source.package]
-        found = [path for path in beside if path.endswith(_SOURCES)]
+        found = [path for path in beside if path.endswith(SOURCES)]
         return found[0] if len(found) == 1 and source.path not in beside else ""
 
     @cache_method

@@ -188,7 +188,8 @@ class Unresolved(msgspec.Struct, frozen=True):
 class Coverage(msgspec.Struct, frozen=True):
     """calls: of the frameworks; resolved: those of which all is known that they name (topic, type, callback,
     publisher). by_default: of the resolved, those whose name is a parameter's default. unread: files with spans that
-    did not parse. wrappers: calls inside functions that stand for the framework's own; their callers are counted."""
+    did not parse. wrappers: calls inside functions that stand for the framework's own; their callers are counted.
+    uncompiled: sources that are left out, since no target compiles them."""
 
     calls: int
     resolved: int
@@ -197,6 +198,7 @@ class Coverage(msgspec.Struct, frozen=True):
     unread: tuple[str, ...] = ()
     unresolved: tuple[Unresolved, ...] = ()
     wrappers: tuple[Unresolved, ...] = ()
+    uncompiled: tuple[str, ...] = ()
 
 
 class Graph(msgspec.Struct, frozen=True):

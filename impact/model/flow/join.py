@@ -40,7 +40,7 @@ from .graph import (
 from .loads import Loaded, list_loaded
 from .names import NameRefused, is_open, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
-from .qos import find_qos, list_overridable, override_qos
+from .qos import find_qos, list_overridable, apply_overrides
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
 from .values import FlowValue, FlowValues
@@ -76,7 +76,8 @@ Owner = Running | Node | None
 class Join:
     """One body of code joined. files: facts by path; package_of: the package a path belongs to; built: what is built of
     it; ros: the generation where a framework does not tell; defined: knows which interfaces there are; before: as for
-    Code; find_file: the workspace path of a file in a package's share folder, empty for what is not there."""
+    Code; find_file: the workspace path of a file in a package's share folder, empty for what is not there; uncompiled:
+    the sources that were left out of the files, since nothing compiles them."""
 
     def __init__(
         self,
@@ -88,8 +89,10 @@ class Join:
         defined: DefinedInterfaces | None = None,
         before: FlowCode | None = None,
         find_file: Callable[[str, str], str] = lambda package, path: "",
+        uncompiled: Iterable[str] = (),
     ):
         self.ros, self.built, self._find_file = ros, list(built), find_file
+        self._uncompiled = tuple(sorted(uncompiled))
         self.plugins = {name: cls for package in self.built for name, cls in package.plugins.items()}
         sources = (CodeFile(path, package_of(path), facts) for path, facts in sorted(files.items()))
         self.code = FlowCode(sources, before)
@@ -119,6 +122,7 @@ class Join:
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             if program.kind in ("executable", "script"):
                 others = programs_of.collect_sources_of_others(program, self.built)
+                others |= programs_of.collect_replaced_sources(program, self.code)
                 functions, classes = self.reach.find_reached(program.roots, without=others | self.code.unused_headers)
                 if not program.roots:
                     functions = {fn for fn in self.code.functions if fn.source.path in program.files}
@@ -366,6 +370,7 @@ class Join:
             count.calls, count.resolved, count.by_default, len(self.code.sources), tuple(sorted(unread)),
             tuple(sorted(count.unresolved, key=lambda one: (one.path, one.line, one.what))),
             tuple(Unresolved(use.row.does, f"inside `{use.fn.name}`", *_get_place(use)) for use in self.sites.wrapped),
+            self._uncompiled,
         )  # fmt: skip
         return Graph(
             owners.list_nodes(), tuple(endpoints), tuple(publishes), tuple(timers), tuple(parameters), coverage, root,
@@ -487,7 +492,7 @@ class Join:
         qos = self._qos[id(use)]
         if qos is not None and topic and isinstance(owner, Running) and use.row.qos:
             policies = list_overridable(use) if any(map(_OVERRIDES, owner.values.settings)) else ()
-            qos = override_qos(qos, topic, site.role, policies, owner.values.settings) if policies else qos
+            qos = apply_overrides(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         only_if = "" if site.implied else self._describe_condition(use, owner)
         if value.how == "partly":
             only_if = " && ".join(filter(None, (only_if, "the name is not replaced")))

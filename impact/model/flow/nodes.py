@@ -9,7 +9,7 @@ from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowExpr, FlowFile
-from .code import FlowCode, Fn, get_tail, list_made
+from .code import SOURCES, FlowCode, Fn, get_tail, list_made
 from .endpoints import Sites
 from .modules import CodeFile
 from .types import Cls, parse_flow_type
@@ -204,6 +204,19 @@ def collect_sources_of_others(program: StartableProgram, built: Iterable[BuiltPa
     in_executables = {path for package in every for paths in package.executables.values() for path in paths}
     in_libraries = {path for package in every for paths in package.libraries.values() for path in paths}
     return frozenset(in_executables - in_libraries - program.files)
+
+
+def collect_replaced_sources(program: StartableProgram, code: FlowCode) -> set[str]:
+    """The sources of a program's package that define a method which a source of the program defines too, of one class
+    of a header: the program is linked without them."""
+    own = [fn for path in program.files for fn in code.functions_in.get(path, ()) if fn.owner and not fn.is_lambda]
+    return {
+        other.source.path
+        for fn in own
+        if (cls := code.find_owner(fn)) is not None and not cls.is_local
+        for other in code.find_method(cls, get_tail(fn.name))
+        if other.source.path.endswith(SOURCES) and other.source.path not in program.files
+    }
 
 
 def _list_linked_sources(name: str, package: BuiltPackage, sources: Iterable[str]) -> Iterator[str]:

@@ -106,7 +106,7 @@ def _list_policies(options: FlowExpr) -> Iterator[str]:
             yield from _list_policies(part)
 
 
-def override_qos(qos: Qos, topic: str, role: str, policies: Iterable[str], settings: Mapping[str, str]) -> Qos:
+def apply_overrides(qos: Qos, topic: str, role: str, policies: Iterable[str], settings: Mapping[str, str]) -> Qos:
     """The quality of service after the parameters that a launch gives. topic: as it is after remapping; settings:
     values by name. Durations are nanoseconds. A value that is none of the policy makes it unknown."""
     fields = structs.asdict(qos)

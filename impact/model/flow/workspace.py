@@ -25,6 +25,7 @@ from .launches import Launch
 from .nodes import BuiltPackage, asks_for_name, find_entry_point
 from .plugins import assign_plugins, list_plugin_loads
 from .system import ChosenLaunch, join_launched, merge_launches
+from .uncompiled import find_uncompiled
 
 _LIBRARIES = frozenset(("library", "module", "interface"))
 _STARTED = frozenset(("launch_xml", "launch_yaml", "params", "xacro"))
@@ -203,7 +204,11 @@ def join_code(workspace: Workspace) -> Join:
     defined = DefinedInterfaces(workspace.interface_names, workspace.ros)
     find_file = InWorkspace(workspace).find_workspace_path
     built = list_built(workspace, files)
-    return Join(files, packages.__getitem__, built, workspace.ros, defined=defined, find_file=find_file)
+    uncompiled = find_uncompiled(workspace, files)
+    return Join(
+        {path: file for path, file in files.items() if path not in uncompiled}, packages.__getitem__, built,
+        workspace.ros, defined=defined, find_file=find_file, uncompiled=uncompiled,
+    )  # fmt: skip
 
 
 def make_graph(

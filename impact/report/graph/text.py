@@ -206,10 +206,12 @@ def render_coverage(
         [LinePart(f"{coverage.resolved:,} of {format_count(coverage.calls, 'API call')} resolved{share}; "
                f"{format_count(coverage.files, 'file')} read")], style, 0, 2,
     )  # fmt: skip
-    if coverage.unread:
-        shown = coverage.unread if everything else coverage.unread[:5]
-        rest = f" and {len(coverage.unread) - len(shown)} more" if len(shown) < len(coverage.unread) else ""
-        yield from lay_out([LinePart(f"{len(coverage.unread)} of them in part: {', '.join(shown)}{rest}")], style, 0, 2)
+    lacking = "left out, since nothing compiles them"
+    for paths, what in ((coverage.unread, "of them in part"), (coverage.uncompiled, lacking)):
+        if paths:
+            shown = paths if everything else paths[:5]
+            rest = f" and {len(paths) - len(shown)} more" if len(shown) < len(paths) else ""
+            yield from lay_out([LinePart(f"{len(paths)} {what}: {', '.join(shown)}{rest}")], style, 0, 2)
     shown = near if everything else near[:_SHOWN]
     for one in shown:
         written = f" `{one.written}`" if one.written else ""

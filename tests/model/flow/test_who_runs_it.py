@@ -60,6 +60,36 @@ def test_an_executable_has_nothing_of_the_sources_of_another():
     }  # fmt: skip
 
 
+def test_a_program_has_the_methods_of_the_library_that_it_links():
+    """Of two sources that define one method, that of the target; what no source of it defines may be any."""
+    header = """
+        class Base : public rclcpp::Node {
+         public:
+          Base();
+          void begin();
+          void end();
+          rclcpp::Publisher<std_msgs::msg::Empty>::SharedPtr pub_;
+        };
+    """
+    method = '#include "base.hpp"\nvoid Base::{}() {{ pub_ = create_publisher<std_msgs::msg::Empty>("{}", 1); }}\n'
+    main = """
+        #include "base.hpp"
+        Base::Base() : Node("%s") {}
+        int main(int argc, char ** argv) { auto base = std::make_shared<Base>(); base->end(); }
+    """
+    files = {"car/base.hpp": header, "car/last.cpp": method.format("end", "last")}
+    for name in ("old", "new"):
+        files |= {f"car/{name}.cpp": method.format("begin", name), f"car/{name}_main.cpp": main % name}
+    built = BuiltPackage(
+        "car", {name: (f"car/{name}_main.cpp",) for name in ("old", "new")},
+        {f"lib_{name}": (f"car/{name}.cpp",) for name in ("old", "new")}, {}, {},
+        {name: (f"lib_{name}",) for name in ("old", "new")},
+    )  # fmt: skip
+    assert ends(graph(files, built=(built,)), "publisher") == {
+        (f"car/{name}", f"/{topic}", "std_msgs/Empty") for name in ("old", "new") for topic in (name, "last")
+    }
+
+
 def test_what_loads_a_plugin_is_not_known_and_not_invented():
     code = """
         #include <ros/ros.h>

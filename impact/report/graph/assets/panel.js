@@ -172,6 +172,7 @@ function summary() {
     ...section("Groups", grouping() ? groups[grouping()].list.filter((group) => group.present > 1) : [], (group) => make("li", { class: "foldable" }, link(group), group.below, button(isFolded(group) ? "Unfold" : "Fold", () => fold(group, !isFolded(group)), { class: "small", "aria-label": `${isFolded(group) ? "unfold" : "fold"} ${group.label}` }))),
     ...section("Not resolved", coverage.unresolved, (one) => make("li", null, `${one.what} `, one.written ? code(one.written) : "", make("p", { class: "soft" }, withCode(one.reason)), place(one.path, one.line))),
     ...section("Read in part", coverage.unread, (path) => make("li", null, place(path))),
+    ...section("Left out, since nothing compiles them", coverage.uncompiled, (path) => make("li", null, place(path))),
     make("p", { class: "soft" }, `rosimpact ${graph.version}, ROS ${graph.ros}`)].filter(Boolean);
 }
 
