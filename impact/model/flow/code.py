@@ -78,6 +78,10 @@ class Fn:
         return f"Fn({self.source.path}:{self.facts.line} {self.facts.name})"
 
 
+Made = tuple[Fn, tuple[FlowExpr, ...], int]
+"""Where an object is made: the function, the arguments and the line."""
+
+
 class Variable(NamedTuple):
     """Which variable a name means. kind: `member` (owner: the class's key), `local` (owner: the function's place) or
     `global` (owner: path of the file)."""
@@ -903,9 +907,9 @@ class FlowCode:
         return found
 
     @cached_property
-    def constructions(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
+    def constructions(self) -> dict[str, list[Made]]:
         """Where objects of a class of the code are made: key of the class to function, arguments and line."""
-        found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
+        found: dict[str, list[Made]] = {}
         for fn in self.functions:
             for name, arguments, line in list_made(fn, self):
                 last = get_tail(name)
@@ -916,9 +920,9 @@ class FlowCode:
         return found
 
     @cached_property
-    def bases_made(self) -> dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]]:
+    def bases_made(self) -> dict[str, list[Made]]:
         """Constructors that initialise a base class of the code: key of the base to function, arguments and line."""
-        found: dict[str, list[tuple[Fn, tuple[FlowExpr, ...], int]]] = {}
+        found: dict[str, list[Made]] = {}
         for fn in self.functions:
             owner = self.find_owner(fn) if fn.facts.owner else None
             if owner is None:
@@ -939,12 +943,12 @@ class FlowCode:
         owner = self.find_owner(fn)
         return owner is not None and get_tail(fn.name) in (get_tail(owner.name), "__init__")
 
-    def list_constructed(self, fn: Fn) -> Iterator[tuple[Fn, tuple[FlowExpr, ...], int]]:
+    def list_constructed(self, fn: Fn) -> Iterator[Made]:
         """Who makes objects by a constructor, with its arguments and line; nothing for other functions."""
         owner = self.find_owner(fn)
         if owner is not None and self.is_constructor(fn):
-            inheriting = self.derived.get(owner.key, ()) if get_tail(fn.name) == "__init__" else ()
-            for cls in (owner, *inheriting):
+            deriving = self.derived.get(owner.key, ()) if get_tail(fn.name) == "__init__" else ()
+            for cls in (owner, *(one for one in deriving if fn in self.find_method(one, "__init__"))):
                 yield from self.constructions.get(cls.key, ())
             yield from self.bases_made.get(owner.key, ())
 

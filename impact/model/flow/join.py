@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowExpr, FlowFile, Guard
-from ..launch.result import Launched, ShareLine, Started
+from ..launch.result import EMPTY, Launched, ShareLine, Started
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, get_tail, list_made
@@ -40,7 +41,8 @@ from .graph import (
 from .loads import Loaded, list_loaded
 from .names import NameRefused, is_open, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
-from .qos import find_qos, list_overridable, apply_overrides
+from .objects import NodeObjects
+from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
 from .values import FlowValue, FlowValues
@@ -58,7 +60,9 @@ _TRIGGERS = {
 
 class Running(NamedTuple):
     """A program with the node it is, and what of the code it reaches. instance: how a launch starts it; values: what
-    expressions are worth there; classes: by key. loaded: how the node loads this program, which is a nodelet then."""
+    expressions are worth there; classes: by key. loaded: how the node loads this program, which is a nodelet then.
+    objects: of a program that is several nodes the keys of those that this is, as NodeObject has them, None where it is
+    one; others: those of its other nodes alone, where this is the first of them, which has all that no key is about."""
 
     program: StartableProgram
     node: Node
@@ -67,6 +71,8 @@ class Running(NamedTuple):
     values: FlowValues
     instance: Instance | None = None
     loaded: Loaded | None = None
+    objects: frozenset[str] | None = None
+    others: frozenset[str] | None = None
 
 
 Owner = Running | Node | None
@@ -100,6 +106,7 @@ class Join:
         self.values = FlowValues(self.calls)
         self.sites = Sites(self.code, self.calls, self.values, defined or DefinedInterfaces())
         self.reach = CodeReach(self.sites)
+        self.objects = NodeObjects(self.calls, self.values, ros)
         self.triggers = group_pairs(self._list_triggers())
         # Of a use it is the same in every node that runs it.
         self._qos: dict[int, Qos | None] = {}
@@ -133,31 +140,38 @@ class Join:
                 )
                 functions, classes = self.reach.find_reached(program.roots, [cls] if cls is not None else [])
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
-            one = Running(program, self._make_node(program, named), functions, classes, self.values)
-            found += self._split_by_class(one, named) if program.kind in ("executable", "script") else [one]
+            node, use = self._make_node(program, named)
+            one = Running(program, node, functions, classes, self.values)
+            several = program.kind in ("executable", "script", "component")
+            found += self._split_by_object(one, use) if several else [one]
         return found
 
-    def _split_by_class(self, running: Running, named: list[FrameworkCall]) -> Iterator[Running]:
-        """A program, and a node more for each further class that names one: in ROS 2 every object of such a class is a
-        node by itself, and talks in its own name."""
-        names: dict[str, str] = {}
-        for use in named:
-            cls = self.code.find_owner(use.fn)
-            two = self.calls.table.generations.get(use.row.framework, self.ros) == 2
-            values = self.values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line)
-            if cls is not None and two and len(values) == 1 and values[0].text:
-                names.setdefault(cls.key, normalise(f"/{values[0].text}"))
-        own = running.node.name
-        others = {key: name for key, name in names.items() if name != own} if own in names.values() else {}
-        rest = set(running.functions)
-        parts = []
-        for key, name in others.items():
-            methods = {fn for fn in running.functions if (cls := self.code.find_owner(fn)) and cls.key == key}
-            node = structs.replace(running.node, id=f"{running.node.id}{name}", name=name)
-            parts.append(running._replace(node=node, functions=methods))
-            rest -= methods
-        yield running._replace(functions=rest) if parts else running
-        yield from parts
+    def _split_by_object(self, running: Running, use: FrameworkCall | None) -> Iterator[Running]:
+        """A program, and a node more for each further node object with a name of its own: in ROS 2 every one is a node
+        by itself, and talks in its own name. use: that names the first."""
+        objects = self.objects.list_objects(running.functions)
+        first = [one for one in objects if one.name == running.node.name or use in one.uses]
+        first = [one for one in first if one.name == running.node.name] or first
+        further = [one for one in objects if one not in first] if first else []
+        if not further:
+            yield running
+            return
+        count = Counter(key for one in objects for key in one.keys)
+        # Which of several nodes any object of a class is, is not known: it counts for the first.
+        shared = {key for key in count if count[key] > 1 and key.startswith("any ")}
+        own = shared.union(*(one.keys for one in first))
+        others = frozenset().union(*(one.keys for one in further)) - own
+        values = first[0].values if len(first) == 1 else running.values
+        yield running._replace(objects=own, others=others, values=values)
+        for one in further:
+            node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
+            yield running._replace(node=node, objects=one.keys - shared, values=one.values)
+
+    def runs(self, running: Running, keys: frozenset[str]) -> bool:
+        """Whether a node runs a use in one of its functions. keys: of the node objects that the use is made on."""
+        if running.objects is None or keys & running.objects:
+            return True
+        return running.others is not None and not keys & running.others
 
     def find_started(self, launch: Launched) -> tuple[list[Running], list[Unresolved]]:
         """The nodes that a launch starts, under the names it gives them; and the starts that the code does not have."""
@@ -189,14 +203,17 @@ class Join:
             known = arguments if len(arguments) == len(start.arguments) else None
             # In ROS 2 a program may be several nodes, and the name that a launch file gives is for all of them.
             for part in (each for each in fitting if each.program == one.program):
-                own = part.node.name.rpartition("/")[2] or f"<{one.program.executable or get_tail(one.program.plugin)}>"
-                instance = make_instance(launch, own, start)
+                namespace, _, own = part.node.name.rpartition("/")
+                own = own or f"<{one.program.executable or get_tail(one.program.plugin)}>"
+                # What a container is told for a component is for the component's own node alone.
+                inner = start.kind == "composable" and part.objects is not None and part.others is None
+                instance = make_instance(launch, own, _strip_given(start) if inner else start, namespace)
                 node = structs.replace(
                     part.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
                     uncertain=instance.uncertain,
                 )  # fmt: skip
                 name = instance.name if start.generation == 1 else ""
-                values = self.values.apply_launch(instance.settings, known, name)
+                values = part.values.apply_launch(instance.settings, known, name)
                 found.append(part._replace(node=node, instance=instance, values=values))
         return found, missing
 
@@ -259,7 +276,10 @@ class Join:
             FlowType(cls.name, (), cls), next(iter(self.code.list_functions(cls)), _make_nobody(cls.source))
         )
 
-    def _make_node(self, program: StartableProgram, named: list[FrameworkCall]) -> Node:
+    def _make_node(
+        self, program: StartableProgram, named: list[FrameworkCall]
+    ) -> tuple[Node, FrameworkCall | None]:  # fmt: skip
+        """The node that a program is, or the first of those, and the use that names it."""
         own = (
             [use for use in named if get_tail(use.fn.facts.owner) == get_tail(program.plugin)] if program.plugin else []
         )
@@ -273,23 +293,29 @@ class Join:
             return ranks.get(get_tail(use.fn.facts.owner), len(ranks)), written is None or written.kind != "text"
 
         others = sorted(named, key=rank) if program.kind in ("executable", "script") else []
-        name = ""
-        for use in [*own, *in_main, *others]:
-            values = self.values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line)
+        name, use = "", None
+        for candidate in [*own, *in_main, *others]:
+            written = self.calls.find_argument(candidate, candidate.row.topic)
+            values = self.values.evaluate(written, candidate.fn, candidate.call.line)
             # `_` stands for a name that options give.
-            name = next((value.text for value in values if value.text and value.text != "_"), "")
-            if name and "{" not in name:
+            found = next((value.text for value in values if value.text and value.text != "_"), "")
+            if use is None or found:
+                name, use = found or "", candidate
+            if found and "{" not in found:
                 break
         default = program.executable or _convert_to_snake(get_tail(parse_flow_type(program.plugin).name))
         # What loads a plugin is another program, which gives it a node, or a nodelet its name; who makes the node of a
         # program that makes none is not known either.
         unknown = program.kind in ("plugin", "nodelet") or not (named or self.ros == 2)
         full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
+        if use is not None and full:
+            full = self.objects.join_namespace(use, full.lstrip("/"), self.values)
         language = "python" if program.kind == "script" else "cpp"
-        return Node(
+        node = Node(
             f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,
             program.executable, program.plugin, language, program.path, program.line,
         )  # fmt: skip
+        return node, use
 
     def list_guards(self, fn: Fn, index: int) -> tuple[GuardAt, ...]:
         """The guards at a place of a function, outermost first."""
@@ -404,7 +430,8 @@ class Join:
 
     def _list_publishes(self, owners: _Owners, count: _Count) -> Iterator[Publish]:
         for statement in self.sites.statements:
-            those = owners.list_owners(statement.use)
+            keys = [self.objects.find_keys(site.use) for site in statement.sites]
+            those = owners.list_owners(statement.use, frozenset().union(*keys))
             if not those:
                 continue
             if not statement.through:  # else counted where it sends
@@ -468,8 +495,8 @@ class Join:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
         if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
             return site
-        arguments = owner.values.arguments
-        known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments), [])
+        arguments, made = owner.values.arguments, id(owner.values.made)
+        known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments, made), [])
         for _, rests_on, found in known:
             if all(owner.values.find_setting(name) == value for name, value in rests_on.items()):
                 return found
@@ -613,16 +640,18 @@ class _Owners:
         self.join, self.running, self.launched = join, running, launched
         self._libraries: dict[str, Node] = {}
         self._used: set[str] = set()
-        self._by_function: dict[Fn, list[Owner]] = group_pairs(
+        self._by_function = group_pairs(
             (number, one) for one in running for number in one.functions
         )
 
-    def list_owners(self, use: FrameworkCall) -> list[Owner]:
-        """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none."""
+    def list_owners(self, use: FrameworkCall, keys: frozenset[str] = frozenset()) -> list[Owner]:
+        """Who runs a use: nodes that reach it, else those that are built from its file, else its library, or none.
+        keys: of the node objects that it is made on, where it does not tell itself."""
+        keys = keys or self.join.objects.find_keys(use)
         found = self._by_function.get(use.fn, [])
         if self.launched or found:
-            return found
-        built = [one for one in self.running if use.fn.source.path in one.program.files]
+            return [one for one in found if self.join.runs(one, keys)]
+        built = [one for one in self.running if use.fn.source.path in one.program.files and self.join.runs(one, keys)]
         if built:
             return [*built]
         node = self.join.find_library(use.fn)
@@ -657,6 +686,11 @@ class _Count:
         else:
             self.resolved += 1
             self.by_default += all(value.how == "default" for site in sites for value in site.names)
+
+
+def _strip_given(start: Started) -> Started:
+    """A start without what it gives to the node."""
+    return start._replace(name=EMPTY, namespace=EMPTY, remaps=(), settings=())
 
 
 def _select_types(site: Site, owner: Owner) -> tuple[str, ...]:

@@ -104,10 +104,10 @@ class Instance(NamedTuple):
         return remap_ros2_name(name, own, namespace or "/", rules, kind)
 
 
-def make_instance(all_started: Launched, own_name: str, started: Started) -> Instance:
-    """A start of a node whose code calls itself own_name (without a namespace)."""
+def make_instance(all_started: Launched, own_name: str, started: Started, own_namespace: str = "") -> Instance:
+    """A start of a node whose code calls itself own_name, in own_namespace."""
     name = _fill(started.name) or own_name
-    full = join_name("/" + _fill(started.namespace).lstrip("/"), name)
+    full = join_name("/" + (_fill(started.namespace) or own_namespace).lstrip("/"), name)
     one = started.generation == 1
     given = all_started.server if one else all_started.collect_parameters(started, full)
     settings = {key: _fill(one.text) for key, one in given.items()}

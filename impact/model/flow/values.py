@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
@@ -11,7 +11,7 @@ from ....edges.groups import group_pairs
 from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
-from .code import Fn, Variable, find_argument, find_parameter, get_tail
+from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
 from .graph import How
 from .names import resolve_ros1_name
 from .origins import ObjectOrigins, Origins
@@ -59,14 +59,16 @@ class FlowValues:
         way: Mapping[Fn, FlowCall] | None = None,
         within: Collection[Fn] | None = None,
         node: str = "",
+        made: Mapping[Fn, Sequence[Made]] | None = None,
     ):
         """settings: values of parameters that a launch sets, by name; in ROS 1 by the global name, and node is the full
         name of the node then. arguments: of the command line, without the program's name; None where they are not
         known. way: the only call through which a function is reached, by the function. within: the functions that run,
-        all when None."""
+        all when None. made: by constructor who gives it its arguments, where that is not whoever makes an object of its
+        class."""
         self.calls, self.code = calls, calls.code
         self.settings, self.arguments, self.way, self.within = settings or {}, arguments, way or {}, within
-        self.node = node
+        self.node, self.made = node, made or {}
         # The namespace of the node handle that a use is called on, and what is known of that, by the call.
         self.find_prefix: Callable[[FrameworkCall], str] = lambda use: ""
         self._prefixes: dict[int, str] = {}
@@ -79,7 +81,7 @@ class FlowValues:
         self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
     ) -> FlowValues:
         """The same code where a launch sets parameters and gives arguments; as for FlowValues()."""
-        return self._make_copy(settings, arguments, self.way, self.within, node)
+        return self._make_copy(settings, arguments, self.way, self.within, node, self.made)
 
     def rename(self, node: str) -> FlowValues:
         """The same where the code is a nodelet of another name."""
@@ -87,11 +89,15 @@ class FlowValues:
 
     def run(self, functions: Collection[Fn]) -> FlowValues:
         """The same code where only some functions run: what others pass to them does not count."""
-        return self._make_copy(self.settings, self.arguments, self.way, functions, self.node)
+        return self._make_copy(self.settings, self.arguments, self.way, functions, self.node, self.made)
 
     def limit_to_calls(self, way: Mapping[Fn, FlowCall]) -> FlowValues:
         """The same code as far as it is reached through some calls, by the function called."""
-        return self._make_copy(self.settings, self.arguments, way, self.within, self.node) if way else self
+        return self._make_copy(self.settings, self.arguments, way, self.within, self.node, self.made) if way else self
+
+    def limit_to_objects(self, made: Mapping[Fn, Sequence[Made]]) -> FlowValues:
+        """The same code in some objects alone. made: who gives their constructors arguments."""
+        return self._make_copy(self.settings, self.arguments, self.way, self.within, self.node, made)
 
     def _make_copy(self, *given) -> FlowValues:
         other = FlowValues(self.calls, *given)
@@ -432,7 +438,7 @@ class FlowValues:
         only = self.way.get(fn)
         calls = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ())
                  if only is None or call is only)  # fmt: skip
-        for caller, arguments, line in (*calls, *self.code.list_constructed(fn)):
+        for caller, arguments, line in self.made.get(fn) or (*calls, *self.code.list_constructed(fn)):
             if self._runs(caller):
                 argument = find_argument(arguments, place, parameter.name)
                 given, lacking = given or argument is not None, lacking or argument is None

@@ -1,0 +1,231 @@
+"""The node objects that a program of ROS 2 makes, each a node by itself, and on which of them a call is made."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+from ....edges.groups import group_pairs
+from ...facts.flow import FlowExpr
+from .calls import Calls, FrameworkCall
+from .code import Fn, Made, Variable, find_parameter, get_tail
+from .graph import Role
+from .names import join_name
+from .types import Cls, FlowType
+from .values import FlowValues
+
+_DEEPEST = 6
+_ROLES = frozenset(Role.__args__)
+# What is the node itself in its methods.
+_ITSELF = frozenset(("this", "self", "*this", "shared_from_this", "this.shared_from_this"))
+
+
+class NodeObject(NamedTuple):
+    """An object that is a node, or some that nothing tells apart. keys: what tells that a call is made on it: the
+    classes that it is of, or the place where it is made; and `any CLASS`, for any object of a class. name: full, with
+    brackets for what is not known of it. values: what expressions are worth in its code. uses: those that name it."""
+
+    keys: frozenset[str]
+    name: str
+    values: FlowValues
+    uses: tuple[FrameworkCall, ...]
+
+
+class NodeObjects:
+    """Asks a body of code for its node objects. values: what expressions are worth in it; ros: the generation where a
+    framework does not tell."""
+
+    def __init__(self, calls: Calls, values: FlowValues, ros: int):
+        self.calls, self.code, self.values, self.ros = calls, calls.code, values, ros
+        # With the use, so that nothing else comes by the same id().
+        self._known: dict[int, tuple[FrameworkCall, frozenset[str]]] = {}
+
+    def list_objects(self, functions: Collection[Fn]) -> list[NodeObject]:
+        """The node objects of ROS 2 that some functions make."""
+        named = [use for use in self._named if use.fn in functions]
+        by_class = group_pairs((owner.key, use) for use in named if (owner := self._find_named_class(use)))
+        found: list[NodeObject] = []
+        for cls in self._list_classes(by_class, functions):
+            found += self._make_of_class(cls, by_class, functions)
+        for use in named:
+            if self._find_named_class(use) is None:
+                own = self._evaluate_name(use, self.values) or f"<{get_tail(use.call.target) or 'node'}>"
+                keys = frozenset((_make_key(use.fn, use.call.line),))
+                found.append(NodeObject(keys, self.join_namespace(use, own, self.values), self.values, (use,)))
+        return found
+
+    @cached_property
+    def _named(self) -> list[FrameworkCall]:
+        """The uses that make nodes of ROS 2; a member that is given a node is none."""
+        generations = self.calls.table.generations
+        of_ros2 = [u for u in self.calls.select_uses("node") if generations.get(u.row.framework, self.ros) == 2]
+        named = ((use, self.calls.find_argument(use, use.row.topic)) for use in of_ros2)
+        return [use for use, name in named if name is None or not self.calls.is_node(name, use.fn)]
+
+    def _find_named_class(self, use: FrameworkCall) -> Cls | None:
+        """The class of the code whose constructor gives its base a name by a use; None for a node that is made."""
+        fn, call = use.fn, use.call
+        if not self.code.is_constructor(fn):
+            return None
+        if fn.source.facts.language == "python":
+            return self.code.find_owner(fn) if get_tail(call.callee) == "__init__" else None
+        bases = (self.code.find_base_made(fn, each) for each in fn.facts.assignments if each.line == call.line)
+        own = not call.target and any(base is not None and base[0] == call.callee for base in bases)
+        return self.code.find_owner(fn) if own else None
+
+    def _list_classes(self, by_class: Collection[str], functions: Collection[Fn]) -> list[Cls]:
+        """The classes of the nodes that some functions make. by_class: keys of those that give themselves a name: one
+        that nothing is seen to make an object of counts too, where that is so of all that derive from it."""
+        made = [
+            cls
+            for key, rows in self.code.constructions.items()
+            if any(maker in functions for maker, _, _ in rows)
+            for cls in self.code.list_class_bodies(key)[:1]
+            if self._is_node(cls)
+        ]
+        above = {one.key for cls in made for one in self.code.list_bases(cls)}
+        alone = [self.code.list_class_bodies(key)[0] for key in by_class if key not in above]
+        return [*made, *alone]
+
+    def _is_node(self, cls: Cls) -> bool:
+        kinds = self.calls.find_kinds(FlowType(cls.name, (), cls), self.code.find_first(cls.source, self._anybody))
+        return "node" in kinds or any(one.key in self._node_like for one in self.code.list_bases(cls))
+
+    @cached_property
+    def _anybody(self) -> Fn:
+        return self.code.functions[0]
+
+    @cached_property
+    def _node_like(self) -> set[str]:
+        """Classes of Python that do on themselves what only nodes do, and have it from a class outside of the code."""
+        found: set[str] = set()
+        for use in self.calls.uses:
+            if use.row.does in _ROLES and use.fn.source.facts.language == "python" and use.fn.owner:
+                on_itself = self.calls.get_receiver(use) == "this" or any(
+                    one.kind == "name" and one.text in _ITSELF for one in use.call.arguments[:1]
+                )
+                owner = self.code.find_owner(use.fn) if on_itself else None
+                if owner is not None and self._has_base_elsewhere(owner):
+                    found.add(owner.key)
+        return found
+
+    def _has_base_elsewhere(self, cls: Cls) -> bool:
+        bases = ((base, one) for one in self.code.list_bases(cls) for base in one.facts.bases)
+        return any(self.code.find_class(base, one.source, one.name) is None for base, one in bases)
+
+    def _make_of_class(
+        self, cls: Cls, by_class: dict[str, list[FrameworkCall]], functions: Collection[Fn]
+    ) -> Iterator[NodeObject]:
+        """The nodes of a class: those that it gives different names, as far as these are known."""
+        chain = self.code.list_bases(cls)
+        keys = frozenset(key for one in chain for key in (one.key, f"any {one.key}"))
+        # That of the framework's own class is the name; what derived classes give may be anything.
+        uses = [use for one in reversed(chain) for use in by_class.get(one.key, ())]
+        rows = [row for row in self.code.constructions.get(cls.key, ()) if row[0] in functions]
+        by_name: dict[str, list[Made]] = {}
+        for row in rows or [None]:
+            values = self._limit(chain, [row] if row is not None else None)
+            known = ((use, self._evaluate_name(use, values)) for use in uses)
+            own = next(((use, name) for use, name in known if name), None)
+            full = self.join_namespace(*own, values) if own is not None else f"/<{get_tail(cls.name)}>"
+            by_name.setdefault(full, []).extend([row] if row is not None else [])
+        for name, made in by_name.items():
+            yield NodeObject(keys, name, self._limit(chain, made or None), tuple(uses))
+
+    def _limit(self, chain: list[Cls], rows: list[Made] | None) -> FlowValues:
+        """What expressions are worth in objects of a class. chain: with its bases; rows: where those are made, None for
+        anywhere."""
+        keys = {one.key for one in chain}
+        made: dict[Fn, list[Made]] = {}
+        for one in chain:
+            for fn in self.code.list_functions(one):
+                if not self.code.is_constructor(fn):
+                    continue
+                callers = ((caller, call.arguments, call.line) for caller, call in self.code.callers.get(fn, ()))
+                every = [*callers, *self.code.list_constructed(fn)]
+                inside = [row for row in every if (owner := self.code.find_owner(row[0])) and owner.key in keys]
+                own = self.code.list_constructed(fn) if rows is None else rows
+                made[fn] = [*inside, *(row for row in own if row in every and row not in inside)]
+        return self.values.limit_to_objects(made)
+
+    def _evaluate_name(self, use: FrameworkCall, values: FlowValues) -> str:
+        """The name that a use gives, without a namespace; empty where it is not known."""
+        found = values.evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line)
+        text = found[0].text if len(found) == 1 else None
+        # `_` stands for a name that options give.
+        return text if text and text != "_" and "{" not in text else ""
+
+    def join_namespace(self, use: FrameworkCall, own: str, values: FlowValues) -> str:
+        """The full name of a node by its own name and the namespace that its code gives, if any."""
+        written = self.calls.find_argument(use, use.row.namespace) if use.row.namespace else None
+        if written is None:
+            return join_name("/", own)
+        texts = {one.text for one in values.evaluate(written, use.fn, use.call.line)}
+        space = texts.pop() if len(texts) == 1 else None
+        return join_name("/" + ("<namespace>" if space is None else space.lstrip("/")), own)
+
+    def find_keys(self, use: FrameworkCall) -> frozenset[str]:
+        """What tells on which node objects a use is made, as NodeObject.keys has it; empty where nothing does."""
+        known = self._known.get(id(use))
+        if known is None:
+            known = self._known[id(use)] = use, frozenset(self._find_keys(use))
+        return known[1]
+
+    def _find_keys(self, use: FrameworkCall) -> set[str]:
+        if use.row.does == "node":
+            cls = self._find_named_class(use)
+            return {cls.key if cls is not None else _make_key(use.fn, use.call.line)}
+        receiver = "" if use.row.does == "publish" else self.calls.get_receiver(use)
+        given = next((one for one in use.call.arguments if self.calls.is_node(one, use.fn)), None)
+        for value in (FlowExpr("name", receiver) if receiver else None, given):
+            keys = self._trace(value, use.fn, frozenset()) if value is not None else set()
+            if keys:
+                return keys
+        return self._find_own_key(use.fn)
+
+    def _find_own_key(self, fn: Fn) -> set[str]:
+        owner = self.code.find_owner(fn)
+        return {owner.key} if owner is not None else set()
+
+    def _trace(self, value: FlowExpr, fn: Fn, seen: frozenset[Variable]) -> set[str]:
+        """The keys of what an expression is, where it is a node object."""
+        text = value.text.removesuffix("()")
+        if text in _ITSELF or (value.kind == "other" and "this" in text):
+            return self._find_own_key(fn)
+        if value.kind in ("make", "call"):
+            return self._find_class_key(self.code.resolve_type(value, fn), fn)
+        if value.kind != "name" or len(seen) > _DEEPEST:
+            return set()
+        variable = self.code.identify(text, fn)
+        if variable in seen:
+            return set()
+        seen |= {variable}
+        keys: set[str] = set()
+        for writer, each in self.code.list_writes(variable):
+            made = _make_key(writer, each.line)
+            keys |= {made} if made in self._made else self._trace(each.value, writer, seen)
+        for caller, call in self.code.list_results(variable):
+            made = _make_key(caller, call.line)
+            keys |= {made} if made in self._made else set()
+        for one in self.code.list_enclosing_chain(fn) if variable.kind == "local" and not keys else ():
+            place = find_parameter(one, variable.name)
+            if place is not None:
+                for given, giver in self.code.list_given(one, place[0], variable.name):
+                    keys |= self._trace(given, giver, seen)
+                break
+        return keys or self._find_class_key(self.code.resolve_variable_type(variable, fn), fn)
+
+    @cached_property
+    def _made(self) -> set[str]:
+        """The places where nodes are made that are of no class of the code."""
+        return {_make_key(use.fn, use.call.line) for use in self._named if self._find_named_class(use) is None}
+
+    def _find_class_key(self, kind: FlowType, fn: Fn) -> set[str]:
+        """The key for any object of a class of the code, if its objects are nodes."""
+        cls = self.code.find_class_of(kind, fn) if kind.name else None
+        return {f"any {cls.key}"} if cls is not None and self._is_node(cls) else set()
+
+
+def _make_key(fn: Fn, line: int) -> str:
+    return f"{fn.source.path}:{line}"
