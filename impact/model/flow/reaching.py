@@ -98,8 +98,9 @@ class ReachingValues:
         return guard < 0 or guard in self.around
 
     def is_counted(self, guard: int) -> bool:
-        """Whether what stands under a guard runs once at most, as far as loops of the function tell."""
-        return not any(self.fn.facts.guards[each].kind in LOOPS for each in list_guards_around(self.fn, guard))
+        """Whether what stands under a guard runs once at most for each value that was assigned before."""
+        loops = [each for each in list_guards_around(self.fn, guard) if self.fn.facts.guards[each].kind in LOOPS]
+        return all(self._is_inside(one.guard, loop) for loop in loops for one in self.held)
 
     def _list_conditional(self, guard: int) -> list[int]:
         """The guards of a statement that are not around the place, the nearest first."""

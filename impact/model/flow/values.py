@@ -261,7 +261,8 @@ class FlowValues:
         around = list_guards_around(fn, _find_guard(fn, line)) if line else []
         found = ReachingValues(fn, around, lambda path: self.code.identify(path, fn) == variable)
         # What stands before the last that is surely assigned is of no interest.
-        sure = [each for each in own if each.line < line and each.operator == "=" and found.is_sure(each.guard)]
+        early = [each for each in own if each.line < line and each.operator == "=" and found.is_sure(each.guard)]
+        sure = [each for each in early if not _mentions(each.value, each.target)]
         begun = max((each.line for each in sure), default=0)
         filled = self._list_filled(variable, seen, origins)
         # In Python that is an assignment too.

@@ -159,6 +159,17 @@ def test_what_is_always_unknown_takes_no_place():
     assert [(one.topic, one.how) for one in found.endpoints] == [("/a", "literal")]
 
 
+@pytest.mark.parametrize(("before", "inside", "expected"), [
+    ("", "ns = 'a'\n    ns = ns + '/b'", {"/a/b"}),
+    ("", "ns = 'a'\n    ns += '/b'", {"/a/b"}),
+    ("ns = 'a'", "ns = ns + '/b'", {"?"}),
+])  # fmt: skip
+def test_a_value_that_each_turn_of_a_loop_begins_anew(before, inside, expected):
+    head = "import rospy\nfrom std_msgs.msg import Empty\n"
+    text = f"{head}{before}\nfor one in ask():\n    {inside}\n    rospy.Publisher(ns, Empty, queue_size=1)\n"
+    assert find_names(graph({"p/a.py": text}, ros=1)) == expected
+
+
 def test_a_name_that_may_be_replaced_says_so():
     text = """
         import rospy
