@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 from ....edges.groups import group_pairs
-from ...facts.flow import FlowCall, FlowExpr
+from ...facts.flow import FlowCall, FlowExpr, Guard
 from .code import FlowCode, Fn, get_outer, get_tail, is_number
 
 # Functions that give argv without what is ROS's; those of C++ put it into their third argument or return it.
@@ -18,6 +18,12 @@ _COPIES = frozenset(
     ("myargv", "removeROSArgs", "remove_ros_arguments", "remove_ros_args", "init_and_remove_ros_arguments")
 )
 _COMPARED = re.compile(r"\(?\s*(?:argc|\w*args?\w*\.size\(\))\s*(==|!=|<=|>=|<|>)\s*(\d{1,18})\s*\)?\Z")
+# `sys.argv[i] == "-x"`, `std::string(argv[i]) == "-x"`; `strcmp(argv[i], "-x") == 0`, `!strcmp(argv[i], "-x")`
+_ELEMENT = r"(?P<list>[A-Za-z_][\w.]*)\[(?P<counter>[A-Za-z_]\w*)\]"
+_TEXT = r"""["'](?P<flag>[^"']+)["']"""
+_EQUAL = re.compile(rf"\(?(?:(?:std::)?string\(|str\()?{_ELEMENT}\)? == {_TEXT}\)?\Z")
+_NOT_DIFFERENT = re.compile(rf"\(?(?P<not>!)?(?:std::)?strcmp\({_ELEMENT}, {_TEXT}\)(?P<zero> == 0)?\)?\Z")
+_ALTERNATIVES = re.compile(r" or |\|\|")
 _DEEPEST = 5
 
 
@@ -82,21 +88,52 @@ class CommandLine:
                     break
         return range(begun + first, 10_000)
 
-    def excludes(self, fn: Fn, guard: int, number: int) -> bool:
-        """Whether a guard cannot hold with argc being number."""
-        guards, seen = fn.facts.guards, 0
-        while 0 <= guard < len(guards) and seen < 64:
-            one = guards[guard]
+    def excludes(self, fn: Fn, guard: int, arguments: Sequence[str]) -> bool:
+        """Whether a guard cannot hold with some arguments: by how many there are, or for want of an option."""
+        number = len(arguments) + 1
+        for one in list_guards(fn, guard):
             held = [_holds(part, number) for part in one.text.split("&&")] if "||" not in one.text else [None]
             if (one.kind == "if" and False in held) or (one.kind == "unless" and all(each is True for each in held)):
                 return True
-            guard, seen = one.outer, seen + 1
-        return False
+        wanted = self._find_flags(fn, guard)
+        return wanted is not None and wanted.isdisjoint(arguments)
+
+    def recognises(self, fn: Fn, guard: int, arguments: Sequence[str]) -> bool:
+        """Whether a guard holds because an option is among the arguments: `if argv[i] == "-x"`."""
+        wanted = self._find_flags(fn, guard)
+        return wanted is not None and not wanted.isdisjoint(arguments)
+
+    def list_following(self, index: FlowExpr, fn: Fn, guard: int, arguments: Sequence[str]) -> list[str] | None:
+        """The arguments behind an option that a guard has recognised, for an index such as `i + 1`; None where it is
+        another index, or no option is recognised by its first part."""
+        if index.kind != "join" or index.text not in ("", "+") or len(index.parts) != 2:
+            return None
+        counter, step = index.parts
+        wanted = self._find_flags(fn, guard, counter.text) if counter.kind == "name" and step.kind == "number" else None
+        if wanted is None or not is_number(step.text):
+            return None
+        places = [at + int(step.text) for at, argument in enumerate(arguments) if argument in wanted]
+        return [arguments[at] for at in places if at < len(arguments)]
+
+    def _find_flags(self, fn: Fn, guard: int, counter: str = "") -> frozenset[str] | None:
+        """The options of which one has been found in argv where a guard holds; None where that is not asked. counter:
+        of the place in argv, empty for any."""
+        for one in list_guards(fn, guard):
+            asked = [_match_flag(part.strip()) for part in _ALTERNATIVES.split(one.text)] if one.kind == "if" else []
+            known = [found for found in asked if found is not None and self._is_argument(found, fn)]
+            if known and len(known) == len(asked) and all(counter in ("", found["counter"]) for found in known):
+                return frozenset(found["flag"] for found in known)
+        return None
+
+    def _is_argument(self, found: re.Match[str], fn: Fn) -> bool:
+        """Whether what is compared with an option is an element of argv."""
+        return self.start(FlowExpr("name", found["list"]), fn) is not None
 
     # argparse
 
-    def list_parsed_texts(self, path: str, fn: Fn, arguments: Sequence[str] | None) -> Iterator[tuple[str, str]]:
-        """What `args.topic` is: texts with `given` for those of the command line, and `default`.
+    def list_parsed_texts(self, path: str, fn: Fn, arguments: Sequence[str] | None) -> Iterator[tuple[str | None, str]]:
+        """What `args.topic` is: texts with `given` for those of the command line, and `default`; None for what has no
+        text where it is not given.
 
         arguments: what is given to the program, None where that is not known. Nothing where it is none of argparse's.
         """
@@ -114,10 +151,20 @@ class CommandLine:
         head = get_outer(path)
         if not head or fn.source.facts.language != "python":
             return
-        for writer, each in self.code.list_writes(self.code.identify(head, fn)):
+        for value, writer in self._list_parsings(head, fn):
+            yield writer, get_outer(value.text)
+
+    def _list_parsings(self, path: str, fn: Fn) -> Iterator[tuple[FlowExpr, Fn]]:
+        """The calls of `parse_args()` whose result a variable keeps, also through a function that returns it."""
+        for writer, each in self.code.list_writes(self.code.identify(path, fn)):
             value = each.value.parts[0] if each.value.kind == "index" and each.value.parts else each.value
-            if value.kind == "call" and get_tail(value.text) in ("parse_args", "parse_known_args"):
-                yield writer, get_outer(value.text)
+            if value.kind != "call":
+                continue
+            targets = self.code.list_targets(value.text, writer)
+            returned = [(a.value, target) for target in targets for a in target.facts.assignments if not a.target]
+            for call, place in returned or [(value, writer)]:
+                if call.kind == "call" and get_tail(call.text) in ("parse_args", "parse_known_args"):
+                    yield call, place
 
     def _list_options(self, parser: str, fn: Fn) -> Iterator[tuple[tuple[str, ...], dict[str, object]]]:
         """What `parser.add_argument()` is told, as far as it is literal."""
@@ -132,6 +179,21 @@ class CommandLine:
             keywords = (a for a in call.arguments if a.kind == "keyword" and a.parts and a.text in kept)
             values = {keyword.text: _evaluate_literal(keyword.parts[0]) for keyword in keywords}
             yield names, {key: value for key, value in values.items() if value is not None}
+
+
+def list_guards(fn: Fn, guard: int) -> Iterator[Guard]:
+    """A guard of a function, by its place, and those around it."""
+    for _ in range(64):
+        if not 0 <= guard < len(fn.facts.guards):
+            return
+        yield fn.facts.guards[guard]
+        guard = fn.facts.guards[guard].outer
+
+
+def _match_flag(text: str) -> re.Match[str] | None:
+    """A comparison of an element with an option, by its parts; None for what is none."""
+    found = _NOT_DIFFERENT.match(text)
+    return _EQUAL.match(text) if found is None else found if (found["not"] is None) == bool(found["zero"]) else None
 
 
 def _evaluate_literal(value: FlowExpr) -> object:
@@ -150,19 +212,20 @@ def _evaluate_literal(value: FlowExpr) -> object:
     return None
 
 
-def _read(options, name: str, arguments: Sequence[str] | None) -> tuple[str, str] | None:
+def _read(options, name: str, arguments: Sequence[str] | None) -> tuple[str | None, str] | None:
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     for names, keywords in options:
         # What cannot be built of literals is left out.
         with contextlib.suppress(Exception):
             parser.add_argument(*names, **keywords)
-    default = next((action.default for action in parser._actions if action.dest == name), None)
+    known = [action.default for action in parser._actions if action.dest == name]
+    default = known[0] if known else None
     if arguments is not None:
         with contextlib.redirect_stderr(io.StringIO()), contextlib.suppress(SystemExit, Exception):
             value = getattr(parser.parse_known_args(list(arguments))[0], name, None)
             if isinstance(value, str):
                 return value, "default" if value == default and value not in arguments else "given"
-    return (default, "default") if isinstance(default, str) else None
+    return (default, "default") if isinstance(default, str) or (known and default is None) else None
 
 
 def _holds(text: str, number: int) -> bool | None:

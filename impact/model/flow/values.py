@@ -48,6 +48,9 @@ _NODE_NAME = frozenset(("get_name", "getName", "get_fully_qualified_name"))
 _NODE_NAMESPACE = frozenset(("get_namespace", "getNamespace"))
 
 
+_NOT_GIVEN = FlowValue(None, "given", "an argument of the command line that is not given")
+
+
 class FlowValues:
     """Evaluates expressions in the functions of a body of code."""
 
@@ -146,6 +149,8 @@ class FlowValues:
             yield from self._evaluate_name(value.text, fn, line, seen)
         elif kind == "join":
             yield from self._evaluate_join(value, fn, line, seen)
+        elif kind == "choice" and len(value.parts) == 3 and _is_fallback(value):
+            yield from self._evaluate_fallback(value, fn, line, seen)
         elif kind == "choice" and len(value.parts) == 3:
             parts = (_mark_unknown(self._evaluate(part, fn, line, seen)) for part in value.parts[1:])
             yield from _restore_alone([one for part in parts for one in part])
@@ -160,6 +165,17 @@ class FlowValues:
         else:
             what = value.text or kind
             yield FlowValue(None, "unresolved", f"`{what[:60]}` is not followed")
+
+    def _evaluate_fallback(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """`a or b`: b is there where a may be empty, as a default where it is not known to be."""
+        found = list(self._evaluate(value.parts[1], fn, line, seen))
+        yield from (one for one in found if one.text != "")
+        empty = [one for one in found if not one.text]
+        if found and not empty:
+            return
+        sure = all(one == _NOT_GIVEN or (one.text == "" and one.how != "default") for one in empty)
+        for one in self._evaluate(value.parts[2], fn, line, seen):
+            yield one if sure or one.how not in ("literal", "given") else one._replace(how="default")
 
     def _evaluate_join(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
@@ -177,6 +193,8 @@ class FlowValues:
         if places is not None:
             if self.arguments is None:
                 yield FlowValue(None, "given", "an argument of the command line")
+            elif (following := self._list_following(index, fn, line)) is not None:
+                yield from (FlowValue(argument, "given") for argument in following)
             else:
                 given = self.arguments[max(places.start, 1) - 1 : places.stop - 1]
                 if len(given) == 1 or places.stop - places.start == 1 or self._runs_over_all(fn, line):
@@ -187,6 +205,9 @@ class FlowValues:
             yield from self._evaluate(container.parts[0], fn, line, seen)
         else:
             yield from self._evaluate_elements(container, fn, line, seen)
+
+    def _list_following(self, index: FlowExpr, fn: Fn, line: int) -> list[str] | None:
+        return self.command_line.list_following(index, fn, _find_guard(fn, line), self.arguments or ())
 
     def list_rows(self, value: FlowExpr, fn: Fn, depth: int = 0) -> list[FlowExpr]:
         """The lists that a list of lists holds where it is written; empty where it is none, or not written once."""
@@ -230,7 +251,9 @@ class FlowValues:
         if variable in seen:
             return
         for text, how in self.command_line.list_parsed_texts(path, fn, self.arguments) if "." in path else ():
-            yield FlowValue(text, "given" if how == "given" else "default")
+            unknown = FlowValue(None, "given", f"`{path}` is an argument of the command line")
+            lacking = unknown if self.arguments is None else _NOT_GIVEN
+            yield lacking if text is None else FlowValue(text, "given" if how == "given" else "default")
             return
         # What other objects have is not written in turn here.
         at = 0 if "." in path.removeprefix("this.") else line
@@ -256,7 +279,10 @@ class FlowValues:
     ) -> Iterator[FlowValue]:
         """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed. origins:
         of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any."""
-        rows = [row for row in self.code.list_writes(variable) if self._may_write(row[1], row[0], origins)]
+        written = self.code.list_writes(variable)
+        if origins is not None:
+            written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
+        rows, given = self._select_given(written)
         own = [each for writer, each in rows if writer is fn and line]
         around = list_guards_around(fn, _find_guard(fn, line)) if line else []
         found = ReachingValues(fn, around, lambda path: self.code.identify(path, fn) == variable)
@@ -266,7 +292,7 @@ class FlowValues:
         begun = max((each.line for each in sure), default=0)
         filled = self._list_filled(variable, seen, origins)
         # In Python that is an assignment too.
-        if not begun and (not rows or fn.source.facts.language == "cpp"):
+        if not begun and not given and (not rows or fn.source.facts.language == "cpp"):
             found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
@@ -335,12 +361,14 @@ class FlowValues:
             or (target := self.calls.find_argument(use, use.row.variable)) is None
             or self.origins.may_be_of(target.text, use.fn, origins)
         ]
-
-    def _may_write(self, each: Assignment, writer: Fn, origins: Origins | None) -> bool:
-        """Whether an assignment may be made to the objects asked for, with the arguments that are given."""
-        if origins is not None and not self.origins.may_be_of(each.target, writer, origins):
-            return False
-        return self.arguments is None or not self.command_line.excludes(writer, each.guard, len(self.arguments) + 1)
+    def _select_given(self, rows: Sequence[tuple[Fn, Assignment]]) -> tuple[Sequence[tuple[Fn, Assignment]], bool]:
+        """Of assignments those that may be with the arguments of the command line; where an option that is given sets
+        the variable, that alone. And whether one does."""
+        if self.arguments is None:
+            return rows, False
+        may = [row for row in rows if not self.command_line.excludes(row[0], row[1].guard, self.arguments)]
+        given = [row for row in may if self.command_line.recognises(row[0], row[1].guard, self.arguments)]
+        return given or may, bool(given)
 
     def _evaluate_elsewhere(
         self, variable: Variable, writer: Fn, rows: list[Assignment],
@@ -667,6 +695,14 @@ def _take_first(values: Iterator[FlowValue]) -> list[FlowValue]:
 
 
 def _find_guard(fn: Fn, line: int) -> int:
-    """The place of the guard that what stands on a line of a function is under, -1 for none."""
-    rows = (*fn.facts.calls, *fn.facts.assignments)
-    return next((row.guard for row in rows if row.line == line), -1)
+    """The place of the innermost guard that calls and assignments on a line of a function are under, -1 for none."""
+    return max((one.guard for one in (*fn.facts.calls, *fn.facts.assignments) if one.line == line), default=-1)
+
+
+def _is_fallback(value: FlowExpr) -> bool:
+    """Whether a choice is one between what is asked and something else: `a or b`, `a if a else b`."""
+    asked, first = value.parts[0].text, value.parts[1]
+    written = f"self.{first.text[5:]}" if first.text.startswith("this.") else first.text
+    return (first.kind == "name" and asked == written) or (
+        first.kind == "call" and asked.startswith(f"{written}(") and asked.endswith(")")
+    )

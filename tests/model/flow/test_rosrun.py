@@ -82,10 +82,10 @@ def ends(files, command, **more) -> set[tuple[str, str, str, str]]:
     return {(e.role, e.topic, e.type, e.how) for e in found.endpoints if not e.implied}
 
 
-def test_a_loop_over_all_arguments_has_each_and_options_are_not_told_apart():
+def test_a_loop_over_all_arguments_has_each_and_an_option_has_what_follows():
     found = ends({"p/several.cpp": SEVERAL}, ("p", "several", ("--out", "/a", "/b")))
     has = {(role, topic) for role, topic, _, _ in found}
-    assert has == {("publisher", ""), ("subscriber", "/a"), ("subscriber", "/b")}
+    assert has == {("publisher", "/a"), ("subscriber", "/a"), ("subscriber", "/b")}
 
 
 @pytest.mark.parametrize(
@@ -105,6 +105,100 @@ def test_arguments_of_argparse():
     }
     found = ends({"p/relay.py": ARGPARSE}, ("p", "relay.py", ("/in", "--output", "/out")))
     assert ("publisher", "/out", "std_msgs/String", "given") in found
+
+
+OPTIONS = {
+    "py": """
+        import sys, rospy
+        from std_msgs.msg import String
+        class Relay:
+            def __init__(self):
+                self.space = "/plain"
+                for i in range(0, len(sys.argv)):
+                    if sys.argv[i] == '-ns' or sys.argv[i] == '--namespace':
+                        if len(sys.argv) > i+1:
+                            self.space = sys.argv[i+1]
+                self.pub = rospy.Publisher(self.space + "/out", String, queue_size=1)
+        rospy.init_node("relay")
+        Relay()
+    """,
+    "cpp": """
+        int main(int argc, char** argv) {
+          ros::init(argc, argv, "relay");
+          std::string space = "/plain", other;
+          for (int i = 1; i < argc; i++) {
+            if (std::string(argv[i]) == "-ns") { space = argv[i + 1]; }
+            if (!strcmp(argv[i], "--namespace") || strcmp(argv[i], "--space") == 0) { space = argv[i + 1]; }
+            if (strcmp(argv[i], "-x")) { other = argv[i + 1]; }
+          }
+          ros::NodeHandle n;
+          ros::Publisher pub = n.advertise<std_msgs::String>(space + "/out", 1);
+        }
+    """,
+}
+
+
+@pytest.mark.parametrize("language", ["py", "cpp"])
+@pytest.mark.parametrize(
+    "arguments, expected",
+    [
+        (("-ns", "/room"), {("/room/out", "given")}),
+        (("-x", "1", "--namespace", "/room", "-y", "2"), {("/room/out", "given")}),
+        (("-x", "1", "-y", "2"), {("/plain/out", "literal")}),  # the words behind other options are not it
+        (("-x", "-ns"), {("", "unresolved")}),  # nothing is behind it
+        ((), {("/plain/out", "literal")}),
+    ],
+)
+def test_the_word_behind_an_option(language, arguments, expected):
+    program = "relay.py" if language == "py" else "relay"
+    found = ends({f"p/relay.{language}": OPTIONS[language]}, ("p", program, arguments))
+    assert {(topic, how) for role, topic, _, how in found if role == "publisher"} == expected
+
+
+PARSED = """
+        parser = argparse.ArgumentParser()
+        parser.add_argument("--space")
+        parser.add_argument("--other")
+        {} parser.parse_args({})
+"""
+
+
+@pytest.mark.parametrize("helped", [False, True])
+@pytest.mark.parametrize("kept", ["args.space or '/plain'", "args.space if args.space else '/plain'"])
+@pytest.mark.parametrize(
+    "arguments, expected",
+    [
+        (None, ("/plain/out", "default")),  # nobody is known to give it
+        ((), ("/plain/out", "literal")),
+        (("--space", "/room"), ("/room/out", "given")),
+        (("--other", "/room"), ("/plain/out", "literal")),
+    ],
+)
+def test_what_stands_in_for_an_argument_that_is_not_given(helped, kept, arguments, expected):
+    """helped: the arguments are parsed in a function of their own."""
+    parsed = PARSED.format("return" if helped else "args =", "args" if helped else "")
+    own, inside = (parsed, "        args = parse_args(rospy.myargv()[1:])") if helped else ("        pass", parsed)
+    code = f"""
+import argparse, rospy
+from std_msgs.msg import String
+def parse_args(args):
+{own}
+def main():
+{inside}
+        rospy.init_node("relay")
+        space = {kept}
+        rospy.Publisher(space + "/out", String, queue_size=1)
+        rospy.Publisher(args.other + "/out", String, queue_size=1)
+main()
+    """
+    files = {"p/relay.py": code}
+    if arguments is None:
+        found = {(e.topic, e.how) for e in joined(files, 1).build().endpoints if not e.implied}
+    else:
+        found = {(topic, how) for _, topic, _, how in ends(files, ("p", "relay.py", arguments))}
+    assert expected in found
+    other = ("/room/out", "given") if "--other" in (arguments or ()) else ("", "unresolved")
+    assert found == {expected, other}
 
 
 def test_arguments_without_those_of_ros():
