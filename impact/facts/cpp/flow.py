@@ -27,7 +27,7 @@ from .flow_grammar import (
     list_children,
 )
 from .flow_statements import STATEMENTS, STAYS, CppStatements
-from .flow_values import PASS, READ, flatten, strip_template
+from .flow_values import OPERATOR, PASS, READ, flatten, strip_template
 from .lexical import EXPORTING, find_at_line_starts, list_exports, scan
 from .names import join_scope
 from .parse import parse_source
@@ -366,7 +366,7 @@ class _File(CppStatements):
                     returns = self.spell_node(child).removeprefix("->").strip()
         else:
             said = self.spell_node(declarator)
-            if declarator.kind_id == KIND.operator_cast or "operator" in said:
+            if declarator.kind_id == KIND.operator_cast or OPERATOR.search(said):
                 said = said.partition("(")[0].strip()
             else:
                 said = strip_template(said)
@@ -376,7 +376,8 @@ class _File(CppStatements):
         if owner:
             belongs = owner
         else:
-            belongs = said.rpartition("::")[0] if "operator" not in said else said.partition("operator")[0].rstrip(":")
+            operator = OPERATOR.search(said)
+            belongs = said[: operator.start()].rstrip(":") if operator is not None else said.rpartition("::")[0]
             belongs = join_scope(name, belongs) if belongs else ""
             if belongs in self.namespaces:
                 belongs = ""

@@ -84,11 +84,15 @@ def flatten(text: str) -> str:
     return text.strip()
 
 
+OPERATOR = re.compile(r"\boperator\b")
+"""The word in the name of an operator, and in no other name."""
+
+
 def strip_template(name: str) -> str:
     """A name without its template arguments and without blanks."""
     if "<" not in name and " " not in name and "\n" not in name:
         return name
-    return " ".join(name.split()) if "operator" in name else strip_templates(name)
+    return " ".join(name.split()) if OPERATOR.search(name) else strip_templates(name)
 
 
 class FunctionReader:
