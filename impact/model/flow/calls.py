@@ -42,8 +42,8 @@ class Calls:
     def __init__(self, code: FlowCode, table: Frameworks):
         self.code, self.table = code, table
         self._kinds: dict[tuple[str, Cls | None], frozenset[str]] = {}
-        self._uses: dict[int, FrameworkCall | None] = {}
-        self._makers: dict[int, tuple[Fn | None, list[Fn]]] = {}
+        self._uses: dict[tuple[Fn, int], FrameworkCall | None] = {}
+        self._makers: dict[Cls, tuple[Fn | None, list[Fn]]] = {}
 
     @cached_property
     def uses(self) -> list[FrameworkCall]:
@@ -109,7 +109,8 @@ class Calls:
         rows = self.table.calls.get(get_tail(call.callee))
         if not rows:
             return None
-        key = id(call)
+        # Files that are alike have the same facts.
+        key = fn, id(call)
         if key not in self._uses:
             self._uses[key] = self._find_use(fn, call, rows)
         return self._uses[key]
@@ -273,12 +274,12 @@ class Calls:
         owner = self.code.find_owner(fn) if fn.source.facts.language == "cpp" and fn.facts.owner else None
         if owner is None:
             return
-        known = self._makers.get(id(owner.facts))
+        known = self._makers.get(owner)
         if known is None:
             functions = self.code.list_functions(owner)
             constructors = [one for one in functions if get_tail(one.name) == get_tail(owner.name)]
             # A class without a constructor of its own has them made by whatever makes it.
-            known = self._makers[id(owner.facts)] = next(iter(constructors or functions), None), constructors
+            known = self._makers[owner] = next(iter(constructors or functions), None), constructors
         maker, constructors = known
         if maker is not fn:
             return

@@ -190,3 +190,36 @@ def test_a_source_that_is_included_has_its_classes_for_others():
     assert ends(join.build(), "publisher") == {
         ("p/main", "/said", "std_msgs/String"), ("p/other", "/other", "std_msgs/String"),
     }  # fmt: skip
+
+
+IN_CPP = """
+    class Lamp : public rclcpp::Node {
+     public:
+      Lamp() : Node("lamp") { pub_ = create_publisher<std_msgs::msg::Bool>("lit", 1); }
+      rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr pub_;
+      tf2_ros::TransformBroadcaster frames_ = tf2_ros::TransformBroadcaster(*this);
+    };
+    int main(int c, char ** v) { rclcpp::init(c, v); rclcpp::spin(std::make_shared<Lamp>()); }
+"""
+IN_PYTHON = """
+    import rospy
+    from std_msgs.msg import Bool
+    rospy.init_node("lamp")
+    pub = rospy.Publisher("lit", Bool, queue_size=1)
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(("name", "text", "build"), [
+    ("lamp.cpp", IN_CPP, "add_executable(run_{0} lamp.cpp)"),
+    ("lamp.py", IN_PYTHON, "catkin_install_python(PROGRAMS lamp.py DESTINATION bin)"),
+])  # fmt: skip
+def test_files_that_are_byte_for_byte_the_same_are_programs_each(tmp_path, name, text, build):
+    files = {f"{package}/{name}": text for package in ("desk", "hall")}
+    for package in ("desk", "hall"):
+        files[f"{package}/package.xml"] = manifest(package, "catkin" if name.endswith("py") else "ament_cmake")
+        files[f"{package}/CMakeLists.txt"] = f"project({package})\n{build.format(package)}\n"
+    found = graph_on_disk(tmp_path, files)
+    assert len(found.nodes) == 2
+    for topic in ("/lit", "/tf") if name.endswith("cpp") else ("/lit",):
+        assert sorted(one.path for one in found.endpoints if one.topic == topic) == [f"desk/{name}", f"hall/{name}"]
