@@ -47,7 +47,7 @@ class NodeObjects:
         by_class = group_pairs((owner.key, use) for use in named if (owner := self._find_named_class(use)))
         found: list[NodeObject] = []
         for cls in self._list_classes(by_class, functions):
-            found += self._make_of_class(cls, by_class, functions)
+            found += self._make_class_objects(cls, by_class, functions)
         for use in named:
             if self._find_named_class(use) is None:
                 own = self._evaluate_name(use, self.values) or f"<{get_tail(use.call.target) or 'node'}>"
@@ -114,7 +114,7 @@ class NodeObjects:
         bases = ((base, one) for one in self.code.list_bases(cls) for base in one.facts.bases)
         return any(self.code.find_class(base, one.source, one.name) is None for base, one in bases)
 
-    def _make_of_class(
+    def _make_class_objects(
         self, cls: Cls, by_class: dict[str, list[FrameworkCall]], functions: Collection[Fn]
     ) -> Iterator[NodeObject]:
         """The nodes of a class: those that it gives different names, as far as these are known."""
