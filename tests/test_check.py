@@ -176,3 +176,29 @@ def test_a_folder_that_another_repository_fills_is_not_missing(tmp_path, submodu
     )
     findings = check_workspace(tmp_path, targets=["noetic"], select=["nonexistent-export"])
     assert [finding.subject for finding in findings] == missing
+
+
+@pytest.mark.parametrize(
+    ("header", "unresolved"),
+    [
+        ("rclcpp/rclcpp.hpp", 0),
+        ("rclcpp/version.h", 0),
+        ("std_msgs/msg/string.hpp", 0),
+        ("rclcpp/node_interfaces/no_such_traits.hpp", 1),  # the build makes others of them
+        ("std_msgs/msg/detail/string__struct.hpp", 1),
+    ],
+)
+def test_headers_that_may_be_there_are_counted(tmp_path, header, unresolved):
+    (tmp_path / "package.xml").write_text(
+        '<package format="3"><name>sled</name><version>1.0.0</version><description>sled</description>'
+        '<maintainer email="robots@example.org">Robots</maintainer><license>MIT</license>'
+        "<buildtool_depend>ament_cmake</buildtool_depend><depend>rclcpp</depend><depend>std_msgs</depend>"
+        "<export><build_type>ament_cmake</build_type></export></package>"
+    )
+    (tmp_path / "CMakeLists.txt").write_text("project(sled)\nfind_package(rclcpp)\nadd_library(sled sled.cpp)\n")
+    (tmp_path / "sled.cpp").write_text(f"#include <{header}>\n")
+    with open_workspace(tmp_path, Options(targets=("jazzy",))) as opened:
+        (view,) = opened.views
+        for package in view:
+            view.list_needs(package)
+    assert sum(one.kind == "include" for one in view.unresolved) == unresolved

@@ -35,6 +35,7 @@ from .evidence_record import Evidence
 from .providers.libraries import load_libraries
 from .providers.library import find_gone_component, knows_components
 from .providers.providers import Providers, load_providers
+from .providers.version_macros import make_version_test
 from .surface.changes import PARAMETER
 from .surface.fields import covers, load_fields, was_there_before
 from .surface.offers import Offered, Offers, PackageOffer
@@ -292,6 +293,8 @@ class Availabilities:
         if version is None:
             return Availability(symbol, "unknown", package)
         found = self._find_header_in(symbol, package, version)
+        if found.state == "unknown" and self._generates(package, version, symbol.name):
+            return Availability(symbol, "present", package, version)
         offer = self.offers.find_package(package)
         if offer is None or not (found.is_missing or found.state == "unknown"):
             return found
@@ -321,6 +324,16 @@ class Availabilities:
         evidence = Evidence(package, "removed" if early else "added", symbol.name, side="header", header=symbol.name)
         return Availability(symbol, "removed" if early else "not yet", package, version, evidence=evidence)
 
+    def _generates(self, package: str, version: str, path: str) -> bool:
+        """Whether a header is one that a version of a package is known to make: from an interface, or of its macros."""
+        macros = make_version_test(package, False, version, ros=self.target.ros, oldest=version)
+        if macros is not None and macros.header.strip("<>") == path:
+            return True
+        history = load_fields().find_history(package, self.target.ros)
+        stem = path.partition("/")[2].rpartition(".")[0]
+        name = history.by_header.get(stem) if history is not None else None
+        return name is not None and self._find_interface(Symbol("interface", name, (package,))).state == "present"
+
     def _find_never_installed(self, symbol: Symbol, offer: PackageOffer) -> Availability:
         """How the target stands to a header that no read version of a package has. Where its own was not read as a
         whole the answer is unknown, and names what is called alike; that is sure where a release between was not read
@@ -329,7 +342,9 @@ class Availabilities:
         unknown = Availability(symbol, "unknown", package, offer.version)
         if build.build_type not in _INSTALLING or not build.headers or offer.stored in offer.line.approximate:
             return unknown
-        if offer.get("header", path) is not None or _OF_GENERATOR.match(path):
+        if offer.get("header", path) is not None or _WRITTEN.search(path):
+            return unknown
+        if _OF_INTERFACES[self.target.ros].match(path):
             return unknown
         hidden = any(part == "headers" for part, _ in build.unknown)
         read = offer.exact or self.providers.has_header(package, path, self.target.distro, offer.version) is not None
@@ -544,8 +559,11 @@ def _is_misspelling(name: str, alike: str) -> bool:
     return head == other_head and difflib.SequenceMatcher(None, tail, other).ratio() >= _MISSPELT
 
 
-# Headers that generators of rosidl write beside those which users include: parts of them, and of the middleware.
-_OF_GENERATOR = re.compile(r"\w+/(?:msg|srv|action)/(?:.+/|.*__)")
+# Headers that commands of CMake write and install, without a trace in what is read of a build.
+_WRITTEN = re.compile(r"[/_](?:version|config|export|visibility|visibility_control|parameters)\.h(?:pp)?\Z")
+# Headers that are generated from interfaces, by generation of ROS: the table of interfaces tells of these, since their
+# definitions may lie in another package.
+_OF_INTERFACES = {1: re.compile(r"\w+/[A-Z]\w*\.h\Z"), 2: re.compile(r"\w+/(?:msg|srv|action)/")}
 
 
 def _split(name: str) -> tuple[str, str]:

@@ -22,6 +22,17 @@ TF2, CONTROL = ("tf2_geometry_msgs",), ("controller_manager",)
         ("jazzy", Symbol("header", "rclcpp/logging.hpp", ("rclcpp",)), "present", "", ""),
         ("humble", Symbol("header", "message_filters/connection.hpp", ("message_filters",)), "present", "", ""),
         ("jazzy", Symbol("header", "cv_bridge/no_such.hpp", ("cv_bridge",)), "not yet", "", ""),
+        ("jazzy", Symbol("header", "rclcpp/version.h", ("rclcpp",)), "present", "", ""),
+        ("jazzy", Symbol("header", "nav2_msgs/action/navigate_to_pose.hpp", ("nav2_msgs",)), "present", "", ""),
+        # No version has a header that the version here surely lacks; of others more is made, or was not read.
+        ("jazzy", Symbol("header", "hardware_interface/sytem_interface.hpp", ("hardware_interface",)),
+         "not yet", "", ""),
+        ("jazzy", Symbol("header", "rclcpp/node_interfaces/node_base_interface_traits.hpp", ("rclcpp",)),
+         "unknown", "", ""),
+        ("jazzy", Symbol("header", "rviz_common/version.h", ("rviz_common",)), "unknown", "", ""),
+        # Made from an interface whose definition lies in another package.
+        ("jazzy", Symbol("header", "test_msgs/action/fibonacci.hpp", ("test_msgs",)), "present", "", ""),
+        ("jazzy", Symbol("header", "test_msgs/action/no_such.hpp", ("test_msgs",)), "unknown", "", ""),
         ("jazzy", Symbol("header", "octomap_msgs/conversions.h", ("octomap_msgs",)), "unknown", "", ""),
         # A macro of the package writes its configuration since 0.2.15, so that no command is seen.
         ("noetic", Symbol("command", "target_cxx_version", ("ros_industrial_cmake_boilerplate",)), "unknown", "", ""),

@@ -21,9 +21,11 @@ from ..condition import Condition
 from ..place import Problem, Reference
 from .tree_nodes import RegisteredNode, list_tree_nodes
 
+_SLASHES = re.compile("/+")
+
 
 class Include(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """An #include. path as written between the delimiters; angled True for <...>."""
+    """An #include. path as written between the delimiters, but with one slash for several; angled True for <...>."""
 
     path: str
     angled: bool
@@ -740,7 +742,8 @@ def collect_includes(scanned: Scan) -> tuple[Include, ...]:
     includes: list[Include] = []
     for offset, angled, path in scanned.found:
         line, column = scanned.locate(offset)
-        includes.append(Include(sys.intern(path.strip()), angled, line, column - 1, scanned.find_segment(offset)[2]))
+        path = _SLASHES.sub("/", path.strip())
+        includes.append(Include(sys.intern(path), angled, line, column - 1, scanned.find_segment(offset)[2]))
     return tuple(includes)
 
 

@@ -19,7 +19,7 @@ TEXTS = {
     "folder": Text("no header `{subject}` is generated: `{folder}` holds them", "include `{replacement}`"),
     "moved": Text("`{upstream}` generates no `{subject}`", "include `{replacement}`"),
     "never generated": Text(
-        "no released version of {upstream} has an interface for `{subject}`", "[[did you mean `{replacement}`?]]"
+        "no known version of {upstream} has an interface for `{subject}`", "[[did you mean `{replacement}`?]]"
     ),
     "c": Text("`{subject}` is the generated header for C; C++ code needs the `.hpp`", "include `{replacement}`"),
 }

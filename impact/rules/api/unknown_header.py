@@ -60,9 +60,11 @@ def unknown_header(view: TargetView, package: Package):
             if (meant := find_standard_header(view, path)) is not None:
                 yield Diagnostic(at, path, package.name, {"replacement": meant}, "standard", doubts)
             elif (never := find_never_installed(view, package, include)) is not None:
-                data = {"package": never.package, "replacement": never.alike}
-                kind, data = ("", None) if never.form == "never" else ("misspelt", data)
-                yield diagnose(never, at, path, package.name, doubts, kind=kind, data=data)
+                if never.form == "never":
+                    yield diagnose(never, at, path, package.name, doubts)
+                else:
+                    data = {"package": never.package, "replacement": never.alike}
+                    yield diagnose(never, at, path, package.name, doubts, kind="misspelt", data={**data})
             elif is_nowhere(view, package, include) and headers.find_loss(package, include) is None:
                 yield Diagnostic(at, path, package.name, {}, "nowhere", doubts)
             continue

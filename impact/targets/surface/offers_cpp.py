@@ -45,13 +45,13 @@ def check_use(
     """How the target stands to a use of a package's name, where it does not serve it; None where it does, or where that
     cannot be known. The use is described as in model.package.CppApiUse."""
     found = _check_use(offers, package, name, how, arguments, given, templated)
-    if found is None or not found.replacement or _replaces(offers, found, arguments if how == "call" else -1):
+    if found is None or not found.replacement or _can_replace(offers, found, arguments if how == "call" else -1):
         return found
     evidence = found.evidence._replace(instead="") if found.evidence is not None else None
     return found._replace(replacement="", evidence=evidence)
 
 
-def _replaces(offers: Offers, found: Availability, arguments: int) -> bool:
+def _can_replace(offers: Offers, found: Availability, arguments: int) -> bool:
     """Whether the target has what stands for a name, and as a function takes so many arguments; -1 for any."""
     new = found.replacement
     owners = (found.package, *offers.surfaces.list_other_packages(new))

@@ -27,7 +27,7 @@ def qualified(text):
         ("#include_next <math.h>", [("math.h",)]),
         ("#include \\\n <a.h>", [("a.h",)]),
         ("#include /* odd */ <a.h>", [("a.h",)]),
-        ("#include <a//b.h>", [("a//b.h",)]),
+        ("#include <a//b.h>", [("a/b.h",)]),
         ("// #include <a>\n/* #include <b>\n#include <c> */\n#include <d>", [("d",)]),
         ('const char* s = "\\n#include <a>";', []),
         ('auto s = R"x(\n#include <a>\n)x";\n#include <b>', [("b",)]),
