@@ -196,7 +196,7 @@ def save(figure: Figure, folder: Path, name: str) -> tuple[Path, Path]:
 
 
 def write_palette_png(picture: IO[bytes], file: IO[bytes]) -> None:
-    """Writes a PNG with a palette of 256 colours, which takes a third of the bytes that matplotlib's true colour does."""
+    """Writes a PNG with a palette of 256 colours, in a third of the bytes of matplotlib's true colour."""
     from PIL import Image, PngImagePlugin
 
     information = PngImagePlugin.PngInfo()

@@ -893,7 +893,7 @@ class Interpreter:
         return None
 
     def define_all(self, body: list[CommandCall | Block]) -> None:
-        """Learns the functions and macros of a body without running it, and which targets it may make when it is run."""
+        """Learns the functions and macros of a body, and which targets it may make, without running it."""
         pending = list(body)
         while pending:
             node = pending.pop()

@@ -98,7 +98,7 @@ class CommandLine:
         wanted = self._find_flags(fn, guard)
         return wanted is not None and wanted.isdisjoint(arguments)
 
-    def recognises(self, fn: Fn, guard: int, arguments: Sequence[str]) -> bool:
+    def is_option_given(self, fn: Fn, guard: int, arguments: Sequence[str]) -> bool:
         """Whether a guard holds because an option is among the arguments: `if argv[i] == "-x"`."""
         wanted = self._find_flags(fn, guard)
         return wanted is not None and not wanted.isdisjoint(arguments)

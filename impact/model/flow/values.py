@@ -367,7 +367,7 @@ class FlowValues:
         if self.arguments is None:
             return rows, False
         may = [row for row in rows if not self.command_line.excludes(row[0], row[1].guard, self.arguments)]
-        given = [row for row in may if self.command_line.recognises(row[0], row[1].guard, self.arguments)]
+        given = [row for row in may if self.command_line.is_option_given(row[0], row[1].guard, self.arguments)]
         return given or may, bool(given)
 
     def _evaluate_elsewhere(
