@@ -13,7 +13,7 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...facts.flow import FlowExpr, FlowFile, Guard
+from ...facts.flow import FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
@@ -45,11 +45,9 @@ from .objects import NodeObjects
 from .qos import apply_overrides, find_qos, list_overridable
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
-from .values import FlowValue, FlowValues
+from .values import FlowValue, FlowValues, spell_condition
 
 _OVERRIDES = re.compile(r"qos_overrides\.").match
-_FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
-_TRUTH = {"true": True, "True": True, "1": True, "false": False, "False": False, "0": False}
 _MOST_WAYS = 16
 _DEEPEST = 10
 _TRIGGERS = {
@@ -415,6 +413,8 @@ class Join:
                 lost = Unresolved(*lacking, *_get_place(site.use), site.written) if lacking else None
                 count.call(lost, (site,))
             for owner in those:
+                if self._is_left_out(site.use, owner):
+                    continue
                 owners.use(owner)
                 here = self._adapt_site(site, owner)
                 for value in here.names:
@@ -447,6 +447,8 @@ class Join:
     def _list_timers(self, owners: _Owners) -> Iterator[Timer]:
         for timer in self.sites.timers:
             for owner in owners.list_owners(timer.use):
+                if self._is_left_out(timer.use, owner):
+                    continue
                 node = _get_node(owner)
                 yield Timer(
                     node.id if node else "", timer.period, _make_callback(timer.callbacks), *_get_place(timer.use)
@@ -520,9 +522,9 @@ class Join:
         if qos is not None and topic and isinstance(owner, Running) and use.row.qos:
             policies = list_overridable(use) if any(map(_OVERRIDES, owner.values.settings)) else ()
             qos = apply_overrides(qos, topic, site.role, policies, owner.values.settings) if policies else qos
-        only_if = "" if site.implied else self._describe_condition(use, owner)
-        if value.how == "partly":
-            only_if = " && ".join(filter(None, (only_if, "the name is not replaced")))
+        replaced = "the name is not replaced" if value.how == "partly" else ""
+        conditions = ("" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
+        only_if = " && ".join(dict.fromkeys(filter(None, conditions)))
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
@@ -535,20 +537,23 @@ class Join:
         if isinstance(owner, Running) and (use.fn not in owner.functions or not self.code.may_be_called(use.fn)):
             return f"something calls `{use.fn.name or 'it'}`"
         texts = [guard.text for guard in self.list_guards(use.fn, use.call.guard) if guard.kind == "cpp"]
-        return " && ".join((*texts, *self._list_flags(use, owner)))
+        return " && ".join((*texts, *self._list_closed(use, owner)))
 
-    def _list_flags(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
-        """The flags around a call that are known to be down in a node, as a condition of it."""
-        for guard in self.list_guards(use.fn, use.call.guard):
-            found = _FLAG.fullmatch(guard.text) if guard.kind in ("if", "unless") else None
-            if found is None:
-                continue
-            path = found[2].replace("->", ".").replace("self.", "this.")
-            values = owner.values.run(owner.functions) if isinstance(owner, Running) else self.values
-            known = {_TRUTH.get(one.text or "") for one in values.list_values(FlowExpr("name", path), use.fn)}
-            wanted = (guard.kind == "if") != bool(found[1])
-            if known == {not wanted}:
-                yield path if wanted else f"!{path}"
+    def _list_closed(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
+        """The conditions around a call that do not hold in a node as far as is known, or of which that is not known
+        though a launch gives what they ask for."""
+        values = owner.values.run(owner.functions) if isinstance(owner, Running) else self.values
+        for guard, decided in reversed(list(values.decide_guards(use.fn, use.call.guard))):
+            if decided.holds is False or (decided.holds is None and decided.is_given):
+                yield spell_condition(guard.kind, guard.text)
+
+    def _is_left_out(self, use: FrameworkCall, owner: Owner) -> bool:
+        """Whether a node does not come to a call, by what the launch gives that starts it."""
+        if not isinstance(owner, Running) or owner.instance is None or use.call.guard < 0:
+            return False
+        values = owner.values.run(owner.functions)
+        decisions = (decided for _, decided in values.decide_guards(use.fn, use.call.guard))
+        return any(decided.holds is False and decided.is_given for decided in decisions)
 
     def resolve_name(self, site: Site, value: FlowValue, owner: Owner) -> tuple[str, How, str]:
         """The full name that a site has in a node, how it is known, and why not."""
@@ -606,6 +611,8 @@ class Join:
         if not statement.sites:
             yield Publish(topic="", type=statement.type, reason=statement.reason, **common)
         for site in statement.sites:
+            if self._is_left_out(site.use, owner):
+                continue
             here = self._adapt_site(site, owner)
             for value in here.names:
                 topic, _, reason = self.resolve_name(here, value, owner)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
 
 from ....edges.groups import group_pairs
-from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter
+from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
+from .conditions import ConditionReader, DecidedCondition
 from .graph import How
 from .names import resolve_ros1_name
 from .origins import ObjectOrigins, Origins
@@ -41,6 +43,9 @@ _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "
                        "resolve_service_name", "resolve_topic_or_service_name"))  # fmt: skip
 # What is least certain of a text that is put together, first.
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
+# Kinds of guards that ask something, and conditions that are a variable alone.
+_ASKING = frozenset(("if", "unless", "case"))
+_FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
 _PUT = frozenset(("push_back", "emplace_back", "append"))
 # Functions that give a topic's type, and its name beside it.
 _TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
@@ -152,8 +157,7 @@ class FlowValues:
         elif kind == "choice" and len(value.parts) == 3 and _is_fallback(value):
             yield from self._evaluate_fallback(value, fn, line, seen)
         elif kind == "choice" and len(value.parts) == 3:
-            parts = (_mark_unknown(self._evaluate(part, fn, line, seen)) for part in value.parts[1:])
-            yield from _restore_alone([one for part in parts for one in part])
+            yield from self._evaluate_choice(value, fn, line, seen)
         elif kind == "call":
             yield from self._call(value, fn, line, seen)
         elif kind in ("make", "keyword", "list") and len(value.parts) == 1:
@@ -181,6 +185,40 @@ class FlowValues:
         pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
         for row in islice(product(*pieces), _MOST):
             yield _join(row)
+
+    def _evaluate_choice(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """What is chosen: one of two, where it is known which, else either."""
+        asked = value.parts[0]
+        text = asked.text if asked.kind in ("other", "name") else ""
+        found: list[FlowValue] = []
+        for part, kind in ((value.parts[1], "if"), (value.parts[2], "unless")):
+            guard = Guard(kind, text, line, _find_guard_before(fn, line))
+            decided = self._decide_guard(guard, fn, seen) if text else DecidedCondition()
+            if decided.holds is not False:
+                condition = "" if decided.holds or not text else spell_condition(kind, text)
+                values = list(self._evaluate(part, fn, line, seen))
+                found += _put_under(values if decided.holds else _mark_unknown(values), decided, condition)
+        yield from _restore_alone(found)
+
+    def decide_guards(self, fn: Fn, guard: int) -> Iterator[tuple[Guard, DecidedCondition]]:
+        """The guards of a function at the place of one of them, innermost first, with whether they hold."""
+        for place in list_guards_around(fn, guard):
+            yield fn.facts.guards[place], self._decide_guard(fn.facts.guards[place], fn, ())
+
+    def _decide_guard(self, guard: Guard, fn: Fn, seen: tuple) -> DecidedCondition:
+        # Who asks a variable for its value is not under the guard yet.
+        inner = (*seen, ("asks", fn, guard.line, guard.outer))
+
+        def list_known(value: FlowExpr) -> list[tuple[str, How]] | None:
+            found = [one for one in self._evaluate(value, fn, guard.line, inner) if not one.uncalled]
+            known: list[tuple[str, How]] = [
+                (one.text, one.how) for one in found if one.text is not None and "{" not in one.text
+            ]
+            return known if len(known) == len(found) and not any(one.only_if for one in found) else None
+
+        if not seen:
+            self._left = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
+        return ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
 
     @cached_property
     def command_line(self) -> CommandLine:
@@ -257,7 +295,7 @@ class FlowValues:
             return
         # What other objects have is not written in turn here.
         at = 0 if "." in path.removeprefix("this.") else line
-        found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at))
+        found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
         if found:
             yield from found
         else:
@@ -275,16 +313,18 @@ class FlowValues:
         return ObjectOrigins(self.code)
 
     def evaluate_variable(
-        self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None, line: int = 0
-    ) -> Iterator[FlowValue]:
+        self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None, line: int = 0,
+        filled_before: int = 0,
+    ) -> Iterator[FlowValue]:  # fmt: skip
         """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed. origins:
-        of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any."""
+        of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any. filled_before:
+        a line before which parameters are read into it, where these are read in turn."""
         written = self.code.list_writes(variable)
         if origins is not None:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
         rows, given = self._select_given(written)
         own = [each for writer, each in rows if writer is fn and line]
-        around = list_guards_around(fn, _find_guard(fn, line)) if line else []
+        around = list_guards_around(fn, _find_guard_of(fn, line, seen)) if line else []
         found = ReachingValues(fn, around, lambda path: self.code.identify(path, fn) == variable)
         # What stands before the last that is surely assigned is of no interest.
         early = [each for each in own if each.line < line and each.operator == "=" and found.is_sure(each.guard)]
@@ -294,7 +334,12 @@ class FlowValues:
         # In Python that is an assignment too.
         if not begun and not given and (not rows or fn.source.facts.language == "cpp"):
             found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
+        sure_filled = [use for use, values in filled if use.fn is fn and use.call.guard < 0 and _is_sure(values)]
+        remade = any(use.call.line < filled_before for use in sure_filled)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
+            # What an object is made with came before.
+            if remade and writer is not fn and self.code.is_constructor(writer):
+                continue
             found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
         here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
         for use, values in filled:
@@ -477,7 +522,8 @@ class FlowValues:
         if default is not None and (lacking or not given):
             yield from self._evaluate(default, fn, fn.facts.line, seen)
         elif not given:
-            yield FlowValue(None, "given", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
+            reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
+            yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn))
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
@@ -548,12 +594,28 @@ class FlowValues:
         for target in self.code.list_targets(callee, fn):
             if ("returns", target) in seen:
                 continue
+            inner = (*seen, ("returns", target))
+            # Through this call alone, where it is seen.
+            values = self.limit_to_calls({**self.way, target: near[0]} if near and arguments is not None else {})
+            values._left = self._left
             for each in target.facts.assignments:
                 if each.operator == "return":
                     returned = True
-                    yield from self._evaluate(each.value, target, each.line, (*seen, ("returns", target)))
+                    yield from values._evaluate_returned(each, target, inner)
+            self._left = values._left
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
+
+    def _evaluate_returned(self, each: Assignment, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
+        """What a function returns at one place, nothing where it does not come there."""
+        guards = [fn.facts.guards[place] for place in list_guards_around(fn, each.guard)]
+        asked = [(guard, self._decide_guard(guard, fn, seen)) for guard in guards if guard.kind in _ASKING]
+        if any(decided.holds is False for _, decided in asked):
+            return
+        unknown = [spell_condition(guard.kind, guard.text) for guard, decided in asked if decided.holds is None]
+        hows: frozenset[How] = frozenset(how for _, decided in asked for how in decided.hows)
+        found = self._evaluate(each.value, fn, each.line, seen)
+        yield from _put_under(found, DecidedCondition(None, hows), " && ".join(reversed(unknown)))
 
     def _make_setting_name(self, name: str, use: FrameworkCall) -> str:
         """The name of a parameter in the namespace of the node handle that it is asked of."""
@@ -594,7 +656,7 @@ class FlowValues:
         target = self.calls.find_argument(use, use.row.variable) if use.row.variable else None
         if default is not None and not (default.kind == "name" and default == target):
             for one in self._evaluate(default, use.fn, use.call.line, seen):
-                yield one if one.text is None else FlowValue(one.text, "default")
+                yield one if one.text is None else one._replace(how="default")
             return
         yielded = False
         mark = ("parameter", name)
@@ -653,10 +715,11 @@ def _join(row: tuple[FlowValue, ...]) -> FlowValue:
         return FlowValue(None, "unresolved", f"longer than {_LONGEST:,} characters")
     hows = {one.how for one in row}
     known: list[How] = [how for how in _LEAST if how in hows]
-    return FlowValue("".join(one.text or "" for one in row), known[0] if known else _LEAST[-1])
+    only_if = " && ".join(dict.fromkeys(one.only_if for one in row if one.only_if))
+    return FlowValue("".join(one.text or "" for one in row), known[0] if known else _LEAST[-1], only_if=only_if)
 
 
-def _mark_unknown(values: Iterator[FlowValue]) -> list[FlowValue]:
+def _mark_unknown(values: Iterable[FlowValue]) -> list[FlowValue]:
     """What is assigned, as what may hold in place of others where nothing of it is known."""
     found = list(values)
     return found if any(one.text is not None for one in found) else [one.mark() for one in found]
@@ -699,6 +762,19 @@ def _find_guard(fn: Fn, line: int) -> int:
     return max((one.guard for one in (*fn.facts.calls, *fn.facts.assignments) if one.line == line), default=-1)
 
 
+def _find_guard_of(fn: Fn, line: int, seen: tuple) -> int:
+    """The same for what is asked at a line; where a guard on the line asks, the guard around that one. seen: what is
+    being evaluated."""
+    asking = [one[3] for one in seen if one[0] == "asks" and one[1:3] == (fn, line)]
+    return asking[-1] if asking else _find_guard(fn, line)
+
+
+def _find_guard_before(fn: Fn, line: int) -> int:
+    """The place of the innermost guard around a line that begins before the line, -1 for none."""
+    around = list_guards_around(fn, _find_guard(fn, line))
+    return next((place for place in around if fn.facts.guards[place].line < line), -1)
+
+
 def _is_fallback(value: FlowExpr) -> bool:
     """Whether a choice is one between what is asked and something else: `a or b`, `a if a else b`."""
     asked, first = value.parts[0].text, value.parts[1]
@@ -706,3 +782,21 @@ def _is_fallback(value: FlowExpr) -> bool:
     return (first.kind == "name" and asked == written) or (
         first.kind == "call" and asked.startswith(f"{written}(") and asked.endswith(")")
     )
+
+
+def spell_condition(kind: str, text: str) -> str:
+    """The condition of a guard, as people read it."""
+    found = _FLAG.fullmatch(text)
+    if found is None:
+        return f"!({text})" if kind == "unless" else text
+    path = found[2].replace("->", ".").replace("self.", "this.")
+    return path if (kind == "unless") == bool(found[1]) else f"!{path}"
+
+
+def _put_under(values: Iterable[FlowValue], decided: DecidedCondition, condition: str) -> Iterator[FlowValue]:
+    """Values that hold under a condition that is decided by others: no more certain than these are."""
+    for one in values:
+        known: list[How] = [how for how in _LEAST if how in decided.hows or how == one.how]
+        how = known[0] if one.text is not None and known else one.how
+        both = " && ".join(dict.fromkeys(filter(None, (condition, one.only_if))))
+        yield one._replace(how=how, only_if=both if one.text is not None else "")
