@@ -32,6 +32,7 @@ _MOST_STEPS = 5_000
 # Of all values together; navigation2 takes 25,000. A value that comes after them is followed for a few steps only.
 _STEPS_IN_ALL, _STEPS_A_FUNCTION = 150_000, 100
 _FEW_STEPS = 50
+_STEPS_A_CONDITION = 500
 _LONGEST = 10_000
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
@@ -44,7 +45,7 @@ _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "
 # What is least certain of a text that is put together, first.
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
 # Kinds of guards that ask something, and conditions that are a variable alone.
-_ASKING = frozenset(("if", "unless", "case"))
+ASKING = frozenset(("if", "unless", "case"))
 _FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
 _PUT = frozenset(("push_back", "emplace_back", "append"))
 # Functions that give a topic's type, and its name beside it.
@@ -217,7 +218,7 @@ class FlowValues:
             return known if len(known) == len(found) and not any(one.only_if for one in found) else None
 
         if not seen:
-            self._left = _MOST_STEPS if self._budget[0] > 0 else _FEW_STEPS
+            self._left = _STEPS_A_CONDITION
         return ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
 
     @cached_property
@@ -609,7 +610,7 @@ class FlowValues:
     def _evaluate_returned(self, each: Assignment, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
         """What a function returns at one place, nothing where it does not come there."""
         guards = [fn.facts.guards[place] for place in list_guards_around(fn, each.guard)]
-        asked = [(guard, self._decide_guard(guard, fn, seen)) for guard in guards if guard.kind in _ASKING]
+        asked = [(guard, self._decide_guard(guard, fn, seen)) for guard in guards if guard.kind in ASKING]
         if any(decided.holds is False for _, decided in asked):
             return
         unknown = [spell_condition(guard.kind, guard.text) for guard, decided in asked if decided.holds is None]

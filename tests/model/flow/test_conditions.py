@@ -187,3 +187,145 @@ def test_a_value_that_may_be_changed_meanwhile_leaves_the_branch_open(tmp_path):
     files = {**WORKSPACE, "rig/src/rig.cpp": rig, "rig/config/rig.yaml": "rig:\n  ros__parameters: {kind: 2}\n"}
     found = graph_on_disk(tmp_path, files, "rig/launch/rig.launch.xml")
     assert {"/laser", "/sonar"} < {one.topic for one in found.endpoints}
+
+
+DRIVER = """
+    #include <rclcpp/rclcpp.hpp>
+    class Driver {
+     public:
+      explicit Driver(rclcpp::Node::SharedPtr node) : node_(node) {}
+      virtual void begin() = 0;
+      rclcpp::Node::SharedPtr node_;
+      rclcpp::Publisher<std_msgs::msg::Empty>::SharedPtr pub_;
+    };
+    class Laser : public Driver {
+     public:
+      explicit Laser(rclcpp::Node::SharedPtr node) : Driver(node) {}
+      void begin() override { pub_ = node_->create_publisher<std_msgs::msg::Empty>("laser", 1); }
+    };
+    class Sonar : public Driver {
+     public:
+      explicit Sonar(rclcpp::Node::SharedPtr node) : Driver(node) {}
+      void begin() override { pub_ = node_->create_publisher<std_msgs::msg::Empty>("sonar", 1); }
+    };
+    void listen(rclcpp::Node::SharedPtr node) { node->create_publisher<std_msgs::msg::Empty>("heard", 1); }
+    int main(int c, char ** v) {
+      rclcpp::init(c, v);
+      auto node = std::make_shared<rclcpp::Node>("rig");
+      std::string kind;
+      node->declare_parameter<std::string>("kind", "laser");
+      node->get_parameter("kind", kind);
+      bool hear = node->declare_parameter<bool>("hear", true);
+      std::shared_ptr<Driver> driver;
+      if (kind == "laser") {
+        driver = std::make_shared<Laser>(node);
+      } else if (kind == "sonar") {
+        driver = std::make_shared<Sonar>(node);
+      } else {
+        throw std::invalid_argument(kind);
+      }
+      driver->begin();
+      if (hear) {
+        listen(node);
+      }
+      rclcpp::spin(node);
+    }
+"""
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ("{other: 1}", {"/laser", "/sonar", "/heard"}),
+        ("{kind: laser}", {"/laser", "/heard"}),
+        ("{kind: sonar, hear: false}", {"/sonar"}),
+        ("{kind: camera}", set()),  # it stops
+    ],
+)
+def test_what_is_made_or_called_in_a_closed_branch_alone_is_not_there(tmp_path, settings, expected):
+    files = {**WORKSPACE, "rig/src/rig.cpp": DRIVER, "rig/config/rig.yaml": f"rig:\n  ros__parameters: {settings}\n"}
+    found = graph_on_disk(tmp_path, files, "rig/launch/rig.launch.xml")
+    assert {one.topic for one in found.endpoints if not one.implied} == expected
+
+
+NODES = """
+    #include <rclcpp/rclcpp.hpp>
+    class Laser : public rclcpp::Node {
+     public:
+      explicit Laser(const std::string & name) : Node(name) {
+        pub_ = create_publisher<std_msgs::msg::Empty>("~/laser", 1);
+      }
+      rclcpp::Publisher<std_msgs::msg::Empty>::SharedPtr pub_;
+    };
+    class Sonar : public rclcpp::Node {
+     public:
+      Sonar() : Node("sonar") { pub_ = create_publisher<std_msgs::msg::Empty>("~/sonar", 1); }
+      rclcpp::Publisher<std_msgs::msg::Empty>::SharedPtr pub_;
+    };
+    int main(int c, char ** v) {
+      rclcpp::init(c, v);
+      auto rig = std::make_shared<rclcpp::Node>("rig");
+      auto state = rig->create_publisher<std_msgs::msg::Empty>("~/state", 1);
+      int kind = rig->declare_parameter<int>("kind", 1);
+      if (kind == 1) {
+        rclcpp::spin(std::make_shared<Laser>("front"));
+      } else if (kind == 2) {
+        rclcpp::spin(std::make_shared<Laser>("back"));
+      } else if (kind == 3) {
+        rclcpp::spin(std::make_shared<Sonar>());
+      } else {
+        auto plain = std::make_shared<rclcpp::Node>("plain");
+        auto pub = plain->create_publisher<std_msgs::msg::Empty>("~/plain", 1);
+      }
+    }
+"""
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [
+        ("{other: 1}", {"/front/laser", "/back/laser", "/sonar/sonar", "/plain/plain"}),
+        ("{kind: 1}", {"/front/laser"}),
+        ("{kind: 2}", {"/back/laser"}),
+        ("{kind: 3}", {"/sonar/sonar"}),
+        ("{kind: 4}", {"/plain/plain"}),
+    ],
+)
+def test_of_the_nodes_of_a_program_those_are_there_that_it_makes(tmp_path, settings, expected):
+    files = {**WORKSPACE, "rig/src/rig.cpp": NODES, "rig/config/rig.yaml": f"/**:\n  ros__parameters: {settings}\n"}
+    files["rig/launch/rig.launch.xml"] = WORKSPACE["rig/launch/rig.launch.xml"].replace(' name="rig"', "")
+    found = graph_on_disk(tmp_path, files, "rig/launch/rig.launch.xml")
+    assert {one.topic for one in found.endpoints if not one.implied} == {"/rig/state", *expected}
+    assert {one.name for one in found.nodes} == {"/rig", *("/" + topic.split("/")[1] for topic in expected)}
+
+
+CONFIGURED = """
+    #include <rclcpp/rclcpp.hpp>
+    class Config : public rclcpp::Node {
+     public:
+      Config() : Node("config") { kind = declare_parameter<int>("kind", 1); }
+      int kind;
+    };
+    void listen(rclcpp::Node::SharedPtr any) { any->create_publisher<std_msgs::msg::Empty>("seen", 1); }
+    int main(int c, char ** v) {
+      rclcpp::init(c, v);
+      auto config = std::make_shared<Config>();
+      if (config->kind == 1) {
+        auto plain = std::make_shared<rclcpp::Node>("plain");
+        auto pub = plain->create_publisher<std_msgs::msg::Empty>("~/plain", 1);
+      }
+      listen(choose());
+    }
+"""
+
+
+@pytest.mark.parametrize(
+    ("settings", "expected"),
+    [("{kind: 1}", {("/plain", "/plain/plain"), ("/plain", "/seen")}), ("{kind: 2}", {("/config", "/seen")})],
+)
+def test_where_the_first_node_is_not_made_another_has_what_is_of_none(tmp_path, settings, expected):
+    files = {**WORKSPACE, "rig/src/rig.cpp": CONFIGURED}
+    files["rig/config/rig.yaml"] = f"/**:\n  ros__parameters: {settings}\n"
+    files["rig/launch/rig.launch.xml"] = WORKSPACE["rig/launch/rig.launch.xml"].replace(' name="rig"', "")
+    found = graph_on_disk(tmp_path, files, "rig/launch/rig.launch.xml")
+    assert {(one.node, one.topic) for one in found.endpoints if not one.implied} == expected
