@@ -29,14 +29,13 @@ _AS_PYTHON = {
 _BITS = frozenset("~&|^")
 _TRUTH = {"true": True, "True": True, "false": False, "False": False}
 _NOTHING = frozenset(("None", "nullptr", "NULL"))
-# Questions that strings answer, by the method's name.
+# Questions that strings answer, by the method's name; how long something is may be asked of a list.
 _ASKED: dict[str, Callable[..., Any]] = {
-    "empty": lambda text: not text, "size": len, "length": len, "front": lambda text: text[:1],
-    "back": lambda text: text[-1:], "at": lambda text, place: text[place], "startswith": str.startswith,
-    "starts_with": str.startswith, "endswith": str.endswith, "ends_with": str.endswith, "lower": str.lower,
-    "upper": str.upper,
+    "empty": lambda text: not text, "front": lambda text: text[:1], "back": lambda text: text[-1:],
+    "startswith": str.startswith, "starts_with": str.startswith, "endswith": str.endswith, "ends_with": str.endswith,
+    "lower": str.lower, "upper": str.upper, "strip": str.strip,
 }  # fmt: skip
-_CASTS = frozenset(("int", "float", "bool", "double"))
+_CASTS = frozenset(("int", "float", "bool", "double", "str"))
 _Known = list[tuple[Any, frozenset[How]]]
 
 
@@ -113,20 +112,22 @@ class ConditionReader:
         return None if not known else [(text, frozenset((how,))) for text, how in known[:_MOST_COMBINED]]
 
     def _evaluate_question(self, node: ast.expr) -> _Known | None:
-        """What a string says about itself: `text.empty()`, `len(text)`, `text[0]`."""
+        """What a string says about itself: `text.empty()`, `text.startswith("/")`, `text[0]`."""
         ask: Callable[..., Any] | None = None
         inner: ast.expr | None = None
         given: list[ast.expr] = []
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             ask, inner, given = _ASKED.get(node.func.attr), node.func.value, node.args
         elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and len(node.args) == 1:
-            ask = len if node.func.id == "len" else (lambda text: text) if node.func.id in _CASTS else None
+            ask = (lambda text: text) if node.func.id in _CASTS else None
             inner = node.args[0]
         elif isinstance(node, ast.Subscript):
             ask, inner, given = (lambda text, place: text[place]), node.value, [node.slice]
         arguments = [self._evaluate(one) for one in given] if ask is not None else []
         values = self._evaluate(inner) if ask is not None and inner is not None else None
         if ask is None or values is None or any(one is None or len(one) != 1 for one in arguments):
+            return None
+        if any(not isinstance(value, str) or value[:1] == "[" for value, _ in values):
             return None
         found: _Known = []
         for value, hows in values:
@@ -149,7 +150,7 @@ def _find_truth(value: Any, is_cpp: bool) -> bool | None:
         return bool(value)
     number = _find_number(value)
     if value in _TRUTH or value in _NOTHING:
-        return _TRUTH.get(value, False)
+        return _TRUTH.get(value)
     return bool(number) if number is not None else None if is_cpp else bool(value)
 
 
@@ -163,8 +164,7 @@ def _compare(left: Any, right: Any, compare: Callable[[Any, Any], Any]) -> bool 
         if isinstance(other, bool):
             one = _TRUTH.get(one)
         elif other is None:
-            one = None if one in _NOTHING else one
-            return bool(compare(one, None)) if compare in _EQUALITY else None
+            return None  # what is nothing at first is made meanwhile
         elif isinstance(other, (int, float)):
             one = _find_number(one)
         elif _find_number(one) is not None and _find_number(other) is not None:

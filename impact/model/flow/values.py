@@ -15,7 +15,7 @@ from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
 from .conditions import ConditionReader, DecidedCondition
 from .graph import How
-from .names import resolve_ros1_name
+from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues, list_guards_around
 from .types import split_name
@@ -213,7 +213,9 @@ class FlowValues:
         def list_known(value: FlowExpr) -> list[tuple[str, How]] | None:
             found = [one for one in self._evaluate(value, fn, guard.line, inner) if not one.uncalled]
             known: list[tuple[str, How]] = [
-                (one.text, one.how) for one in found if one.text is not None and "{" not in one.text
+                (one.text, one.how)
+                for one in found
+                if one.text is not None and "{" not in one.text and not is_open(one.text)
             ]
             return known if len(known) == len(found) and not any(one.only_if for one in found) else None
 
@@ -590,6 +592,9 @@ class FlowValues:
             use = self.calls.find_use(fn, call)
             if use is not None and use.row.does == "parameter":
                 yield from self._evaluate_parameter(use, seen)
+                return
+            if arguments is None and get_tail(callee) in _OF_FIRST and call.arguments and call.line == line:
+                yield from self._evaluate(call.arguments[0], fn, line, seen)
                 return
         returned = False
         for target in self.code.list_targets(callee, fn):

@@ -8,6 +8,7 @@ from rosimpact.impact.model.flow.conditions import ConditionReader
 KNOWN = {
     "mode": ["lidar"], "this.mode": ["lidar"], "count": ["2"], "kOne": ["1"], "on": ["true"], "off": ["False"],
     "none": [""], "either": ["1", "2"], "path": ["/a/"], "p.kind": ["3"], "n::kTwo": ["2"], "nothing": ["None"],
+    "points": ["[0.1, 0.2, 0.3, 0.4, 0.5, 0.6]"],
 }  # fmt: skip
 
 
@@ -31,12 +32,14 @@ KNOWN = {
         ("if", "unknown && off", False, None),
         ("if", "unknown || off", None, None),
         ("if", "!mode.empty() && mode.back() == 'r'", True, None),
-        ("if", "len(mode) == 5 and mode[0] == 'l'", True, True),
+        ("if", "mode[0] == 'l' and str(mode).strip()", None, True),
+        ("if", "points.size() == 6", None, None),
+        ("if", "len(points) == 6 or points[0] == '0'", None, None),
         ("if", "path.startswith('/') and not path.endswith('/')", False, False),
         ("if", "mode.lower() in ('camera', 'radar')", False, False),
         ("if", "none", None, False),  # C++ asks no string
         ("if", "mode", None, True),
-        ("if", "nothing is not None", None, False),
+        ("if", "nothing is not None", None, None),
         ("if", "this->mode == \"camera\"", False, None),
         ("if", "self.mode == 'camera'", False, False),
         ("if", "p->kind == 3", True, None),
@@ -114,6 +117,29 @@ def test_of_the_returns_of_a_helper_the_one_that_is_come_to_counts(name, default
     ends = {(one.topic, one.how, one.only_if) for one in found.endpoints if one.role == "publisher" and not one.implied}
     # Of another call of the same helper there is nothing in it.
     assert ends - {("/other/x", "literal", "")} == expected
+
+
+FALLBACK = """
+    import rclpy
+    from rclpy.node import Node
+    from std_msgs.msg import Empty
+
+    class Gate(Node):
+        def __init__(self):
+            super().__init__("gate")
+            topic = str(self.declare_parameter("topic", "{default}").value).strip() or "/open"
+            self.pub = self.create_publisher(Empty, topic, 1)
+
+    def main():
+        rclpy.spin(Gate())
+"""
+
+
+@pytest.mark.parametrize(("default", "expected"), [("", "/open"), ("shut", "/shut")])
+def test_of_what_is_given_and_what_stands_for_it_one_counts(default, expected):
+    found = graph({"p/gate.py": FALLBACK.format(default=default)})
+    ends = [(one.topic, one.how) for one in found.endpoints if one.role == "publisher" and not one.implied]
+    assert ends == [(expected, "default")]
 
 
 RIG = """
