@@ -321,7 +321,8 @@ class FlowValues:
     ) -> Iterator[FlowValue]:  # fmt: skip
         """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed. origins:
         of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any. filled_before:
-        a line before which parameters are read into it, where these are read in turn."""
+        the line at which it is asked for, also where assignments are not followed in turn: what a parameter was read
+        into before has no more of what its object was made with."""
         written = self.code.list_writes(variable)
         if origins is not None:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
@@ -330,7 +331,9 @@ class FlowValues:
         around = list_guards_around(fn, _find_guard_of(fn, line, seen)) if line else []
         found = ReachingValues(fn, around, lambda path: self.code.identify(path, fn) == variable)
         # What stands before the last that is surely assigned is of no interest.
-        early = [each for each in own if each.line < line and each.operator == "=" and found.is_sure(each.guard)]
+        turns = _list_turns(own, fn, line, around)
+        before = [each for each in own if each.line < line or each in turns or _is_declared_on(each, line)]
+        early = [each for each in before if each.operator == "=" and (found.is_sure(each.guard) or each in turns)]
         sure = [each for each in early if not _mentions(each.value, each.target)]
         begun = max((each.line for each in sure), default=0)
         filled = self._list_filled(variable, seen, origins)
@@ -340,7 +343,6 @@ class FlowValues:
         sure_filled = [use for use, values in filled if use.fn is fn and use.call.guard < 0 and _is_sure(values)]
         remade = any(use.call.line < filled_before for use in sure_filled)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
-            # What an object is made with came before.
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue
             found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
@@ -355,23 +357,28 @@ class FlowValues:
         steps: list[tuple[int, Assignment | FrameworkCall, list[FlowValue]]] = [
             (use.call.line, use, values) for use, values in here if use.call.line >= begun
         ]
-        steps += [(each.line, each, []) for each in own if begun <= each.line < line]
+        steps += [(each.line, each, []) for each in before if begun <= each.line]
         for _, step, values in sorted(steps, key=itemgetter(0)):
-            if isinstance(step, Assignment):
+            if isinstance(step, Assignment) and step in turns[1:]:
+                found.add(_mark_unknown(self._evaluate_written(step, fn, origins, seen)), step.guard)
+            elif isinstance(step, Assignment):
                 # What is made of the variable itself is made of what it was before.
                 itself = _mentions(step.value, step.target)
-                before = tuple(one for one in seen if one != variable) if itself else seen
-                self._follow(step, fn, found, origins, before)
+                inner = tuple(one for one in seen if one != variable) if itself else seen
+                self._follow(step, fn, found, origins, inner)
             elif _is_sure(values):
                 found.assign(values, step.call.guard, 2)
             else:
                 found.add(values, step.call.guard, 2)
         # In the next turn of a loop.
         loops = {guard for guard in around if fn.facts.guards[guard].kind in LOOPS}
-        last = [each for each in sure if each.line == begun]
-        again = not begun or any(not loops <= set(list_guards_around(fn, each.guard)) for each in last)
+        last = [set(list_guards_around(fn, each.guard)) for each in sure if each.line == begun]
+        again = loops.difference(set.intersection(*last) if last else ())
+        # Or where the function is called anew.
+        anew = not begun and variable.kind != "local" and bool(fn.facts.name)
+        passed = {id(each) for each in before}
         for each in own:
-            if each.line >= line and (again or each.operator == "for") and (loops or variable.kind != "local"):
+            if id(each) not in passed and (anew or not again.isdisjoint(list_guards_around(fn, each.guard))):
                 found.add(self._evaluate_written(each, fn, origins, seen))
         values = found.list_values()
         if found.held and not values:
@@ -773,6 +780,27 @@ def _find_guard_of(fn: Fn, line: int, seen: tuple) -> int:
     being evaluated."""
     asking = [one[3] for one in seen if one[0] == "asks" and one[1:3] == (fn, line)]
     return asking[-1] if asking else _find_guard(fn, line)
+
+
+def _list_turns(rows: Iterable[Assignment], fn: Fn, line: int, around: Sequence[int]) -> list[Assignment]:
+    """Of assignments to a variable the one that the innermost loop around a line begins each turn with, which a
+    comprehension has behind its element; several where the line has several loops beside each other. around: the guards
+    of what is asked at the line."""
+    on = (row.guard for row in (*fn.facts.calls, *fn.facts.assignments) if row.line == line)
+    at = {*around, *(place for guard in set(on) for place in list_guards_around(fn, guard))}
+    heads = [each for each in rows if each.guard in at and _begins_turn(each, fn)]
+    outer = {place for each in heads for place in list_guards_around(fn, each.guard)[1:]}
+    return [each for each in heads if each.guard not in outer]
+
+
+def _begins_turn(each: Assignment, fn: Fn) -> bool:
+    guard = fn.facts.guards[each.guard]
+    return guard.kind == "for" and guard.line == each.line
+
+
+def _is_declared_on(each: Assignment, line: int) -> bool:
+    """Whether an assignment declares a variable on a line, for what stands behind it there."""
+    return each.line == line and bool(each.type) and not _mentions(each.value, each.target)
 
 
 def _find_guard_before(fn: Fn, line: int) -> int:
