@@ -337,11 +337,11 @@ class FlowValues:
         sure = [each for each in early if not _mentions(each.value, each.target)]
         begun = max((each.line for each in sure), default=0)
         filled = self._list_filled(variable, seen, origins)
-        # In Python that is an assignment too.
-        if not begun and not given and (not rows or fn.source.facts.language == "cpp"):
-            found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
         sure_filled = [use for use, values in filled if use.fn is fn and use.call.guard < 0 and _is_sure(values)]
         remade = any(use.call.line < filled_before for use in sure_filled)
+        # In Python that is an assignment too.
+        if not begun and not given and not remade and (not rows or fn.source.facts.language == "cpp"):
+            found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
             if remade and writer is not fn and self.code.is_constructor(writer):
                 continue

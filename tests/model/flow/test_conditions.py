@@ -355,3 +355,10 @@ def test_where_the_first_node_is_not_made_another_has_what_is_of_none(tmp_path, 
     files["rig/launch/rig.launch.xml"] = WORKSPACE["rig/launch/rig.launch.xml"].replace(' name="rig"', "")
     found = graph_on_disk(tmp_path, files, "rig/launch/rig.launch.xml")
     assert {(one.node, one.topic) for one in found.endpoints if not one.implied} == expected
+
+
+def test_what_a_parameter_is_read_into_has_no_more_of_what_it_is_declared_with(tmp_path):
+    rig = RIG.replace("Filter() : kind(LASER) {}", "").replace("int kind;", "int kind = LASER;")
+    files = {**WORKSPACE, "rig/src/rig.cpp": rig, "rig/config/rig.yaml": "rig:\n  ros__parameters: {kind: 2}\n"}
+    found = graph_on_disk(tmp_path, files, "rig/launch/rig.launch.xml")
+    assert {"/laser", "/sonar"}.intersection(one.topic for one in found.endpoints) == {"/sonar"}
