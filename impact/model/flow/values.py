@@ -211,6 +211,9 @@ class FlowValues:
         inner = (*seen, ("asks", fn, guard.line, guard.outer))
 
         def list_known(value: FlowExpr) -> list[tuple[str, How]] | None:
+            filling = self._find_filling(value, fn)
+            if filling is not None:
+                return [("true", "launch")] if self._is_set(filling, inner) else None
             found = [one for one in self._evaluate(value, fn, guard.line, inner) if not one.uncalled]
             known: list[tuple[str, How]] = [
                 (one.text, one.how)
@@ -222,6 +225,22 @@ class FlowValues:
         if not seen:
             self._left = _STEPS_A_CONDITION
         return ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
+
+    def _find_filling(self, value: FlowExpr, fn: Fn) -> FrameworkCall | None:
+        """The use that reads a parameter into a variable, and tells whether it was there; None for all else."""
+        same = (call for call in fn.facts.calls if value.kind == "call" and call.callee == value.text)
+        call = next((call for call in same if call.arguments == value.parts), None)
+        use = self.calls.find_use(fn, call) if call is not None else None
+        if use is None or use.row.does != "parameter" or not use.row.variable:
+            return None
+        target = self.calls.find_argument(use, use.row.variable)
+        default = self.calls.find_argument(use, use.row.default) if use.row.default else None
+        return use if target is not None and target is not default else None
+
+    def _is_set(self, use: FrameworkCall, seen: tuple) -> bool:
+        """Whether a launch sets the parameter that a use reads."""
+        given = self._find_setting_of(use, self._find_parameter_name(use, seen))
+        return given is not None and given.text is not None
 
     @cached_property
     def command_line(self) -> CommandLine:
@@ -653,15 +672,22 @@ class FlowValues:
             given = None
         return FlowValue(given, "launch") if given is not None else None
 
-    def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
-        """The default of the parameter that a use declares or reads."""
-        names = [
-            one.text
-            for one in self._evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line, seen)
-        ]
-        name = names[0] if names and names[0] is not None else ""
+    def _find_parameter_name(self, use: FrameworkCall, seen: tuple) -> str:
+        """The name that a use gives a parameter, empty where it is not known."""
+        written = self.calls.find_argument(use, use.row.topic)
+        names = [one.text for one in self._evaluate(written, use.fn, use.call.line, seen)]
+        return names[0] or "" if names else ""
+
+    def _find_setting_of(self, use: FrameworkCall, name: str) -> FlowValue | None:
+        """What a launch sets the parameter of a use to; None for nothing."""
         setting = self._make_setting_name(name, use)
         given = self.asked[setting] = self.find_setting(setting) if name else None
+        return given
+
+    def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
+        """The default of the parameter that a use declares or reads."""
+        name = self._find_parameter_name(use, seen)
+        given = self._find_setting_of(use, name)
         if given is not None:
             yield given
             return

@@ -362,3 +362,39 @@ def test_what_a_parameter_is_read_into_has_no_more_of_what_it_is_declared_with(t
     files = {**WORKSPACE, "rig/src/rig.cpp": rig, "rig/config/rig.yaml": "rig:\n  ros__parameters: {kind: 2}\n"}
     found = graph_on_disk(tmp_path, files, "rig/launch/rig.launch.xml")
     assert {"/laser", "/sonar"}.intersection(one.topic for one in found.endpoints) == {"/sonar"}
+
+
+ASKED_FOR = """
+    #include <ros/ros.h>
+    int main(int argc, char** argv) {
+      ros::init(argc, argv, "a");
+      ros::NodeHandle nh("~"), out;
+      ros::Publisher pub;
+      bool on = false;
+      if (nh.getParam("on", on)) {
+        pub = out.advertise<std_msgs::Empty>("/there", 1);
+      } else {
+        pub = out.advertise<std_msgs::Empty>("/lacking", 1);
+      }
+      if (on) {
+        pub = out.advertise<std_msgs::Empty>("/on", 1);
+      }
+      ros::spin();
+    }
+"""
+
+
+@pytest.mark.parametrize(("launch", "expected"), [
+    ("", {("/there", ""), ("/lacking", ""), ("/on", "")}),
+    ('<param name="on" value="true"/>', {("/there", ""), ("/on", "")}),
+    ('<param name="on" value="false"/>', {("/there", "")}),
+])  # fmt: skip
+def test_a_call_that_reads_a_parameter_tells_whether_it_is_there(tmp_path, launch, expected):
+    files = {
+        "p/package.xml": manifest("p", "catkin"),
+        "p/CMakeLists.txt": "project(p)\ncatkin_package()\nadd_executable(a src/a.cpp)\n",
+        "p/src/a.cpp": ASKED_FOR,
+        "p/launch/a.launch": f'<launch><node pkg="p" type="a" name="a">{launch}</node></launch>',
+    }
+    found = graph_on_disk(tmp_path, files, "p/launch/a.launch")
+    assert {(one.topic, one.only_if) for one in found.endpoints if not one.implied} == expected
