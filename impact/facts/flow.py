@@ -178,9 +178,9 @@ class Alias(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class FlowFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """language: `cpp` or `python`. constants: variables outside functions and classes, `#define`s of one literal among
-    them, and what Python functions assign to names declared global; in Python once for each place that assigns.
-    exports: classes given to nodelet, component and plugin macros. includes: headers, as written between
+    """language: `cpp` or `python`. constants: variables outside functions and classes, `#define`s of one literal and
+    enumerators among them, and what Python functions assign to names declared global; in Python once for each place
+    that assigns. exports: classes given to nodelet, component and plugin macros. includes: headers, as written between
     the brackets or quotes. unread: spans of lines (first, last) that did not parse. defaults: of the C++ functions that
     are declared without a body and with defaults, the name and for each parameter its default. The body of the file
     outside functions is a Function called `` (empty name)."""

@@ -294,6 +294,8 @@ class _File(CppStatements):
     def enter_class_specifier(self, node: Node, name: str, owner: str, conditions) -> None:
         """A class; also one in a function, whose name is then its scope."""
         body = node.child_by_field_name("body")
+        if body is not None and node.kind_id == KIND.enum_specifier:
+            self.add_enumerators(node, body, name, owner)
         if body is None or node.kind_id == KIND.enum_specifier:
             return
         said = node.child_by_field_name("name")
@@ -311,6 +313,24 @@ class _File(CppStatements):
         self.members, self.types = members, types
 
     enter_struct_specifier = enter_union_specifier = enter_enum_specifier = enter_class_specifier
+
+    def add_enumerators(self, node: Node, body: Node, name: str, owner: str) -> None:
+        """The enumerators of an enumeration without a scope of its own, as far as their numbers are known."""
+        if node.children[1].type in ("class", "struct"):
+            return
+        number: int | None = 0
+        for child in body.children:
+            said, given = child.child_by_field_name("name"), child.child_by_field_name("value")
+            if said is None:
+                continue
+            if given is not None:
+                text = self.text[given.start_byte : given.end_byte]
+                number = int(text) if text.isdecimal() and len(text) < 10 else None
+            if number is not None:
+                spelt, value = self.spell_node(said), FlowExpr("number", str(number))
+                member = DataMember(spelt if owner else join_scope(name, spelt), "", self.find_line(said), value)
+                (self.members if owner else self.constants).append(member)
+                number += 1
 
     def add_local_type(self, node: Node) -> None:
         self.enter_class_specifier(node, self.name or self.owner, "", ())

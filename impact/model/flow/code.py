@@ -729,25 +729,35 @@ class FlowCode:
         others = {base for base in bases if base not in self.classes and base not in _CALL_NOTHING}
         return bool(others) or name in self.mentioned or name == get_tail(owner.name)
 
+    def is_idle(self, fn: Fn) -> bool:
+        """Whether a function is a method that nothing calls, of a class that nobody else can call methods of, and that
+        is handed to nobody."""
+        owner, name = self.find_owner(fn), get_tail(fn.facts.name)
+        if owner is None or fn.is_lambda or self.is_constructor(fn) or name in self.handed_on:
+            return False
+        bases = {get_tail(base) for cls in self.list_bases(owner) for base in cls.facts.bases}
+        return not self.callers.get(fn) and all(base in self.classes or base in _CALL_NOTHING for base in bases)
+
+    @cached_property
+    def handed_on(self) -> frozenset[str]:
+        """The last parts of all names that the code hands on."""
+        return frozenset(get_tail(one.text) for one in self._list_expressions() if one.kind in ("function", "name"))
+
     @cached_property
     def mentioned(self) -> frozenset[str]:
         """The last parts of all names that the code calls, or hands on."""
-        found: set[str] = set()
+        called = frozenset(get_tail(call.callee) for fn in self.functions for call in fn.facts.calls)
+        return called.union(get_tail(one.text) for one in self._list_expressions() if one.text)
 
-        def add(value: FlowExpr) -> None:
-            if value.text:
-                found.add(get_tail(value.text))
-            for part in value.parts:
-                add(part)
-
+    def _list_expressions(self) -> Iterator[FlowExpr]:
+        """All arguments and values that are assigned, with their parts."""
         for fn in self.functions:
-            for call in fn.facts.calls:
-                found.add(get_tail(call.callee))
-                for argument in call.arguments:
-                    add(argument)
-            for each in fn.facts.assignments:
-                add(each.value)
-        return frozenset(found)
+            waiting = [argument for call in fn.facts.calls for argument in call.arguments]
+            waiting += [each.value for each in fn.facts.assignments]
+            while waiting:
+                one = waiting.pop()
+                yield one
+                waiting += one.parts
 
     @cached_property
     def unused_headers(self) -> frozenset[str]:

@@ -74,9 +74,10 @@ class Endpoint(msgspec.Struct, frozen=True):
     before namespaces and remappings, empty where that is not known. type: `package/Name`, empty when not known, `*`
     for any. function: in which it is made. variable: what it is kept in. implied: made by the framework or a helper of
     it (a transform listener, a diagnostic updater), not by a call that names the topic. only_if: on what it depends
-    whether the node makes it: the condition of the preprocessor under which the code is compiled, a flag that is down
-    as far as is known, that something calls a function which nothing is seen to call, or that something unknown does
-    not replace the name; empty for nothing of these.
+    whether the node makes it, or makes it under this name: the condition of the preprocessor under which the code is
+    compiled, a condition that does not hold as far as is known, that a function returns the one of its values, that
+    something calls a function which nothing is seen to call, or that something unknown does not replace the name; empty
+    for nothing of these.
     guards: those around the call that makes it, in its function, outermost first.
     """
 

@@ -13,7 +13,7 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...facts.flow import FlowExpr, FlowFile, Guard
+from ...facts.flow import FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
@@ -41,15 +41,15 @@ from .graph import (
 from .loads import Loaded, list_loaded
 from .names import NameRefused, is_open, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
-from .objects import NodeObjects
+from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
+from .reaching import list_guards_around
 from .started import Instance, make_instance
 from .types import FlowType, parse_flow_type
-from .values import FlowValue, FlowValues
+from .values import ASKING, FlowValue, FlowValues, spell_condition
 
+_WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
-_FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
-_TRUTH = {"true": True, "True": True, "1": True, "false": False, "False": False, "0": False}
 _MOST_WAYS = 16
 _DEEPEST = 10
 _TRIGGERS = {
@@ -127,23 +127,104 @@ class Join:
     def _running(self) -> list[Running]:
         found: list[Running] = []
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
-            if program.kind in ("executable", "script"):
-                others = programs_of.collect_sources_of_others(program, self.built)
-                others |= programs_of.collect_replaced_sources(program, self.code)
-                functions, classes = self.reach.find_reached(program.roots, without=others | self.code.unused_headers)
-                if not program.roots:
-                    functions = {fn for fn in self.code.functions if fn.source.path in program.files}
-            else:
-                cls = next(
-                    (c for c in self.code.classes.get(get_tail(program.plugin), ()) if c.source.path == program.path),
-                    None,
-                )
-                functions, classes = self.reach.find_reached(program.roots, [cls] if cls is not None else [])
+            functions, classes = self._find_reached(program)
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
             node, use = self._make_node(program, named)
             one = Running(program, node, functions, classes, self.values)
             several = program.kind in ("executable", "script", "component")
             found += self._split_by_object(one, use) if several else [one]
+        return found
+
+    def _find_reached(self, program: StartableProgram, cut: Mapping[Fn, Fn] = {}) -> tuple[set[Fn], set[str]]:
+        """The functions and classes (by key) that a program reaches. cut: as for CodeReach.find_reached()."""
+        if program.kind in ("executable", "script"):
+            others = programs_of.collect_sources_of_others(program, self.built)
+            others |= programs_of.collect_replaced_sources(program, self.code) | self.code.unused_headers
+            functions, classes = self.reach.find_reached(program.roots, (), others, cut)
+            if not program.roots:
+                functions = {fn for fn in self.code.functions if fn.source.path in program.files}
+            return functions, classes
+        named = self.code.classes.get(get_tail(program.plugin), ())
+        cls = next((one for one in named if one.source.path == program.path), None)
+        return self.reach.find_reached(program.roots, [cls] if cls is not None else [], cut=cut)
+
+    def _select_open(self, parts: list[Running]) -> list[Running]:
+        """Of the nodes that a program is those that it makes where the launch closes branches; the first where it makes
+        none, since it is started all the same."""
+        every = [self._drop_closed(part) for part in parts]
+        found = [one for one, is_made in every if is_made]
+        if not found or every[0][1] or parts[0].others is None:
+            return found or [one for one, _ in every[:1]]
+        # What no key is about is in the first that is made.
+        first = found[0]
+        others = parts[0].others.union(parts[0].objects or ()) - (first.objects or frozenset())
+        return [first._replace(others=others), *found[1:]]
+
+    def _drop_closed(self, running: Running) -> tuple[Running, bool]:
+        """A node without what it reaches through branches alone that the launch closes, and without objects that it
+        makes in these alone; and whether it is made itself."""
+        values = running.values.run(running.functions)
+        cut: dict[Fn, Fn] = {}
+        shut_lines: set[str] = set()
+        for fn in running.functions & self._asking.keys() if values.settings else ():
+            closed = {
+                place
+                for place in self._asking[fn]
+                for _, decided in [next(values.decide_guards(fn, place))]
+                if decided.holds is False and decided.is_given
+            }
+            if closed:
+                facts = fn.facts
+                shut = {row for row in range(len(facts.guards)) if not closed.isdisjoint(list_guards_around(fn, row))}
+                calls = tuple(call for call in facts.calls if call.guard not in shut)
+                assignments = tuple(each for each in facts.assignments if each.guard not in shut)
+                cut[fn] = Fn(fn.source, structs.replace(facts, calls=calls, assignments=assignments))
+                open_lines = {row.line for row in (*calls, *assignments)}
+                rows = (row for row in (*facts.calls, *facts.assignments) if row.line not in open_lines)
+                shut_lines.update(make_key(fn, row.line) for row in rows)
+        if not cut:
+            return running, True
+        functions, classes = self._find_reached(running.program, cut)
+        lost = running.classes - classes
+        left = {fn for fn in functions if (cls := self.code.find_owner(fn)) is None or cls.key not in lost}
+        is_made = not self._is_lost(running, lost, shut_lines)
+        return running._replace(functions=running.functions & left, classes=classes), is_made
+
+    def _is_lost(self, running: Running, lost: set[str], shut_lines: set[str]) -> bool:
+        """Whether a node, of a program that is several, is not made. lost: classes that no object is made of;
+        shut_lines: keys of the places where nothing is made."""
+        if running.objects is None:
+            return False
+        own = running.objects & (running.classes | shut_lines)
+        gone = own & (lost | shut_lines)
+        makers = ([make_key(maker, line) for maker, _, line in rows] for rows in running.values.made.values() if rows)
+        return (bool(gone) if running.others is None else bool(own) and gone == own) or any(
+            shut_lines.issuperset(keys) for keys in makers
+        )
+
+    @cached_property
+    def _asking(self) -> dict[Fn, list[int]]:
+        """The guards, by their places, that may ask for a parameter by what stands in them, and under which nodes or
+        objects of the code are made or functions called that lead to an endpoint; by the function."""
+        uses = self.calls.select_uses("parameter")
+        words = {get_tail(use.call.callee) for use in uses}
+        words |= {get_tail(use.call.target) for use in uses if use.call.target}
+        words |= {variable.name for variable in self.values.filled}
+        making = {fn for site in self.sites.endpoints for fn in (site.use.fn, *self._find_leading(site.use.fn))}
+        nodes = group_pairs((use.fn, use.call.guard) for use in self.calls.select_uses("node"))
+        found: dict[Fn, list[int]] = {}
+        for fn in self.code.functions:
+            asking = {place for place, guard in enumerate(fn.facts.guards) if guard.kind in ASKING}
+            asking = {place for place in asking if not words.isdisjoint(_WORD.findall(fn.facts.guards[place].text))}
+            calls = [call for call in fn.facts.calls if call.guard >= 0] if asking else ()
+            leading = {call.guard for call in calls if not making.isdisjoint(self.code.list_targets(call.callee, fn))}
+            lines = {line for name, _, line in list_made(fn, self.code) if get_tail(name) in self.code.classes}
+            rows = (*fn.facts.calls, *fn.facts.assignments) if asking else ()
+            leading |= {row.guard for row in rows if row.guard >= 0 and row.line in lines}
+            leading.update(nodes.get(fn, ()))
+            around = {place for guard in leading for place in list_guards_around(fn, guard)}
+            if not asking.isdisjoint(around):
+                found[fn] = sorted(asking & around)
         return found
 
     def _split_by_object(self, running: Running, use: FrameworkCall | None) -> Iterator[Running]:
@@ -202,6 +283,7 @@ class Join:
             arguments = tuple(argument.value for argument in start.arguments if argument.value is not None)
             known = arguments if len(arguments) == len(start.arguments) else None
             # In ROS 2 a program may be several nodes, and the name that a launch file gives is for all of them.
+            parts: list[Running] = []
             for part in (each for each in fitting if each.program == one.program):
                 namespace, _, own = part.node.name.rpartition("/")
                 own = own or f"<{one.program.executable or get_tail(one.program.plugin)}>"
@@ -214,7 +296,8 @@ class Join:
                 )  # fmt: skip
                 name = instance.name if start.generation == 1 else ""
                 values = part.values.apply_launch(instance.settings, known, name)
-                found.append(part._replace(node=node, instance=instance, values=values))
+                parts.append(part._replace(node=node, instance=instance, values=values))
+            found += self._select_open(parts)
         return found, missing
 
     def _locate(self, at: ShareLine) -> tuple[str, int]:
@@ -415,6 +498,8 @@ class Join:
                 lost = Unresolved(*lacking, *_get_place(site.use), site.written) if lacking else None
                 count.call(lost, (site,))
             for owner in those:
+                if self._is_left_out(site.use, owner):
+                    continue
                 owners.use(owner)
                 here = self._adapt_site(site, owner)
                 for value in here.names:
@@ -447,6 +532,8 @@ class Join:
     def _list_timers(self, owners: _Owners) -> Iterator[Timer]:
         for timer in self.sites.timers:
             for owner in owners.list_owners(timer.use):
+                if self._is_left_out(timer.use, owner):
+                    continue
                 node = _get_node(owner)
                 yield Timer(
                     node.id if node else "", timer.period, _make_callback(timer.callbacks), *_get_place(timer.use)
@@ -520,9 +607,9 @@ class Join:
         if qos is not None and topic and isinstance(owner, Running) and use.row.qos:
             policies = list_overridable(use) if any(map(_OVERRIDES, owner.values.settings)) else ()
             qos = apply_overrides(qos, topic, site.role, policies, owner.values.settings) if policies else qos
-        only_if = "" if site.implied else self._describe_condition(use, owner)
-        if value.how == "partly":
-            only_if = " && ".join(filter(None, (only_if, "the name is not replaced")))
+        replaced = "the name is not replaced" if value.how == "partly" else ""
+        conditions = ("" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
+        only_if = " && ".join(dict.fromkeys(filter(None, conditions)))
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
@@ -535,20 +622,23 @@ class Join:
         if isinstance(owner, Running) and (use.fn not in owner.functions or not self.code.may_be_called(use.fn)):
             return f"something calls `{use.fn.name or 'it'}`"
         texts = [guard.text for guard in self.list_guards(use.fn, use.call.guard) if guard.kind == "cpp"]
-        return " && ".join((*texts, *self._list_flags(use, owner)))
+        return " && ".join((*texts, *self._list_closed(use, owner)))
 
-    def _list_flags(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
-        """The flags around a call that are known to be down in a node, as a condition of it."""
-        for guard in self.list_guards(use.fn, use.call.guard):
-            found = _FLAG.fullmatch(guard.text) if guard.kind in ("if", "unless") else None
-            if found is None:
-                continue
-            path = found[2].replace("->", ".").replace("self.", "this.")
-            values = owner.values.run(owner.functions) if isinstance(owner, Running) else self.values
-            known = {_TRUTH.get(one.text or "") for one in values.list_values(FlowExpr("name", path), use.fn)}
-            wanted = (guard.kind == "if") != bool(found[1])
-            if known == {not wanted}:
-                yield path if wanted else f"!{path}"
+    def _list_closed(self, use: FrameworkCall, owner: Owner) -> Iterator[str]:
+        """The conditions around a call that do not hold in a node as far as is known, or of which that is not known
+        though a launch gives what they ask for."""
+        values = owner.values.run(owner.functions) if isinstance(owner, Running) else self.values
+        for guard, decided in reversed(list(values.decide_guards(use.fn, use.call.guard))):
+            if decided.holds is False or (decided.holds is None and decided.is_given):
+                yield spell_condition(guard.kind, guard.text)
+
+    def _is_left_out(self, use: FrameworkCall, owner: Owner) -> bool:
+        """Whether a node does not come to a call, by what the launch gives that starts it."""
+        if not isinstance(owner, Running) or owner.instance is None or use.call.guard < 0:
+            return False
+        values = owner.values.run(owner.functions)
+        decisions = (decided for _, decided in values.decide_guards(use.fn, use.call.guard))
+        return any(decided.holds is False and decided.is_given for decided in decisions)
 
     def resolve_name(self, site: Site, value: FlowValue, owner: Owner) -> tuple[str, How, str]:
         """The full name that a site has in a node, how it is known, and why not."""
@@ -606,6 +696,8 @@ class Join:
         if not statement.sites:
             yield Publish(topic="", type=statement.type, reason=statement.reason, **common)
         for site in statement.sites:
+            if self._is_left_out(site.use, owner):
+                continue
             here = self._adapt_site(site, owner)
             for value in here.names:
                 topic, _, reason = self.resolve_name(here, value, owner)

@@ -82,10 +82,11 @@ class CodeReach:
         self._lambdas = group_pairs(((fn.source.path, fn.scope), fn) for fn in self.code.functions if fn.is_lambda)
 
     def find_reached(
-        self, roots: Iterable[Fn], classes: Iterable[Cls] = (), without: Collection[str] = ()
-    ) -> tuple[set[Fn], set[str]]:
+        self, roots: Iterable[Fn], classes: Iterable[Cls] = (), without: Collection[str] = (),
+        cut: Mapping[Fn, Fn] = {},
+    ) -> tuple[set[Fn], set[str]]:  # fmt: skip
         """Functions and classes (by key) reached from some functions, and from objects of some classes. without: paths
-        of files that are not linked."""
+        of files that are not linked. cut: functions, with themselves as far as they run."""
         functions: set[Fn] = set()
         keys: set[str] = set()
         queue: list[Fn] = list(roots)
@@ -109,7 +110,7 @@ class CodeReach:
             if loaded is not None and loaded not in keys and fn not in begun:
                 continue  # one of many that may be loaded at run time: a node of its own
             functions.add(fn)
-            further, objects = self.find_edges(fn)
+            further, objects = self.find_edges(cut.get(fn, fn))
             queue += [one for one in further if one not in functions]
             if objects:
                 made += [cls for cls in objects if cls.key not in keys]

@@ -51,7 +51,7 @@ class NodeObjects:
         for use in named:
             if self._find_named_class(use) is None:
                 own = self._evaluate_name(use, self.values) or f"<{get_tail(use.call.target) or 'node'}>"
-                keys = frozenset((_make_key(use.fn, use.call.line),))
+                keys = frozenset((make_key(use.fn, use.call.line),))
                 found.append(NodeObject(keys, self.join_namespace(use, own, self.values), self.values, (use,)))
         return found
 
@@ -175,7 +175,7 @@ class NodeObjects:
     def _find_keys(self, use: FrameworkCall) -> set[str]:
         if use.row.does == "node":
             cls = self._find_named_class(use)
-            return {cls.key if cls is not None else _make_key(use.fn, use.call.line)}
+            return {cls.key if cls is not None else make_key(use.fn, use.call.line)}
         receiver = "" if use.row.does == "publish" else self.calls.get_receiver(use)
         given = next((one for one in use.call.arguments if self.calls.is_node(one, use.fn)), None)
         for value in (FlowExpr("name", receiver) if receiver else None, given):
@@ -203,10 +203,10 @@ class NodeObjects:
         seen |= {variable}
         keys: set[str] = set()
         for writer, each in self.code.list_writes(variable):
-            made = _make_key(writer, each.line)
+            made = make_key(writer, each.line)
             keys |= {made} if made in self._made else self._trace(each.value, writer, seen)
         for caller, call in self.code.list_results(variable):
-            made = _make_key(caller, call.line)
+            made = make_key(caller, call.line)
             keys |= {made} if made in self._made else set()
         for one in self.code.list_enclosing_chain(fn) if variable.kind == "local" and not keys else ():
             place = find_parameter(one, variable.name)
@@ -219,7 +219,7 @@ class NodeObjects:
     @cached_property
     def _made(self) -> set[str]:
         """The places where nodes are made that are of no class of the code."""
-        return {_make_key(use.fn, use.call.line) for use in self._named if self._find_named_class(use) is None}
+        return {make_key(use.fn, use.call.line) for use in self._named if self._find_named_class(use) is None}
 
     def _find_class_key(self, kind: FlowType, fn: Fn) -> set[str]:
         """The key for any object of a class of the code, if its objects are nodes."""
@@ -227,5 +227,6 @@ class NodeObjects:
         return {f"any {cls.key}"} if cls is not None and self._is_node(cls) else set()
 
 
-def _make_key(fn: Fn, line: int) -> str:
+def make_key(fn: Fn, line: int) -> str:
+    """The key of what is made on a line of a function."""
     return f"{fn.source.path}:{line}"

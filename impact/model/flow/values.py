@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice, product
 from operator import itemgetter
 
 from ....edges.groups import group_pairs
-from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter
+from ...facts.flow import Assignment, FlowCall, FlowExpr, FlowParameter, Guard
 from .arguments import CommandLine
 from .calls import Calls, FrameworkCall
 from .code import Fn, Made, Variable, find_argument, find_parameter, get_tail
+from .conditions import ConditionReader, DecidedCondition
 from .graph import How
-from .names import resolve_ros1_name
+from .names import is_open, resolve_ros1_name
 from .origins import ObjectOrigins, Origins
 from .reaching import LOOPS, FlowValue, ReachingValues, list_guards_around
 from .types import split_name
@@ -30,6 +32,7 @@ _MOST_STEPS = 5_000
 # Of all values together; navigation2 takes 25,000. A value that comes after them is followed for a few steps only.
 _STEPS_IN_ALL, _STEPS_A_FUNCTION = 150_000, 100
 _FEW_STEPS = 50
+_STEPS_A_CONDITION = 500
 _LONGEST = 10_000
 # Calls that give what they are called on, or their first argument, as a string.
 _SAME = frozenset(
@@ -41,6 +44,9 @@ _OF_FIRST = frozenset(("resolveName", "resolve_name", "remap_name", "resolve", "
                        "resolve_service_name", "resolve_topic_or_service_name"))  # fmt: skip
 # What is least certain of a text that is put together, first.
 _LEAST: tuple[How, ...] = ("default", "launch", "given", "literal")
+# Kinds of guards that ask something, and conditions that are a variable alone.
+ASKING = frozenset(("if", "unless", "case"))
+_FLAG = re.compile(r"(!|not )?\s*\(?((?:self\.|this->|this\.)?[A-Za-z_]\w*)\)?")
 _PUT = frozenset(("push_back", "emplace_back", "append"))
 # Functions that give a topic's type, and its name beside it.
 _TELLS_TOPIC = frozenset(("get_topic_class", "get_topic_type"))
@@ -152,8 +158,7 @@ class FlowValues:
         elif kind == "choice" and len(value.parts) == 3 and _is_fallback(value):
             yield from self._evaluate_fallback(value, fn, line, seen)
         elif kind == "choice" and len(value.parts) == 3:
-            parts = (_mark_unknown(self._evaluate(part, fn, line, seen)) for part in value.parts[1:])
-            yield from _restore_alone([one for part in parts for one in part])
+            yield from self._evaluate_choice(value, fn, line, seen)
         elif kind == "call":
             yield from self._call(value, fn, line, seen)
         elif kind in ("make", "keyword", "list") and len(value.parts) == 1:
@@ -181,6 +186,61 @@ class FlowValues:
         pieces = [_take_first(self._evaluate(part, fn, line, seen)) for part in value.parts]
         for row in islice(product(*pieces), _MOST):
             yield _join(row)
+
+    def _evaluate_choice(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
+        """What is chosen: one of two, where it is known which, else either."""
+        asked = value.parts[0]
+        text = asked.text if asked.kind in ("other", "name") else ""
+        found: list[FlowValue] = []
+        for part, kind in ((value.parts[1], "if"), (value.parts[2], "unless")):
+            guard = Guard(kind, text, line, _find_guard_before(fn, line))
+            decided = self._decide_guard(guard, fn, seen) if text else DecidedCondition()
+            if decided.holds is not False:
+                condition = "" if decided.holds or not text else spell_condition(kind, text)
+                values = list(self._evaluate(part, fn, line, seen))
+                found += _put_under(values if decided.holds else _mark_unknown(values), decided, condition)
+        yield from _restore_alone(found)
+
+    def decide_guards(self, fn: Fn, guard: int) -> Iterator[tuple[Guard, DecidedCondition]]:
+        """The guards of a function at the place of one of them, innermost first, with whether they hold."""
+        for place in list_guards_around(fn, guard):
+            yield fn.facts.guards[place], self._decide_guard(fn.facts.guards[place], fn, ())
+
+    def _decide_guard(self, guard: Guard, fn: Fn, seen: tuple) -> DecidedCondition:
+        # Who asks a variable for its value is not under the guard yet.
+        inner = (*seen, ("asks", fn, guard.line, guard.outer))
+
+        def list_known(value: FlowExpr) -> list[tuple[str, How]] | None:
+            filling = self._find_filling(value, fn)
+            if filling is not None:
+                return [("true", "launch")] if self._is_set(filling, inner) else None
+            found = [one for one in self._evaluate(value, fn, guard.line, inner) if not one.uncalled]
+            known: list[tuple[str, How]] = [
+                (one.text, one.how)
+                for one in found
+                if one.text is not None and "{" not in one.text and not is_open(one.text)
+            ]
+            return known if len(known) == len(found) and not any(one.only_if for one in found) else None
+
+        if not seen:
+            self._left = _STEPS_A_CONDITION
+        return ConditionReader(fn.source.facts.language == "cpp", list_known).decide_guard(guard)
+
+    def _find_filling(self, value: FlowExpr, fn: Fn) -> FrameworkCall | None:
+        """The use that reads a parameter into a variable, and tells whether it was there; None for all else."""
+        same = (call for call in fn.facts.calls if value.kind == "call" and call.callee == value.text)
+        call = next((call for call in same if call.arguments == value.parts), None)
+        use = self.calls.find_use(fn, call) if call is not None else None
+        if use is None or use.row.does != "parameter" or not use.row.variable:
+            return None
+        target = self.calls.find_argument(use, use.row.variable)
+        default = self.calls.find_argument(use, use.row.default) if use.row.default else None
+        return use if target is not None and target is not default else None
+
+    def _is_set(self, use: FrameworkCall, seen: tuple) -> bool:
+        """Whether a launch sets the parameter that a use reads."""
+        given = self._find_setting_of(use, self._find_parameter_name(use, seen))
+        return given is not None and given.text is not None
 
     @cached_property
     def command_line(self) -> CommandLine:
@@ -257,7 +317,7 @@ class FlowValues:
             return
         # What other objects have is not written in turn here.
         at = 0 if "." in path.removeprefix("this.") else line
-        found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at))
+        found = list(self.evaluate_variable(variable, fn, (*seen, variable), self._find_origins(path, fn), at, line))
         if found:
             yield from found
         else:
@@ -275,26 +335,35 @@ class FlowValues:
         return ObjectOrigins(self.code)
 
     def evaluate_variable(
-        self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None, line: int = 0
-    ) -> Iterator[FlowValue]:
+        self, variable: Variable, fn: Fn, seen: tuple = (), origins: Origins | None = None, line: int = 0,
+        filled_before: int = 0,
+    ) -> Iterator[FlowValue]:  # fmt: skip
         """What a variable may be worth: from where it is declared, written, filled by a parameter, or passed. origins:
-        of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any."""
+        of the objects that a member may be of, None for any. line: at which it is asked for, 0 for any. filled_before:
+        the line at which it is asked for, also where assignments are not followed in turn: what a parameter was read
+        into before has no more of what its object was made with."""
         written = self.code.list_writes(variable)
         if origins is not None:
             written = [(w, each) for w, each in written if self.origins.may_be_of(each.target, w, origins)]
         rows, given = self._select_given(written)
         own = [each for writer, each in rows if writer is fn and line]
-        around = list_guards_around(fn, _find_guard(fn, line)) if line else []
+        around = list_guards_around(fn, _find_guard_of(fn, line, seen)) if line else []
         found = ReachingValues(fn, around, lambda path: self.code.identify(path, fn) == variable)
         # What stands before the last that is surely assigned is of no interest.
-        early = [each for each in own if each.line < line and each.operator == "=" and found.is_sure(each.guard)]
+        turns = _list_turns(own, fn, line, around)
+        before = [each for each in own if each.line < line or each in turns or _is_declared_on(each, line)]
+        early = [each for each in before if each.operator == "=" and (found.is_sure(each.guard) or each in turns)]
         sure = [each for each in early if not _mentions(each.value, each.target)]
         begun = max((each.line for each in sure), default=0)
         filled = self._list_filled(variable, seen, origins)
+        sure_filled = [use for use, values in filled if use.fn is fn and use.call.guard < 0 and _is_sure(values)]
+        remade = any(use.call.line < filled_before for use in sure_filled)
         # In Python that is an assignment too.
-        if not begun and not given and (not rows or fn.source.facts.language == "cpp"):
+        if not begun and not given and not remade and (not rows or fn.source.facts.language == "cpp"):
             found.add(self._evaluate_beginning(variable, fn, seen), rank=0)
         for writer, others in group_pairs(row for row in rows if row[0] is not fn or not line).items():
+            if remade and writer is not fn and self.code.is_constructor(writer):
+                continue
             found.add(self._evaluate_elsewhere(variable, writer, others, filled, origins, seen), stays=True)
         here = [(use, values) for use, values in filled if use.fn is fn and use.call.line < line]
         for use, values in filled:
@@ -307,23 +376,28 @@ class FlowValues:
         steps: list[tuple[int, Assignment | FrameworkCall, list[FlowValue]]] = [
             (use.call.line, use, values) for use, values in here if use.call.line >= begun
         ]
-        steps += [(each.line, each, []) for each in own if begun <= each.line < line]
+        steps += [(each.line, each, []) for each in before if begun <= each.line]
         for _, step, values in sorted(steps, key=itemgetter(0)):
-            if isinstance(step, Assignment):
+            if isinstance(step, Assignment) and step in turns[1:]:
+                found.add(_mark_unknown(self._evaluate_written(step, fn, origins, seen)), step.guard)
+            elif isinstance(step, Assignment):
                 # What is made of the variable itself is made of what it was before.
                 itself = _mentions(step.value, step.target)
-                before = tuple(one for one in seen if one != variable) if itself else seen
-                self._follow(step, fn, found, origins, before)
+                inner = tuple(one for one in seen if one != variable) if itself else seen
+                self._follow(step, fn, found, origins, inner)
             elif _is_sure(values):
                 found.assign(values, step.call.guard, 2)
             else:
                 found.add(values, step.call.guard, 2)
         # In the next turn of a loop.
         loops = {guard for guard in around if fn.facts.guards[guard].kind in LOOPS}
-        last = [each for each in sure if each.line == begun]
-        again = not begun or any(not loops <= set(list_guards_around(fn, each.guard)) for each in last)
+        last = [set(list_guards_around(fn, each.guard)) for each in sure if each.line == begun]
+        again = loops.difference(set.intersection(*last) if last else ())
+        # Or where the function is called anew.
+        anew = not begun and variable.kind != "local" and bool(fn.facts.name)
+        passed = {id(each) for each in before}
         for each in own:
-            if each.line >= line and (again or each.operator == "for") and (loops or variable.kind != "local"):
+            if id(each) not in passed and (anew or not again.isdisjoint(list_guards_around(fn, each.guard))):
                 found.add(self._evaluate_written(each, fn, origins, seen))
         values = found.list_values()
         if found.held and not values:
@@ -477,7 +551,8 @@ class FlowValues:
         if default is not None and (lacking or not given):
             yield from self._evaluate(default, fn, fn.facts.line, seen)
         elif not given:
-            yield FlowValue(None, "given", f"an argument of `{fn.name or 'the module'}`, which nothing here calls")
+            reason = f"an argument of `{fn.name or 'the module'}`, which nothing here calls"
+            yield FlowValue(None, "given", reason, uncalled=self.code.is_idle(fn))
 
     def _find_given(self, value: FlowExpr, fn: Fn) -> tuple[int, FlowParameter] | None:
         """The parameter of a constructor that a value is, None for all else."""
@@ -544,16 +619,35 @@ class FlowValues:
             if use is not None and use.row.does == "parameter":
                 yield from self._evaluate_parameter(use, seen)
                 return
+            if arguments is None and get_tail(callee) in _OF_FIRST and call.arguments and call.line == line:
+                yield from self._evaluate(call.arguments[0], fn, line, seen)
+                return
         returned = False
         for target in self.code.list_targets(callee, fn):
             if ("returns", target) in seen:
                 continue
+            inner = (*seen, ("returns", target))
+            # Through this call alone, where it is seen.
+            values = self.limit_to_calls({**self.way, target: near[0]} if near and arguments is not None else {})
+            values._left = self._left
             for each in target.facts.assignments:
                 if each.operator == "return":
                     returned = True
-                    yield from self._evaluate(each.value, target, each.line, (*seen, ("returns", target)))
+                    yield from values._evaluate_returned(each, target, inner)
+            self._left = values._left
         if not returned:
             yield FlowValue(None, "unresolved", f"what `{callee}` gives is not known")
+
+    def _evaluate_returned(self, each: Assignment, fn: Fn, seen: tuple) -> Iterator[FlowValue]:
+        """What a function returns at one place, nothing where it does not come there."""
+        guards = [fn.facts.guards[place] for place in list_guards_around(fn, each.guard)]
+        asked = [(guard, self._decide_guard(guard, fn, seen)) for guard in guards if guard.kind in ASKING]
+        if any(decided.holds is False for _, decided in asked):
+            return
+        unknown = [spell_condition(guard.kind, guard.text) for guard, decided in asked if decided.holds is None]
+        hows: frozenset[How] = frozenset(how for _, decided in asked for how in decided.hows)
+        found = self._evaluate(each.value, fn, each.line, seen)
+        yield from _put_under(found, DecidedCondition(None, hows), " && ".join(reversed(unknown)))
 
     def _make_setting_name(self, name: str, use: FrameworkCall) -> str:
         """The name of a parameter in the namespace of the node handle that it is asked of."""
@@ -578,15 +672,22 @@ class FlowValues:
             given = None
         return FlowValue(given, "launch") if given is not None else None
 
-    def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
-        """The default of the parameter that a use declares or reads."""
-        names = [
-            one.text
-            for one in self._evaluate(self.calls.find_argument(use, use.row.topic), use.fn, use.call.line, seen)
-        ]
-        name = names[0] if names and names[0] is not None else ""
+    def _find_parameter_name(self, use: FrameworkCall, seen: tuple) -> str:
+        """The name that a use gives a parameter, empty where it is not known."""
+        written = self.calls.find_argument(use, use.row.topic)
+        names = [one.text for one in self._evaluate(written, use.fn, use.call.line, seen)]
+        return names[0] or "" if names else ""
+
+    def _find_setting_of(self, use: FrameworkCall, name: str) -> FlowValue | None:
+        """What a launch sets the parameter of a use to; None for nothing."""
         setting = self._make_setting_name(name, use)
         given = self.asked[setting] = self.find_setting(setting) if name else None
+        return given
+
+    def _evaluate_parameter(self, use: FrameworkCall, seen: tuple) -> Iterator[FlowValue]:
+        """The default of the parameter that a use declares or reads."""
+        name = self._find_parameter_name(use, seen)
+        given = self._find_setting_of(use, name)
         if given is not None:
             yield given
             return
@@ -594,7 +695,7 @@ class FlowValues:
         target = self.calls.find_argument(use, use.row.variable) if use.row.variable else None
         if default is not None and not (default.kind == "name" and default == target):
             for one in self._evaluate(default, use.fn, use.call.line, seen):
-                yield one if one.text is None else FlowValue(one.text, "default")
+                yield one if one.text is None else one._replace(how="default")
             return
         yielded = False
         mark = ("parameter", name)
@@ -653,10 +754,11 @@ def _join(row: tuple[FlowValue, ...]) -> FlowValue:
         return FlowValue(None, "unresolved", f"longer than {_LONGEST:,} characters")
     hows = {one.how for one in row}
     known: list[How] = [how for how in _LEAST if how in hows]
-    return FlowValue("".join(one.text or "" for one in row), known[0] if known else _LEAST[-1])
+    only_if = " && ".join(dict.fromkeys(one.only_if for one in row if one.only_if))
+    return FlowValue("".join(one.text or "" for one in row), known[0] if known else _LEAST[-1], only_if=only_if)
 
 
-def _mark_unknown(values: Iterator[FlowValue]) -> list[FlowValue]:
+def _mark_unknown(values: Iterable[FlowValue]) -> list[FlowValue]:
     """What is assigned, as what may hold in place of others where nothing of it is known."""
     found = list(values)
     return found if any(one.text is not None for one in found) else [one.mark() for one in found]
@@ -699,6 +801,40 @@ def _find_guard(fn: Fn, line: int) -> int:
     return max((one.guard for one in (*fn.facts.calls, *fn.facts.assignments) if one.line == line), default=-1)
 
 
+def _find_guard_of(fn: Fn, line: int, seen: tuple) -> int:
+    """The same for what is asked at a line; where a guard on the line asks, the guard around that one. seen: what is
+    being evaluated."""
+    asking = [one[3] for one in seen if one[0] == "asks" and one[1:3] == (fn, line)]
+    return asking[-1] if asking else _find_guard(fn, line)
+
+
+def _list_turns(rows: Iterable[Assignment], fn: Fn, line: int, around: Sequence[int]) -> list[Assignment]:
+    """Of assignments to a variable the one that the innermost loop around a line begins each turn with, which a
+    comprehension has behind its element; several where the line has several loops beside each other. around: the guards
+    of what is asked at the line."""
+    on = (row.guard for row in (*fn.facts.calls, *fn.facts.assignments) if row.line == line)
+    at = {*around, *(place for guard in set(on) for place in list_guards_around(fn, guard))}
+    heads = [each for each in rows if each.guard in at and _begins_turn(each, fn)]
+    outer = {place for each in heads for place in list_guards_around(fn, each.guard)[1:]}
+    return [each for each in heads if each.guard not in outer]
+
+
+def _begins_turn(each: Assignment, fn: Fn) -> bool:
+    guard = fn.facts.guards[each.guard]
+    return guard.kind == "for" and guard.line == each.line
+
+
+def _is_declared_on(each: Assignment, line: int) -> bool:
+    """Whether an assignment declares a variable on a line, for what stands behind it there."""
+    return each.line == line and bool(each.type) and not _mentions(each.value, each.target)
+
+
+def _find_guard_before(fn: Fn, line: int) -> int:
+    """The place of the innermost guard around a line that begins before the line, -1 for none."""
+    around = list_guards_around(fn, _find_guard(fn, line))
+    return next((place for place in around if fn.facts.guards[place].line < line), -1)
+
+
 def _is_fallback(value: FlowExpr) -> bool:
     """Whether a choice is one between what is asked and something else: `a or b`, `a if a else b`."""
     asked, first = value.parts[0].text, value.parts[1]
@@ -706,3 +842,21 @@ def _is_fallback(value: FlowExpr) -> bool:
     return (first.kind == "name" and asked == written) or (
         first.kind == "call" and asked.startswith(f"{written}(") and asked.endswith(")")
     )
+
+
+def spell_condition(kind: str, text: str) -> str:
+    """The condition of a guard, as people read it."""
+    found = _FLAG.fullmatch(text)
+    if found is None:
+        return f"!({text})" if kind == "unless" else text
+    path = found[2].replace("->", ".").replace("self.", "this.")
+    return path if (kind == "unless") == bool(found[1]) else f"!{path}"
+
+
+def _put_under(values: Iterable[FlowValue], decided: DecidedCondition, condition: str) -> Iterator[FlowValue]:
+    """Values that hold under a condition that is decided by others: no more certain than these are."""
+    for one in values:
+        known: list[How] = [how for how in _LEAST if how in decided.hows or how == one.how]
+        how = known[0] if one.text is not None and known else one.how
+        both = " && ".join(dict.fromkeys(filter(None, (condition, one.only_if))))
+        yield one._replace(how=how, only_if=both if one.text is not None else "")

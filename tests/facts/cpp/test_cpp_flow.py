@@ -427,6 +427,20 @@ def test_a_name_that_has_the_word_operator_in_it_is_like_others():
     ]
 
 
+def test_enumerators_are_constants_as_far_as_their_numbers_are_known():
+    text = b"""
+    enum Kind { LASER = 1, SONAR, OWN = SONAR + 4, NEXT };
+    namespace n { typedef enum { A, B } T; enum Late : int { C = 5, D }; }
+    enum class Scoped { X, Y };
+    enum Ahead : int;
+    class K { enum In { P, Q = 7 }; };
+    """
+    facts = extract(text)
+    known = [("LASER", 1), ("SONAR", 2), ("n::A", 0), ("n::B", 1), ("n::C", 5), ("n::D", 6)]
+    assert [(m.name, said(m.value)) for m in facts.constants] == [(name, f"number:{value}") for name, value in known]
+    assert [(m.name, said(m.value)) for m in facts.classes[0].members] == [("P", "number:0"), ("Q", "number:7")]
+
+
 def test_what_plugins_are_exported():
     text = b"PLUGINLIB_EXPORT_CLASS(a::B, c::D)\nRCLCPP_COMPONENTS_REGISTER_NODE(e::F)\nvoid f() {}\n"
     facts = extract(text)
