@@ -179,7 +179,7 @@ class NodeObjects:
         receiver = "" if use.row.does == "publish" else self.calls.get_receiver(use)
         given = next((one for one in use.call.arguments if self.calls.is_node(one, use.fn)), None)
         for value in (FlowExpr("name", receiver) if receiver else None, given):
-            keys = self._trace(value, use.fn, frozenset()) if value is not None else set()
+            keys = self._find_traced(value, use.fn, frozenset()) if value is not None else set()
             if keys:
                 return keys
         return self._find_own_key(use.fn)
@@ -188,7 +188,7 @@ class NodeObjects:
         owner = self.code.find_owner(fn)
         return {owner.key} if owner is not None else set()
 
-    def _trace(self, value: FlowExpr, fn: Fn, seen: frozenset[Variable]) -> set[str]:
+    def _find_traced(self, value: FlowExpr, fn: Fn, seen: frozenset[Variable]) -> set[str]:
         """The keys of what an expression is, where it is a node object."""
         text = value.text.removesuffix("()")
         if text in _ITSELF or (value.kind == "other" and "this" in text):
@@ -204,7 +204,7 @@ class NodeObjects:
         keys: set[str] = set()
         for writer, each in self.code.list_writes(variable):
             made = make_key(writer, each.line)
-            keys |= {made} if made in self._made else self._trace(each.value, writer, seen)
+            keys |= {made} if made in self._made else self._find_traced(each.value, writer, seen)
         for caller, call in self.code.list_results(variable):
             made = make_key(caller, call.line)
             keys |= {made} if made in self._made else set()
@@ -212,7 +212,7 @@ class NodeObjects:
             place = find_parameter(one, variable.name)
             if place is not None:
                 for given, giver in self.code.list_given(one, place[0], variable.name):
-                    keys |= self._trace(given, giver, seen)
+                    keys |= self._find_traced(given, giver, seen)
                 break
         return keys or self._find_class_key(self.code.resolve_variable_type(variable, fn), fn)
 
