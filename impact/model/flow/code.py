@@ -931,7 +931,8 @@ class FlowCode:
 
     @cached_property
     def bases_made(self) -> dict[str, list[Made]]:
-        """Constructors that initialise a base class of the code: key of the base to function, arguments and line."""
+        """Constructors that initialise a base class of the code, or call another constructor of their own class: key of
+        that class to function, arguments and line."""
         found: dict[str, list[Made]] = {}
         for fn in self.functions:
             owner = self.find_owner(fn) if fn.facts.owner else None
@@ -942,6 +943,8 @@ class FlowCode:
                     for base in self.list_bases(owner)[1:2]:
                         found.setdefault(base.key, []).append((fn, call.arguments, call.line))
             for each in fn.facts.assignments:
+                if each.target == f"this.{get_tail(owner.name)}" and each.value.kind == "make":
+                    found.setdefault(owner.key, []).append((fn, each.value.parts, each.line))
                 made = self.find_base_made(fn, each)
                 cls = self.find_class(made[0], fn.source, fn.scope) if made is not None else None
                 if made is not None and cls is not None:
@@ -959,8 +962,21 @@ class FlowCode:
         if owner is not None and self.is_constructor(fn):
             deriving = self.derived.get(owner.key, ()) if get_tail(fn.name) == "__init__" else ()
             for cls in (owner, *(one for one in deriving if fn in self.find_method(one, "__init__"))):
-                yield from self.constructions.get(cls.key, ())
-            yield from self.bases_made.get(owner.key, ())
+                yield from (row for row in self.constructions.get(cls.key, ()) if self._is_chosen(fn, owner, row[1]))
+            made = self.constructions.get(owner.key, ())
+            for row in self.bases_made.get(owner.key, ()):
+                # Another constructor of the class, where that makes an object.
+                used = self.find_owner(row[0]) != owner or any(self._is_chosen(row[0], owner, one[1]) for one in made)
+                if self._is_chosen(fn, owner, row[1]) and (used or not made):
+                    yield row
+
+    def _is_chosen(self, fn: Fn, cls: Cls, arguments: tuple[FlowExpr, ...]) -> bool:
+        """Whether a constructor is the one that arguments are for: of several, one with as many parameters, if there is
+        any."""
+        if len(fn.facts.parameters) == len(arguments) or fn.source.facts.language != "cpp":
+            return True
+        others = (one for one in self.list_functions(cls) if self.is_constructor(one))
+        return not any(len(one.facts.parameters) == len(arguments) for one in others)
 
     def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn]]:
         """What is given for the parameter of a function, where it is called, bound, or makes an object; with who gives

@@ -216,3 +216,25 @@ def test_a_component_and_the_node_that_it_makes(tmp_path):
     }, "body/launch/eye.launch.xml")  # fmt: skip
     told = {(node, topic) for node, topic, _ in ends(found, "publisher")}
     assert told == {("/face/left_eye", "/face/looked"), ("/lid", "/seen")}
+
+
+def test_of_several_constructors_the_one_that_takes_as_many_arguments_is_called():
+    text = """
+    #include <rclcpp/rclcpp.hpp>
+    #include <std_msgs/msg/bool.hpp>
+    class Beat : public rclcpp::Node {
+    public:
+      Beat(const rclcpp::NodeOptions & options) : Beat("", options) {}
+      Beat(const std::string & space, const rclcpp::NodeOptions & options) : rclcpp::Node("beat", space, options) {
+        pub_ = create_publisher<std_msgs::msg::Bool>("tick", 1);
+      }
+      rclcpp::Publisher<std_msgs::msg::Bool>::SharedPtr pub_;
+    };
+    int main(int argc, char ** argv) {
+      rclcpp::init(argc, argv);
+      rclcpp::NodeOptions options;
+      rclcpp::spin(std::make_shared<Beat>(%s));
+    }
+    """
+    for given, expected in (("options", ("/beat", "/tick")), ('"left", options', ("/left/beat", "/left/tick"))):
+        assert list_publishers({"p/main.cpp": text % given}) == {expected}
