@@ -85,6 +85,8 @@ class FlowValues:
         self._budget = [_STEPS_IN_ALL + _STEPS_A_FUNCTION * len(self.code.functions)]
         # Settings that were asked for, by name, with what they are.
         self.asked: dict[str, FlowValue | None] = {}
+        # Decided guards, each with the settings that it rests on and what keeps the ids in its key from being reused.
+        self._decided: dict[tuple, list[tuple[dict[str, FlowValue | None], DecidedCondition, tuple]]] = {}
 
     def apply_launch(
         self, settings: Mapping[str, str], arguments: tuple[str, ...] | None = None, node: str = ""
@@ -112,7 +114,7 @@ class FlowValues:
         other = FlowValues(self.calls, *given)
         for name in ("filled", "declared", "command_line", "origins"):
             other.__dict__[name] = getattr(self, name)
-        other._budget, other.asked = self._budget, self.asked
+        other._budget, other.asked, other._decided = self._budget, self.asked, self._decided
         other.find_prefix, other._prefixes = self.find_prefix, self._prefixes
         return other
 
@@ -204,7 +206,22 @@ class FlowValues:
     def decide_guards(self, fn: Fn, guard: int) -> Iterator[tuple[Guard, DecidedCondition]]:
         """The guards of a function at the place of one of them, innermost first, with whether they hold."""
         for place in list_guards_around(fn, guard):
-            yield fn.facts.guards[place], self._decide_guard(fn.facts.guards[place], fn, ())
+            yield fn.facts.guards[place], self._recall_decided(fn, place)
+
+    def _recall_decided(self, fn: Fn, place: int) -> DecidedCondition:
+        """Whether a guard of a function holds; known already where the settings that this rests on are the same."""
+        kept = tuple(one for one in (self.way, self.within, self.made) if one)
+        known = self._decided.setdefault((fn, place, self.arguments, self.node, *map(id, kept)), [])
+        for rests_on, found, _ in known:
+            if all(self.find_setting(name) == value for name, value in rests_on.items()):
+                self.asked.update(rests_on)
+                return found
+        before = dict(self.asked)
+        self.asked.clear()
+        found = self._decide_guard(fn.facts.guards[place], fn, ())
+        known.append((dict(self.asked), found, kept))
+        self.asked.update(before)
+        return found
 
     def _decide_guard(self, guard: Guard, fn: Fn, seen: tuple) -> DecidedCondition:
         # Who asks a variable for its value is not under the guard yet.
