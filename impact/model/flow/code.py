@@ -975,8 +975,12 @@ class FlowCode:
         any."""
         if len(fn.facts.parameters) == len(arguments) or fn.source.facts.language != "cpp":
             return True
-        others = (one for one in self.list_functions(cls) if self.is_constructor(one))
-        return not any(len(one.facts.parameters) == len(arguments) for one in others)
+        return len(arguments) not in self._count_parameters(cls)
+
+    @cache_method
+    def _count_parameters(self, cls: Cls) -> frozenset[int]:
+        """How many parameters the constructors of a class have."""
+        return frozenset(len(one.facts.parameters) for one in self.list_functions(cls) if self.is_constructor(one))
 
     def list_given(self, fn: Fn, place: int, name: str) -> Iterator[tuple[FlowExpr, Fn]]:
         """What is given for the parameter of a function, where it is called, bound, or makes an object; with who gives
