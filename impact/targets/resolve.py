@@ -8,6 +8,7 @@ import posixpath
 import re
 from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -454,11 +455,14 @@ def _iterate_texts(tree: Tree, *patterns: re.Pattern[str]) -> Iterator[tuple[str
     roots = {path[: at.start()].rstrip("/") for path in paths if (at := _AT_ROOT.search(path))}
     owners = sorted({folder.strip("./") for folder in tree.repositories} | roots, key=len, reverse=True)
     for path in paths:
-        try:
-            text = tree.read(path, _LARGEST).decode("utf-8", "replace")
-        except OSError:
-            continue
-        yield next((folder for folder in owners if not folder or path.startswith(f"{folder}/")), ""), path, text
+        owner = next((folder for folder in owners if not folder or path.startswith(f"{folder}/")), "")
+        yield from ((owner, path, text) for text in _read_text(tree, path))
+
+
+def _read_text(tree: Tree, path: str) -> Iterator[str]:
+    """The text of a file; nothing where it cannot be read."""
+    with suppress(OSError):
+        yield tree.read(path, _LARGEST).decode("utf-8", "replace")
 
 
 def _iterate_texts_above(tree: Tree) -> Iterator[tuple[str, str, str]]:
@@ -476,13 +480,8 @@ def _iterate_texts_above(tree: Tree) -> Iterator[tuple[str, str, str]]:
             continue
         for name in names:
             path = f"{folder}/{name}" if folder else name
-            if not _CI_FILE.search(path):
-                continue
-            try:
-                text = found.read(name, _LARGEST).decode("utf-8", "replace")
-            except OSError:
-                continue
-            yield "", "../" * depth + path, text
+            if _CI_FILE.search(path):
+                yield from (("", "../" * depth + path, text) for text in _read_text(found, name))
 
 
 def read_branch(repository: Path) -> str:
