@@ -210,7 +210,8 @@ class FlowValues:
 
     def _recall_decided(self, fn: Fn, place: int) -> DecidedCondition:
         """Whether a guard of a function holds; known already where the settings that this rests on are the same."""
-        kept = tuple(one for one in (self.way, self.within, self.made) if one)
+        # No way and no makers are the same in every copy; that no functions run is not that all do.
+        kept = (self.way or None, self.within, self.made or None)
         known = self._decided.setdefault((fn, place, self.arguments, self.node, *map(id, kept)), [])
         for rests_on, found, _ in known:
             if all(self.find_setting(name) == value for name, value in rests_on.items()):
