@@ -92,7 +92,7 @@ class NodeChange(NamedTuple):
     made_of: tuple[str, ...] = ()
 
     def list_files(self) -> Iterator[str]:
-        """The files whose lines are told of it."""
+        """The files whose lines it is reported at."""
         yield from (difference.path for difference in self.differences)
         yield from (node.path for node in (self.before, self.now) if node is not None)
         yield from self.made_of
@@ -317,8 +317,8 @@ class _Comparison:
         used: set[str] = set()
         pairs = list(self._pair_launches())
         found = [one for pair in pairs if (one := self._compare_launch(*pair, self.changed, used)) is not None]
-        told = {path for one in found for node in one.nodes for path in node.list_files()}
-        left = set(filter(self._differs, self.changed - told - self._find_moved()))
+        covered = {path for one in found for node in one.nodes for path in node.list_files()}
+        left = set(filter(self._differs, self.changed - covered - self._find_moved()))
         if left:
             # What the defaults of arguments leave out.
             rest = (self._compare_launch(*pair, left, used, undecided=True) for pair in pairs)
@@ -326,8 +326,8 @@ class _Comparison:
                 nodes = tuple(node for node in one.nodes if not left.isdisjoint(node.list_files()))
                 if nodes:
                     found.append(one._replace(nodes=nodes))
-                    told.update(path for node in nodes for path in node.list_files())
-        return LaunchChanges(tuple(found), tuple(sorted(left - used)), tuple(sorted(left & used - told)))
+                    covered.update(path for node in nodes for path in node.list_files())
+        return LaunchChanges(tuple(found), tuple(sorted(left - used)), tuple(sorted(left & used - covered)))
 
     def _find_moved(self) -> set[str]:
         """Files that only have another path."""
