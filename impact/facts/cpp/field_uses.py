@@ -41,7 +41,7 @@ _READS = frozenset(
 )  # fmt: skip
 _TESTS = frozenset(("has_value", "valid", "expired", "use_count", "operator bool", "unique"))
 _ADDS = frozenset(("push_back", "emplace_back", "push", "push_front", "emplace_front", "insert", "emplace", "add"))
-_RESETS = frozenset(("reset", "swap", "assign"))
+_RESETS = frozenset(("reset", "assign"))
 _ENDS = frozenset(("begin", "end", "cbegin", "cend", "rbegin", "rend", "crbegin", "crend"))
 _ITERATED = ELEMENTS | _ENDS
 _NULLS = frozenset(("nullptr", "NULL", "0"))
@@ -159,7 +159,7 @@ class _Reader:
                 how = ("given", type_, place, len(arguments)) if whole else ("use", "an argument", 0, 0)
                 self._add(word, how[0], argument, how[1], how[2], how[3], type_ if whole else "")
                 if whole and len(arguments) == 1:
-                    self._add(word, "kept", argument, declarator, type_=type_)
+                    self._add(word, "kept", argument, declarator, 0, 1, type_)
 
     def _find_mistaken(self, node: Node) -> tuple[str, str] | None:
         """The variable and type that the declaration in a body has which a list of parameters may be arguments of."""
@@ -279,7 +279,7 @@ class _Reader:
             self._add(path, "test", node, method)
         elif method in _READS:
             self._add(path, "read", node, method)
-        elif method in CHANGES:
+        elif method in CHANGES and method != "swap":
             self._add(path, "change", node, method)
         else:
             self._add(path, "method", node, method)
@@ -318,7 +318,7 @@ class _Reader:
             type_ = self._find_type(declaration) if declaration is not None else ""
             declarator = self._name_declared(outer.children[0])
             if len(items) == 1 and declarator:
-                self._add(path, "kept", node, declarator, type_=type_)
+                self._add(path, "kept", node, declarator, 0, 1, type_)
             if not type_.endswith("auto"):
                 self._add(path, "given", node, type_, place, len(items), type_)
             return None
@@ -352,7 +352,7 @@ class _Reader:
             return (path, call) if count == 1 else None
         method = callee.rpartition(".")[2]
         if "." in callee and method in _ADDS and self._is_plain(function):
-            self._add(path, "kept", node, f"{callee.rpartition('.')[0]}.[]", type_="?")
+            self._add(path, "added", node, callee, place, count)
             return None
         if "." in callee and method in _RESETS and self._is_plain(function):
             self._add(path, "kept", node, callee.rpartition(".")[0], type_="?")

@@ -17,8 +17,9 @@ _THROUGH = frozenset(("copy", "deepcopy", "copy.copy", "copy.deepcopy", "list", 
                       "next", "cast", "typing.cast", "set"))  # fmt: skip
 _TESTS = frozenset(("isinstance", "hasattr", "type", "id", "callable", "issubclass"))
 _ADDS = frozenset(("append", "appendleft", "add", "put", "insert", "put_nowait", "push", "extend"))
-_CHANGES = frozenset(("append", "extend", "insert", "clear", "pop", "remove", "sort", "reverse", "popleft",
-                      "appendleft"))  # fmt: skip
+_CHANGES = frozenset(("append", "extend", "insert", "clear", "reverse", "appendleft"))
+_TAKES = frozenset(("pop", "popleft", "get", "get_nowait", "setdefault"))
+_VIEWS = frozenset(("copy", "values"))
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _MOST_STEPS = 200
 _LONGEST = 80
@@ -168,6 +169,8 @@ class _Reader(SourceText):
     def _climb_attribute(self, path: str, parent: ast.Attribute, node: ast.AST) -> tuple[str, ast.AST] | None:
         outer = self.parents.get(parent)
         if isinstance(outer, ast.Call) and outer.func is parent:
+            if parent.attr in _TAKES or parent.attr in _VIEWS:
+                return (path if parent.attr in _VIEWS else f"{path}.[]"), outer
             self._add(path, "change" if parent.attr in _CHANGES else "method", node, parent.attr)
             return None
         if isinstance(parent.ctx, ast.Store) and not isinstance(outer, ast.AugAssign):
@@ -205,8 +208,7 @@ class _Reader(SourceText):
         ):  # fmt: skip
             self._end_paired(path, at, call, callee, node)
         elif at in call.args and "()" not in callee and callee.rpartition(".")[2] in _ADDS and "." in callee:
-            target, _, adds = callee.rpartition(".")
-            self._add(path, "kept", node, target if adds == "extend" else f"{target}.[]")
+            self._add(path, "added", node, callee, call.args.index(at), len(call.args))  # type: ignore[arg-type]
         elif at in call.args:
             self._add(path, "given", node, callee, call.args.index(at), len(call.args))  # type: ignore[arg-type]
         else:

@@ -5,10 +5,12 @@ Sound before clever: what cannot be followed is a reading of all that is handed 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
 from ...facts.field_uses import PathUse
+from ...facts.flow import FlowExpr
 from ..flow.calls import Calls
 from ..flow.code import FlowCode, Fn, Variable, get_tail
 from ..flow.types import find_interface, split_name
@@ -18,9 +20,9 @@ from .shapes import Path, Shapes, Spot
 _MOST = 4_000
 _PRINTS = frozenset(("print", "str", "repr", "format"))
 _PUBLISHES = frozenset(("publish", "publish_", "Publish"))
+_CONTAINERS = frozenset(("list", "deque", "dict", "set", "defaultdict", "OrderedDict", "Queue", "SimpleQueue"))
 # Statements of a container that change nothing of what its elements are, and look at none.
-_DROPS = frozenset(("erase", "pop_front", "pop_back", "pop", "clear", "reserve", "resize", "swap", "reset", "popleft",
-                    "shrink_to_fit", "rotate"))  # fmt: skip
+_DROPS = frozenset(("erase", "pop_front", "pop_back", "pop", "clear", "reserve", "resize", "reset", "shrink_to_fit"))
 
 
 class ReadAt(NamedTuple):
@@ -153,6 +155,8 @@ class _Walk:
             self._judge_kept(place, spot)
         elif use.how == "given":
             self._judge_given(place, spot)
+        elif use.how == "added":
+            self._judge_added(place, spot)
         elif use.how == "returned":
             self._judge_returned(place, spot)
         elif (use.how == "method" and use.to in _DROPS) or (use.how == "test" and spot.kind == "message"):
@@ -182,17 +186,81 @@ class _Walk:
             text, source, scope = self.code.find_declared_type(variable, fn)
             kind = self.code.resolve_written(text, source, scope) if text else None
         if kind is not None and kind.name and not self._holds(kind.name, spot):
-            cls = kind.cls
             # What is made of the message by a constructor of the workspace is followed where it is given to that.
-            if cls is None or use.type == "?":
+            if kind.cls is None or not use.count:
                 self.escape_at(spot, f"made into `{get_tail(kind.name)}`", place)
             return
-        if not self._is_declared(variable, fn):
-            self.escape_at(spot, f"kept in `{target}`, which is declared elsewhere", place)
-        elif self._is_variable(target, fn):
-            self.hold(variable, spot.path)
-        else:
+        self._put(target, variable, place, spot, bool(written))
+
+    def _put(self, target: str, variable: Variable, place: UsePlace, spot: Spot, declared: bool = False) -> None:
+        """A variable, or what it refers to, becomes the message. declared: it is, here."""
+        fn = place.fn
+        refers = self._list_referred(variable, fn, place.use.how == "added") if not declared else ()
+        if refers is None:
+            self.escape_at(spot, f"put into what `{variable.name}` stands for", place)
+            return
+        if not self._is_variable(target, fn):
             self.escape_at(spot, f"put into `{target.rpartition('.')[0]}`", place)
+        elif not self._is_declared(variable, fn):
+            self.escape_at(spot, f"kept in `{target}`, which is declared elsewhere", place)
+        elif fn.source.facts.language != "cpp" and self._is_method(variable.name):
+            self.escape_at(spot, f"given to `{variable.name}`, which may be a property", place)
+        else:
+            for one in (variable, *refers):
+                self.hold(one, spot.path)
+
+    def _is_method(self, name: str) -> bool:
+        return any(one.facts.owner for one in self.code.by_tail.get(name, ()))
+
+    def _list_referred(self, variable: Variable, fn: Fn, adds: bool) -> tuple[Variable, ...] | None:
+        """What else a local variable is a name of: what it refers to, where something is put into it. None where that
+        is not known. adds: something is added to it, and not assigned."""
+        owner = next((one for one in self.code.list_enclosing_chain(fn) if one.place == variable.owner), None)
+        if variable.kind != "local" or owner is None:
+            return ()
+        cpp = fn.source.facts.language == "cpp"
+        for parameter in owner.facts.parameters:
+            if parameter.name == variable.name:
+                refers = "&" in parameter.type or "*" in parameter.type or "Ptr" in parameter.type or not parameter.type
+                return None if (refers if cpp else adds) else ()
+        found: list[Variable] = []
+        for each in owner.assigned.get(variable.name, ()):
+            if cpp and each.type and not re.search(r"[&*]|auto|Ptr|_ptr", each.type):
+                continue
+            if not cpp and not adds:
+                continue
+            if each.value.kind == "name":
+                found.append(self.code.identify(each.value.text, owner))
+            elif each.value.kind in ("index", "call", "other", "choice") and not _is_fresh(each.value, cpp):
+                if cpp and "&" not in each.type and "*" not in each.type:
+                    continue
+                return None
+        return tuple(found)
+
+    def _judge_added(self, place: UsePlace, spot: Spot) -> None:
+        """An argument of a method that adds to a container, or of one of the code's own of that name."""
+        use, fn = place.use, place.fn
+        target = ".".join(part for part in use.to.split(".")[:-1] if part != "[]")
+        if self.code.list_targets(use.to, fn):
+            self._judge_given(place, spot)
+            return
+        if not target or "()" in target:
+            self.escape_at(spot, f"given to `{get_tail(use.to)}`", place)
+            return
+        variable = self.code.identify(target, fn)
+        if fn.source.facts.language == "cpp":
+            text = self.code.find_declared_type(variable, fn)[0]
+            kind = self.code.resolve_variable_type(variable, fn)
+            plain = self._holds(kind.name, spot) and not re.search(r"\bset\s*<", text)
+        else:
+            values = [each.value for _, each in self.code.list_writes(variable)]
+            plain = bool(values) and all(_is_fresh(value, False) for value in values)
+            if variable.kind == "local" and not plain:
+                plain = all(value.kind == "name" or _is_fresh(value, False) for value in values) and bool(values)
+        if plain:
+            self._put(target, variable, place, spot)
+        else:
+            self.escape_at(spot, f"given to `{use.to}`", place)
 
     def _is_declared(self, variable: Variable, fn: Fn) -> bool:
         """Whether a variable is declared in the code, so that nobody else can read it: a member may be that of a base
@@ -225,7 +293,7 @@ class _Walk:
         use, fn = place.use, place.fn
         if use.type:
             kind = self.code.resolve_written(use.type, fn.source, fn.scope)
-            if not kind.name or self._holds(kind.name, spot):
+            if use.count == 1 and (not kind.name or self._holds(kind.name, spot)):
                 return  # a copy, which is kept or given on where it stands
         last = get_tail(use.to)
         if last in _PUBLISHES:
@@ -257,6 +325,13 @@ class _Walk:
 
     def _find_targets(self, callee: str, fn: Fn) -> list[Fn]:
         """The bodies that a call may run; of a class those of its constructors."""
+        local = self.code.resolve_variable(callee, fn)[0] if "." not in callee and "::" not in callee else None
+        if local is not None and local.kind == "local":
+            owner = next(one for one in self.code.list_enclosing_chain(fn) if one.place == local.owner)
+            values = [each.value for each in owner.assigned.get(callee, ())]
+            names = {value.text for value in values if value.kind == "lambda"}
+            found = [one for one in self.code.functions_in[fn.source.path] if one.name in names]
+            return found if len(found) == len(values) else []
         found = self.code.list_targets(callee, fn) or self._list_included(callee, fn)
         if found:
             return found
@@ -286,12 +361,23 @@ class _Walk:
         if fn.is_lambda or not tail.isidentifier():
             self.escape_at(spot, "given back by a lambda or an operator", place)
             return
+        given = self.code.resolve_written(fn.facts.returns, fn.source, fn.scope) if fn.facts.returns else None
+        if given is not None and given.name and given.name not in fn.facts.types and not self._holds(given.name, spot):
+            self.escape_at(spot, f"made into `{get_tail(given.name)}`", place)
+            return
         if tail in self.code.handed_on and not fn.facts.owner:
             self.escape_at(spot, f"given back by `{tail}`, which is handed on", place)
             return
         for result in self.uses.list_results(fn):
             parts = split_path(result.use.path)[result.at + 1 :]
             self.judge(result, self.shapes.find(self.type, spot.path, parts))
+
+
+def _is_fresh(value: FlowExpr, cpp: bool) -> bool:
+    """Whether an expression makes a container, or nothing, anew."""
+    if value.kind in ("make", "list", "number", "text"):
+        return True
+    return value.kind == "call" and not cpp and get_tail(value.text) in _CONTAINERS
 
 
 def _describe(how: str, what: str) -> str:

@@ -51,9 +51,15 @@ import numpy as np
 import rospy
 from robot.msg import Status
 {before}
+class Keeper:
+    def add(self, status):
+        self.name = status.name
+
 class Watch:
     def __init__(self):
         self.last = None
+        self.all = []
+        self.keeper = Keeper()
         self.sub = rospy.Subscriber("status", Status, self.on_status)
 
     def on_status(self, msg):
@@ -175,6 +181,30 @@ CPP = {
     "a class made of it": ("Keeper keeper(*msg);", "",
                            "struct Keeper { Keeper(const robot::Status& s) : level(s.level) {} int level; };", "",
                            "level", ""),
+    "through a reference": ("put(last_, *msg);", "robot::Status last_;",
+                            "void put(robot::Status& to, const robot::Status& s) { to = s; }", "", "", "*"),
+    "through a pointer": ("robot::Status* p = &last_; *p = *msg; x_ = last_.level;", "robot::Status last_; int x_;", "",
+                          "", "level", ""),
+    "through another name of a list": ("auto& list = list_; list.push_back(*msg);",
+                                       "std::vector<robot::Status> list_; int f() { return list_[0].level; }", "", "",
+                                       "level", ""),
+    "two to make a list": ("std::vector<robot::Status> v{*msg, *msg}; x_ = v[0].level;", "int x_;", "", "", "", "*"),
+    "a class made of it by =": ("Keeper keeper = *msg;", "",
+                                "struct Keeper { Keeper(const robot::Status& s) : level(s.level) {} int level; };",
+                                "", "", "*"),
+    "a class given back": ("make(*msg);", "",
+                           "struct Keeper { Keeper(const robot::Status& s) : level(s.level) {} int level; };\n"
+                           "Keeper make(const robot::Status& s) { return s; }", "", "", "*"),
+    "a local function": ("auto f = [](const robot::Status& s) { return s.level; }; f(*msg);", "",
+                         "int f(const robot::Status& s) { return 3; }", "", "level", ""),
+    "a container of one's own": ("kept_.add(*msg);", "Kept kept_;",
+                                 "struct Kept { void add(const robot::Status& s) { x = s.level; } int x; };", "",
+                                 "level", ""),
+    "an ordered set": ("set_.insert(*msg);", "std::set<robot::Status, Less> set_;",
+                       "struct Less { bool operator()(const robot::Status& a, const robot::Status& b) const"
+                       " { return a.level < b.level; } };", "", "", "*"),
+    "swapped": ("robot::Status s = *msg; last_.swap(s); x_ = last_.level;", "Swap last_; int x_;",
+                "struct Swap { int level; };", "", "", "*"),
     "moved": ("auto s = std::move(msg); int x = s->level;", "", "", "", "level", ""),
     "returned through": ("int x = pass(msg)->level;", "",
                          "robot::StatusConstPtr pass(const robot::StatusConstPtr& s) { return s; }", "", "level", ""),
@@ -214,6 +244,17 @@ PYTHON = {
     "a function": ("help(msg)", "", "def help(status):\n    return status.name\n", "name", ""),
     "a keyword": ("help(status=msg)", "", "def help(status):\n    return status.name\n", "", "*"),
     "a list": ("self.all.append(msg)", "def tick(self):\n    return [m.level for m in self.all]", "", "level", ""),
+    "a list that is passed on": ("fill(self.all, msg)", "", "def fill(every, status):\n    every.append(status)\n",
+                                 "", "*"),
+    "another name of a list": ("every = self.all\nevery.append(msg)",
+                               "def tick(self):\n    return self.all[0].level", "", "level", ""),
+    "what is no list": ("self.keeper.add(msg)", "", "", "name", ""),
+    "what may be a list": ("self.unknown.add(msg)", "", "", "", "*"),
+    "taken from a list": ("self.all.append(msg)", "def tick(self):\n    return self.all.pop(0).level", "", "level", ""),
+    "sorted": ("self.all.append(msg)", "def tick(self):\n    self.all.sort(key=lambda m: m.level)", "", "", "*"),
+    "a property that is set": ("self.kept = msg",
+                               "@property\ndef kept(self):\n    return 1\n"
+                               "@kept.setter\ndef kept(self, status):\n    self.x = status.level", "", "", "*"),
     "a copy": ("m = copy.deepcopy(msg)\nx = m.level", "", "", "level", ""),
     "a lambda": ("f = lambda: msg.level", "", "", "level", ""),
     "a global": ("global last\nlast = msg", "def tick(self):\n    return last.level", "last = None\n", "level", ""),
