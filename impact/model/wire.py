@@ -46,7 +46,7 @@ class WireField(NamedTuple):
     """A field as it lies on the wire; those of a nested message stand in its place, unless they are repeated.
 
     path: `pose.position.x`; `points[].x` of each element of an array. type: a primitive one, or `package/Name`. size:
-    bytes of one value, which is aligned to as many in CDR; 0 for strings and messages. count: None for one value, the
+    bytes of one value, which is aligned to as many in CDR; 0 for strings and messages. elements: None for one value, the
     number of them, or VARIABLE. members: those of one element of an array of messages. sent: False for the byte that a
     message without fields takes in CDR, which is nobody's field.
     """
@@ -54,7 +54,7 @@ class WireField(NamedTuple):
     path: str
     type: str
     size: int
-    count: int | None = None
+    elements: int | None = None
     members: tuple[WireField, ...] = ()
     sent: bool = True
 
@@ -134,14 +134,14 @@ class _Sizer:
     def advance(self, fields: tuple[WireField, ...], at: int) -> int:
         """Where these fields end that begin at a place."""
         for field in fields:
-            count = field.count
+            count = field.elements
             if count == VARIABLE:
                 at = self.align(at, 4) + 4
                 count = self.lengths.get(field.path, self.default)
             if field.members:
                 at = self.repeat(lambda place, inner=field.members: self.advance(inner, place), at, count)
             elif field.is_string:
-                length = self.lengths.get(field.path if field.count is None else f"{field.path}[]", self.default)
+                length = self.lengths.get(field.path if field.elements is None else f"{field.path}[]", self.default)
                 end = 4 + length + self.aligned  # CDR counts and sends the zero behind a string
                 at = self.repeat(lambda place, end=end: self.align(place, 4) + end, at, count)
             elif count != 0:

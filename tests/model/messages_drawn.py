@@ -9,7 +9,7 @@ PRIMITIVE = sorted(SIZES.keys() - {"octet"})
 
 @st.composite
 def drawn_messages(draw, times=(), bounded=True):
-    """(text of each message by `package/Name`, the last of which may hold the others; how long strings and arrays are)."""
+    """(texts by `package/Name`, the last of which may hold the others; how long strings and arrays are)."""
     texts, full = {}, ""
     for number in range(draw(st.integers(1, 4))):
         lines = []
