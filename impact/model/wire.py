@@ -46,9 +46,9 @@ class WireField(NamedTuple):
     """A field as it lies on the wire; those of a nested message stand in its place, unless they are repeated.
 
     path: `pose.position.x`; `points[].x` of each element of an array. type: a primitive one, or `package/Name`. size:
-    bytes of one value, which is aligned to as many in CDR; 0 for strings and messages. elements: None for one value, the
-    number of them, or VARIABLE. members: those of one element of an array of messages. sent: False for the byte that a
-    message without fields takes in CDR, which is nobody's field.
+    bytes of one value, which is aligned to as many in CDR; 0 for strings and messages. elements: None for one value,
+    the number of them, or VARIABLE. members: those of one element of an array of messages. sent: False for the byte
+    that a message without fields takes in CDR, which is nobody's field.
     """
 
     path: str
