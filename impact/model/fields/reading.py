@@ -25,6 +25,13 @@ _CONTAINERS = frozenset(("list", "deque", "dict", "set", "defaultdict", "Ordered
 _DROPS = frozenset(("erase", "pop_front", "pop_back", "pop", "clear", "reserve", "resize", "reset", "shrink_to_fit"))
 
 
+class Holder(NamedTuple):
+    """A variable that holds a field of the message; () for the whole of it."""
+
+    variable: Variable
+    base: Path
+
+
 class ReadAt(NamedTuple):
     """Where a field is read first."""
 
@@ -43,20 +50,13 @@ class Escape(NamedTuple):
 
 class Reading(NamedTuple):
     """reads: leaves by where they are read first. sizes: arrays of messages whose number of elements is asked for.
-    escapes: in the order in which they were found; what is below their fields counts as read. kept: variables that hold
-    the message or a part of it."""
+    escapes: in the order in which they were found; what is below their fields counts as read. holders: variables that
+    hold the message, with () for the whole of it, or a field."""
 
     reads: dict[Path, ReadAt]
     sizes: dict[Path, ReadAt]
     escapes: tuple[Escape, ...]
-    kept: frozenset[Variable] = frozenset()
-
-
-class _Holder(NamedTuple):
-    """A variable that holds a field of the message; () for the whole of it."""
-
-    variable: Variable
-    base: Path
+    holders: frozenset[Holder] = frozenset()
 
 
 class FieldReader:
@@ -67,7 +67,7 @@ class FieldReader:
 
     def read_parameter(self, fn: Fn, names: Iterable[str], type_: str) -> Reading:
         """What is read of a message `package/Name` that a function is given as parameters of some names."""
-        holders = [_Holder(Variable("local", fn.place, name), ()) for name in names]
+        holders = [Holder(Variable("local", fn.place, name), ()) for name in names]
         return _Walk(self, type_).run(holders)
 
 
@@ -80,11 +80,11 @@ class _Walk:
         self.reads: dict[Path, ReadAt] = {}
         self.sizes: dict[Path, ReadAt] = {}
         self.escapes: dict[tuple[Path, str], Escape] = {}
-        self.seen: set[_Holder] = set()
-        self.left: list[_Holder] = []
+        self.seen: set[Holder] = set()
+        self.left: list[Holder] = []
         self.returned: set[tuple[Fn, Path]] = set()
 
-    def run(self, holders: Iterable[_Holder]) -> Reading:
+    def run(self, holders: Iterable[Holder]) -> Reading:
         for holder in holders:
             self.hold(holder.variable, holder.base)
         while self.left:
@@ -96,17 +96,16 @@ class _Walk:
             for place in self.uses.list_uses(holder.variable):
                 parts = split_path(place.use.path)[place.at + 1 :]
                 self.judge(place, self.shapes.find(self.type, holder.base, parts))
-        kept = frozenset(holder.variable for holder in self.seen)
-        return Reading(self.reads, self.sizes, tuple(self.escapes.values()), kept)
+        return Reading(self.reads, self.sizes, tuple(self.escapes.values()), frozenset(self.seen))
 
     def hold(self, variable: Variable, base: Path) -> None:
         """A variable that holds a field of the message."""
-        holder = _Holder(variable, base)
+        holder = Holder(variable, base)
         if holder not in self.seen:
             self.seen.add(holder)
             self.left.append(holder)
 
-    def _check_readable(self, holder: _Holder) -> None:
+    def _check_readable(self, holder: Holder) -> None:
         """What did not parse, or stands in macros, may read anything."""
         variable = holder.variable
         if variable.kind == "local":

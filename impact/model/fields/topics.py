@@ -37,7 +37,7 @@ def report_fields(workspace: Workspace, graph: Graph, store: Store | None, jobs:
     key = flow.key + _make_graph_key(graph)
 
     def make() -> FieldReport:
-        return _Topics(workspace, flow.code, graph, extract_uses(workspace, jobs)).report()
+        return TopicReader(workspace, flow.code, graph, extract_uses(workspace, jobs)).report()
 
     return recall(store, "fields", key, FieldReport, make)
 
@@ -60,8 +60,8 @@ def extract_uses(workspace: Workspace, jobs: int | None = None) -> dict[str, Fie
     return {path: file for path, file in files.items() if file is not None}
 
 
-class _Topics:
-    """The topics of a graph."""
+class TopicReader:
+    """Reads the topics of a graph. files: field facts by path."""
 
     def __init__(self, workspace: Workspace, join: Join, graph: Graph, files: dict[str, FieldFile]):
         self.join, self.graph = join, graph
@@ -70,14 +70,14 @@ class _Topics:
         self.shapes = shapes
         self.reader = FieldReader(join.code, join.calls, Uses(join.code, files), shapes)
         self._readings: dict[tuple[tuple[str, ...], str], Reading] = {}
+        for one in graph.endpoints:
+            for fn in self.list_callbacks(one) if one.role == "subscriber" and one.type else ():
+                names = select_parameters(fn, one.type, join.code)
+                self.reader.uses.messages.update(Variable("local", fn.place, name) for name in names)
 
     def report(self) -> FieldReport:
         """All topics, sorted by name."""
         subscribers, publishers = self._group("subscriber"), self._group("publisher")
-        for (_, type_), endpoints in subscribers.items():
-            for fn in (fn for one in endpoints for fn in self._list_callbacks(one)):
-                names = select_parameters(fn, type_, self.join.code)
-                self.reader.uses.messages.update(Variable("local", fn.place, name) for name in names)
         found: list[TopicFields] = []
         unknown: list[tuple[str, str]] = []
         for topic, type_ in sorted({*subscribers, *publishers}):
@@ -122,20 +122,21 @@ class _Topics:
                 yield f"{lost.path}:{lost.line} starts `{lost.written or 'a node'}`, whose code is not here"
 
     @cached_property
-    def _sites(self) -> dict[tuple[str, int], list[Site]]:
+    def sites(self) -> dict[tuple[str, int], list[Site]]:
+        """Where the code makes endpoints, by path and line."""
         return group_pairs(
             ((site.use.fn.source.path, site.use.call.line), site) for site in self.join.sites.endpoints
         )
 
-    def _list_callbacks(self, endpoint: Endpoint) -> list[Fn]:
+    def list_callbacks(self, endpoint: Endpoint) -> list[Fn]:
         """The bodies that a subscriber calls."""
-        sites = self._sites.get((endpoint.path, endpoint.line), ())
+        sites = self.sites.get((endpoint.path, endpoint.line), ())
         found = [fn for site in sites if site.role == endpoint.role for fn in site.callbacks]
         return list(dict.fromkeys(found))
 
     def _make_subscriber(self, endpoint: Endpoint, type_: str, leaves: Sequence[Path]) -> SubscriberFields:
-        callbacks = self._list_callbacks(endpoint)
-        reading = self._read(callbacks, endpoint, type_)
+        callbacks = self.list_callbacks(endpoint)
+        reading = self.read(callbacks, endpoint, type_)
         escaped = [escape.field for escape in reading.escapes]
         escaped += list(reading.sizes)
         read = reading.reads
@@ -151,7 +152,8 @@ class _Topics:
             _list_places(reading.sizes),
         )  # fmt: skip
 
-    def _read(self, callbacks: Sequence[Fn], endpoint: Endpoint, type_: str) -> Reading:
+    def read(self, callbacks: Sequence[Fn], endpoint: Endpoint, type_: str) -> Reading:
+        """What callbacks read of a message `package/Name`. endpoint: the subscriber that calls them."""
         if not callbacks:
             why = endpoint.reason or ("the framework reads it" if endpoint.implied else "its callback is not known")
             return Reading({}, {}, (Escape((), why, endpoint.path, endpoint.line),))
