@@ -179,7 +179,8 @@ class TopicReader:
             return readings[0]
         reads = {path: place for one in reversed(readings) for path, place in one.reads.items()}
         sizes = {path: place for one in reversed(readings) for path, place in one.sizes.items()}
-        return Reading(reads, sizes, tuple(dict.fromkeys(escape for one in readings for escape in one.escapes)))
+        escapes = tuple(dict.fromkeys(escape for one in readings for escape in one.escapes))
+        return Reading(reads, sizes, escapes, frozenset().union(*(one.holders for one in readings)))
 
     # Publishers
 
