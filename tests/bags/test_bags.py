@@ -20,6 +20,7 @@ from rosbags import rosbag1, rosbag2
 from rosbags.typesys import get_types_from_msg
 from rosimpact.impact.analysis.bag_files import BagError
 from rosimpact.impact.analysis.bags import LengthFacts, list_silent_fields, measure_bag
+from rosimpact.impact.analysis.rosbag_file import RosbagFile
 from rosimpact.impact.cli.app import app
 from typer.testing import CliRunner
 
@@ -368,6 +369,20 @@ def test_a_recording_of_ros_1_that_was_not_closed(tmp_path):
     assert said is not None, failed.stderr
     assert int(said[2]) > 1_000
     assert measure_bag(cut, limit=int(said[2])).count == int(said[2])
+
+
+def test_messages_of_ros_1_are_those_that_rosbags_reads(tmp_path):
+    store = make_store()
+    rows = [*make_quays(store, 3_000), *make_quays(store, 10)]
+    path = write_bag(tmp_path, "rosbag", rows, store=store, compression=(rosbag1.Writer.CompressionFormat.LZ4,))
+    with rosbag1.Reader(path) as bag:
+        expected = sorted((each.topic, time, bytes(data)) for each, time, data in bag.messages())
+    with RosbagFile(path) as bag:
+        wanted = {number for number, each in bag.connections.items() if each.topic == "/quay"}
+        found = [(bag.connections[number].topic, *rest) for number, *rest in bag.read_messages(bag.connections)]
+        assert [row[0] for row in found].count("/quay") == len(list(bag.read_messages(wanted))) == bag.count - 2
+    assert sorted(found) == expected
+    assert len(expected) == bag.count == 3_012
 
 
 @pytest.mark.parametrize(
