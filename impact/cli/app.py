@@ -320,6 +320,23 @@ def logic(
 
 
 @_add_command(app)
+def fields(
+    path: Path | None = _make_argument(
+        "Workspace whose message definitions are used where the bag has none.", show_default=False
+    ),
+    bag: Path | None = _make_option(
+        "Read this recording: a .bag file of ROS 1; a folder, .mcap or .db3 file of ROS 2. Needs `rosimpact[bags]`."
+    ),
+    topic: list[str] = _make_option("Only this topic; `*` matches any text. May be repeated or comma-separated."),
+    limit: int | None = _make_option("Only so many messages, the first ones.", min=1),
+    format: str = _make_option("text or json.", "--format", "-f", default="text"),
+    output: _Output = None,
+    quiet: _Quiet = False,
+) -> None:
+    """Show the size and rate of messages in a recording, what each field takes of it, and which never held a value."""
+
+
+@_add_command(app)
 def explain(
     rule: str | None = _make_argument("Name of a rule, group or family; default: list all rules."),
 ) -> None:

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Literal, NamedTuple
 
-from ..facts.interface import Field, Section, make_full_name
+from ..facts.interface import Section, make_full_name
 
 Encoding = Literal["ros1", "cdr"]
 HEAD: dict[Encoding, int] = {"ros1": 0, "cdr": 4}
@@ -20,14 +20,8 @@ SIZES = {
     "bool": 1, "byte": 1, "char": 1, "octet": 1, "int8": 1, "uint8": 1, "int16": 2, "uint16": 2, "int32": 4,
     "uint32": 4, "int64": 8, "uint64": 8, "float32": 4, "float64": 8,
 }  # fmt: skip
-_ROS1_SIZES = SIZES | {"time": 8, "duration": 8}
-_TIMES = {
-    f"builtin_interfaces/{name}": Section(
-        "message", (Field("sec", "int32", "", "", 1), Field("nanosec", "uint32", "", "", 2)), ()
-    )
-    for name in ("Time", "Duration")
-}
-"""What is nearly always there, and what `time` and `duration` mean in ROS 2."""
+TIMES = {"time": 8, "duration": 8, "builtin_interfaces/Time": 8, "builtin_interfaces/Duration": 8}
+"""Two numbers of four bytes, which nobody takes apart: `time` is a primitive type of ROS 1 and a message of ROS 2."""
 _STRING = "string"
 _FIXED = re.compile(r"\[([0-9]+)\]")
 _LEVELS = 50
@@ -45,8 +39,8 @@ class LayoutError(ValueError):
 class WireField(NamedTuple):
     """A field as it lies on the wire; those of a nested message stand in its place, unless they are repeated.
 
-    path: `pose.position.x`; `points[].x` of each element of an array. type: a primitive one, or `package/Name`. size:
-    bytes of one value, which is aligned to as many in CDR; 0 for strings and messages. elements: None for one value,
+    path: `pose.position.x`; `points[].x` of each element of an array. type: a primitive one or a time, or as the array
+    of messages has it. size: bytes of one value; 0 for strings and messages. elements: None for one value,
     the number of them, or VARIABLE. members: those of one element of an array of messages. sent: False for the byte
     that a message without fields takes in CDR, which is nobody's field.
     """
@@ -57,6 +51,11 @@ class WireField(NamedTuple):
     elements: int | None = None
     members: tuple[WireField, ...] = ()
     sent: bool = True
+
+    @property
+    def alignment(self) -> int:
+        """What a value's place is a multiple of in CDR."""
+        return 4 if self.type not in SIZES else self.size
 
     @property
     def is_string(self) -> bool:
@@ -74,7 +73,6 @@ class _Layout:
     def __init__(self, find_section: FindSection, encoding: Encoding):
         self.find_section = find_section
         self.encoding: Encoding = encoding
-        self.sizes = _ROS1_SIZES if encoding == "ros1" else SIZES
         self.left = _FIELDS_AT_MOST
 
     def list_fields(self, name: str, above: str, around: tuple[str, ...]) -> tuple[WireField, ...]:
@@ -82,7 +80,7 @@ class _Layout:
             raise LayoutError(f"{name} holds itself")
         if len(around) >= _LEVELS:
             raise LayoutError(f"messages are nested more than {_LEVELS} levels deep")
-        section = self.find_section(name) or _TIMES.get(name)
+        section = self.find_section(name)
         if section is None:
             raise LayoutError(f"the definition of {name} is not known")
         found: list[WireField] = []
@@ -103,8 +101,9 @@ class _Layout:
         if fixed is not None and len(fixed[1]) > 12:
             raise LayoutError(f"`{path}` has {fixed[1][:12]}... elements")
         count = None if not array else int(fixed[1]) if fixed is not None else VARIABLE
-        if type_ in self.sizes or type_ == _STRING:
-            return (WireField(path, type_, self.sizes.get(type_, 0), count),)
+        size = SIZES.get(type_) or TIMES.get(type_.replace("/msg/", "/"), 0)
+        if size or type_ == _STRING:
+            return (WireField(path, type_, size, count),)
         if type_ in ("wstring", "wchar", "float128"):
             raise LayoutError(f"`{path}` is a {type_}, which middlewares send in different forms")
         inside = path if count is None else f"{path}[]"
@@ -145,7 +144,7 @@ class _Sizer:
                 end = 4 + length + self.aligned  # CDR counts and sends the zero behind a string
                 at = self.repeat(lambda place, end=end: self.align(place, 4) + end, at, count)
             elif count != 0:
-                at = self.align(at, field.size) + (1 if count is None else count) * field.size
+                at = self.align(at, field.alignment) + (1 if count is None else count) * field.size
         return at
 
     def align(self, at: int, size: int) -> int:
