@@ -41,7 +41,7 @@ class CppEditor:
 
     # Finding places
 
-    def _text(self, node: Node) -> str:
+    def _spell_node(self, node: Node) -> str:
         return self.data[node.start_byte : node.end_byte].decode("utf-8", "surrogateescape")
 
     def _find_line(self, node: Node) -> int:
@@ -89,7 +89,7 @@ class CppEditor:
                 parent = parent.parent
             if parent is None or parent.kind_id not in (KIND.field_declaration, KIND.declaration):
                 continue
-            if strip_templates(self._text(node.children[0])) == name and self._find_class(parent) == owner:
+            if strip_templates(self._spell_node(node.children[0])) == name and self._find_class(parent) == owner:
                 found.append(node)
         return found
 
@@ -99,7 +99,7 @@ class CppEditor:
         while outer is not None:
             if outer.kind_id in (KIND.class_specifier, KIND.struct_specifier):
                 named = outer.child_by_field_name("name")
-                return strip_templates(self._text(named)).rpartition("::")[2] if named is not None else ""
+                return strip_templates(self._spell_node(named)).rpartition("::")[2] if named is not None else ""
             outer = outer.parent
         return ""
 
@@ -139,7 +139,7 @@ class CppEditor:
         """Changes the type of a variable that is declared in a line. Gives how often."""
         for node in self._walk(self._root, KIND.field_declaration, KIND.declaration):
             first, last = self._find_line(node), bisect_right(self._starts, node.end_byte)
-            if first <= line <= last and re.search(rf"\b{re.escape(name)}\b", self._text(node)):
+            if first <= line <= last and re.search(rf"\b{re.escape(name)}\b", self._spell_node(node)):
                 declared = node.child_by_field_name("type")
                 if declared is not None:
                     return self.replace_type(declared.start_byte, declared.end_byte, old, new)
@@ -155,7 +155,7 @@ class CppEditor:
         """Changes the type of a function's parameter; gives it as it was, with its name. function: a definition,
         declarator or lambda. optional: the type need not be named. Raises EditRefused."""
         parameter = self._find_parameter(self._find_list(function), place)
-        text = self._text(parameter)
+        text = self._spell_node(parameter)
         if not self.replace_type(parameter.start_byte, parameter.end_byte, old, new) and not optional:
             raise EditRefused(f"its callback names the type otherwise: `{text}`")
         return text
@@ -169,7 +169,7 @@ class CppEditor:
         """Changes the type of a parameter and gives it another name; the body begins with a variable of the old type
         and name that is made of it. convert: the function that makes it. Raises EditRefused."""
         parameter = self._find_parameter(self._find_list(function), place)
-        text = self._text(parameter)
+        text = self._spell_node(parameter)
         body = next((one for one in function.children if one.kind_id == KIND.compound_statement), None)
         if body is None or "MessageEvent" in text or "auto" in text:
             raise EditRefused(f"its callback takes `{text}`")
@@ -208,7 +208,7 @@ class CppEditor:
             raise EditRefused(f"line {line} publishes a list in braces")
         self.replace(only.start_byte, only.start_byte, f"{function}(")
         self.replace(only.end_byte, only.end_byte, ")")
-        return not self._text(only).startswith("*")
+        return not self._spell_node(only).startswith("*")
 
     def has_header(self, header: str) -> bool:
         """Whether the file itself includes a header."""

@@ -219,7 +219,7 @@ class Planner:
         fields = name_nested(fields, light, texts.get)
         work = _Work(self, group, type_, light, fields)
         edits = work.collect()
-        created = self._place_definitions(type_, made, edits)
+        created = self._put_definitions(type_, made, edits)
         files = tuple(sorted({edit.path for edit in edits} | created.keys()))
         sizes = [self._measure(one, texts) for one in (type_, light)]
         plan = TopicPlan(tuple(topic.topic for topic in group), type_, light, paths, tuple(gone), files, *sizes)
@@ -241,7 +241,7 @@ class Planner:
             self._made[type_, paths] = known
         return known
 
-    def _place_definitions(
+    def _put_definitions(
         self, type_: str, made: Mapping[str, LightDefinition], edits: list[Edit]
     ) -> dict[str, bytes]:
         """The new files, and into the edits the lines of CMakeLists.txt that name them. Raises EditRefused."""
@@ -364,11 +364,11 @@ class _Work:
             data = self.planner.read(path)
             if data is None:
                 raise EditRefused(f"{path} cannot be read")
-            python = self.code_language(path) == "python"
+            python = self.find_language(path) == "python"
             self.editors[path] = PythonEditor(path, data) if python else CppEditor(path, data, self.ros)
         return self.editors[path]
 
-    def code_language(self, path: str) -> str:
+    def find_language(self, path: str) -> str:
         """`cpp` or `python`."""
         return next((one.facts.language for one in self.code.sources if one.path == path), "cpp")
 
@@ -442,7 +442,7 @@ class _Work:
         editor = self._get_cpp(fn.source.path)
         function = editor.find_function(fn.facts.line, fn.name)
         reading = self.topics.reader.read_parameter(fn, names, self.type)
-        if self._reads_alone(fn, names[0], reading):
+        if self._is_reader_alone(fn, names[0], reading):
             generic = "auto" in fn.facts.parameters[place].type
             editor.retype_parameter(function, place, self.type, self.light, generic)
         else:
@@ -451,7 +451,7 @@ class _Work:
         if not fn.is_lambda:
             self._retype_declarations(fn, place, where)
 
-    def _reads_alone(self, fn: Fn, parameter: str, reading: Reading) -> bool:
+    def _is_reader_alone(self, fn: Fn, parameter: str, reading: Reading) -> bool:
         """Whether a callback does nothing but read fields, so that it need not know which message it is given."""
         for holder in reading.holders:
             if holder.variable == Variable("local", fn.place, parameter):

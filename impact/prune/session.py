@@ -92,7 +92,8 @@ def make_diff(prepared: Prepared) -> str:
 def _show_new(path: str, data: bytes) -> str:
     lines = data.decode("utf-8", "surrogateescape").splitlines(keepends=True)
     body = "".join(f"+{line}" if line.endswith("\n") else f"+{line}\n\\ No newline at end of file\n" for line in lines)
-    return f"diff --git a/{path} b/{path}\nnew file mode 100644\n--- /dev/null\n+++ b/{path}\n@@ -0,0 +1,{len(lines)} @@\n{body}"
+    head = f"diff --git a/{path} b/{path}\nnew file mode 100644\n--- /dev/null\n+++ b/{path}\n"
+    return f"{head}@@ -0,0 +1,{len(lines)} @@\n{body}"
 
 
 def apply_plan(root: Path, prepared: Prepared) -> None:
@@ -119,7 +120,8 @@ def apply_plan(root: Path, prepared: Prepared) -> None:
             write_file(os.path.join(root, path), data, beneath=root, instead_of=prepared.originals[path])
     except OSError as error:
         _restore(root, rows, force=True)
-        raise UserError(f"{error.filename or root}: cannot be written: {error.strerror or error}; nothing is changed")
+        why = f"{error.filename or root}: cannot be written: {error.strerror or error}; nothing is changed"
+        raise UserError(why) from None
 
 
 def undo(root: Path) -> list[str]:
