@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 from ...edges.groups import group_pairs
-from ..analysis.fix import apply
-from ..facts.interface import extract
+from ..analysis.fix import apply, declare_dependency
+from ..facts.interface import PRIMITIVES, TIMES, extract, make_full_name
 from ..model.fields.reading import Reading, select_parameters
 from ..model.fields.report import FieldReport, TopicFields
 from ..model.fields.shapes import Path
@@ -22,7 +23,7 @@ from ..rules.fix_actions import Edit
 from .conversions import Conversion, list_python_types, write_cpp, write_python
 from .cpp_source import CppEditor, EditRefused, find_header
 from .light import LightDefinition, LightenError, lighten
-from .package_files import list_messages
+from .package_files import list_messages, order_after, use_package, write_package
 from .python_source import PythonEditor
 from .shape import LightField, keep_fields, list_paths, name_nested
 
@@ -92,6 +93,8 @@ class Planner:
         # Lighter messages by the full one and what is kept.
         self._made: dict[tuple[str, tuple[str, ...]], dict[str, LightDefinition]] = {}
         self._named: set[str] = set()
+        # Topics that share code with topics of another type.
+        self._blocked: dict[tuple[str, str], str] = {}
 
     def plan(self, wanted: Collection[str] = ()) -> PrunePlan:
         """The plan for some topics, all where none is named."""
@@ -130,6 +133,7 @@ class Planner:
         if lost:
             kept = [one.edits for one in made if one.plan in plans]
             applied = apply(kept, read)
+        created.update(self._write_new_package(one for one in made if one.plan in plans))
         return PrunePlan(tuple(plans), tuple(refusals), applied.files, created)
 
     # Topics that go together
@@ -144,34 +148,40 @@ class Planner:
                 key = parent[key]
             return key
 
-        for keys in self._list_shared(every):
+        for place, keys in self._list_shared(every):
             first, *others = keys
             for other in others:
-                parent[find(other)] = find(first)
+                if other[1] == first[1]:
+                    parent[find(other)] = find(first)
+                else:
+                    why = f"{place} is shared with {{}}, which is of another type"
+                    self._blocked.setdefault(first, why.format(other[0]))
+                    self._blocked.setdefault(other, why.format(first[0]))
         groups = group_pairs((find(key), every[key]) for key in sorted(every))
         yield from groups.values()
 
-    def _list_shared(self, every: Mapping[tuple[str, str], TopicFields]) -> Iterator[list[tuple[str, str]]]:
-        at: dict[object, list[tuple[str, str]]] = {}
+    def _list_shared(
+        self, every: Mapping[tuple[str, str], TopicFields]
+    ) -> Iterable[tuple[str, list[tuple[str, str]]]]:
+        """Topics by what they share, in words."""
+        at: dict[str, list[tuple[str, str]]] = {}
         for endpoint in self.topics.graph.endpoints:
             key = endpoint.topic, endpoint.type
             if key not in every or endpoint.role not in ("publisher", "subscriber"):
                 continue
-            at.setdefault((endpoint.path, endpoint.line, endpoint.role), []).append(key)
-            at.setdefault(endpoint.topic, []).append(key)
+            at.setdefault(f"the {endpoint.role} at {endpoint.path}:{endpoint.line}", []).append(key)
+            at.setdefault(f"the name {endpoint.topic}", []).append(key)
             if endpoint.role == "subscriber":
                 for fn in self.topics.list_callbacks(endpoint):
-                    at.setdefault(fn.place, []).append(key)
+                    at.setdefault(f"the callback at {fn.source.path}:{fn.facts.line}", []).append(key)
         for publish in self.topics.graph.publishes:
             if (publish.topic, publish.type) in every:
-                place = ("statement", publish.path, publish.line)
+                place = f"the statement at {publish.path}:{publish.line}"
                 at.setdefault(place, []).append((publish.topic, publish.type))
-        yield from at.values()
+        return at.items()
 
     def _find_obstacle(self, group: Sequence[TopicFields]) -> str:
         """Why the topics of a group keep their message, empty where nothing is seen yet."""
-        if len({topic.type for topic in group}) > 1:
-            return f"it goes together with topics of another type: {', '.join(topic.topic for topic in group)}"
         for topic in group:
             if topic.open:
                 return f"{topic.open[0]}; if nobody else reads {topic.topic}, say --assume-closed {topic.topic}"
@@ -183,10 +193,7 @@ class Planner:
             if whole:
                 return f"the whole message is handed on: {whole[0].reason}, {whole[0].path}:{whole[0].line}"
             return "every field is read"
-        package = self.workspace.packages.get(group[0].type.partition("/")[0])
-        if package is None:
-            return f"{group[0].type} is of a package that is not in the workspace; give the topic a message of your own"
-        return ""
+        return next((self._blocked[key] for topic in group if (key := (topic.topic, topic.type)) in self._blocked), "")
 
     def _list_dropped(self, group: Sequence[TopicFields]) -> list[str]:
         return [leaf for leaf in group[0].fields if all(leaf in topic.unread for topic in group)]
@@ -213,7 +220,7 @@ class Planner:
         if not gone:
             raise EditRefused("what is not read is in a part that is kept whole")
         made = self._lighten(type_, paths, [topic.topic for topic in group])
-        package = type_.partition("/")[0]
+        package = self._find_home(type_)
         light = f"{package}/{next(iter(made))}"
         texts = {f"{package}/{name}": one.text for name, one in made.items()}
         fields = name_nested(fields, light, texts.get)
@@ -231,12 +238,13 @@ class Planner:
             package, _, name = type_.partition("/")
             topic = "".join(part[:1].upper() + part[1:] for part in _NAME.findall(topics[0].rpartition("/")[2]))
             base = f"{name}Light" if topic in ("", name) else f"{name}{topic}Light"
-            own = {one.name: self.read(one.path) or b"" for one in self.workspace.packages[package].linked.interfaces}
+            home = self.workspace.packages.get(package)
+            own = {one.name: self.read(one.path) or b"" for one in home.linked.interfaces} if home is not None else {}
             taken = {other.lower() for other in (*own, *self._named)}
             chosen, number = base, 2
             while chosen.lower() in taken:
                 chosen, number = f"{base}{number}", number + 1
-            known = lighten(self.find_definition, type_, paths, chosen, own)
+            known = lighten(self.find_definition, type_, paths, chosen, own, self._find_home(type_))
             self._named.update(known)
             self._made[type_, paths] = known
         return known
@@ -246,7 +254,11 @@ class Planner:
     ) -> dict[str, bytes]:
         """The new files, and into the edits the lines of CMakeLists.txt that name them. Raises EditRefused."""
         package, _, name = type_.partition("/")
-        found = self.workspace.packages[package]
+        found = self.workspace.packages.get(package)
+        if found is None:
+            self._use_new_package(package, edits)
+            folder = f"{self._find_new_folder(edits)}/msg"
+            return {f"{folder}/{each}.msg": one.text for each, one in made.items()}
         at = next(one.path for one in found.linked.interfaces if one.name == name and one.path.endswith(".msg"))
         folder = at.rpartition("/")[0]
         build = f"{found.path}/CMakeLists.txt".lstrip("/")
@@ -256,6 +268,70 @@ class Planner:
             raise EditRefused(f"{build} does not name {name}.msg, so that a message beside it cannot be added")
         edits += listed
         return {f"{folder}/{each}.msg".lstrip("/"): one.text for each, one in made.items()}
+
+    def _find_home(self, type_: str) -> str:
+        """The package that the lighter message of a message belongs into."""
+        package = type_.partition("/")[0]
+        return package if package in self.workspace.packages else self._new_package
+
+    @cached_property
+    def _new_package(self) -> str:
+        name, number = "light_msgs", 2
+        while name in self.workspace.packages:
+            name, number = f"light_msgs{number}", number + 1
+        return name
+
+    def _find_new_folder(self, edits: Sequence[Edit]) -> str:
+        """The folder of the new package: beside the packages that use it. Raises EditRefused."""
+        paths = [found.path for found in self.workspace if found.path]
+        if len(paths) < len(self.workspace.packages):
+            raise EditRefused("the whole workspace is one package, so that there is no place for one of messages")
+        beside = sorted(path.rpartition("/")[0] for path in paths)
+        return f"{beside[0]}/{self._new_package}".lstrip("/")
+
+    def _use_new_package(self, old: str, edits: list[Edit]) -> None:
+        """Adds to edits what the packages need that use a message of the new package. old: that of the full message.
+        Raises EditRefused."""
+        ros, touched = self.workspace.ros, {edit.path for edit in edits}
+        for package in self.workspace:
+            own = touched.intersection(package.linked.files)
+            if not own:
+                continue
+            manifest, build = (f"{package.path}/{name}".lstrip("/") for name in ("package.xml", "CMakeLists.txt"))
+            data = self.read(manifest)
+            if data is not None:
+                edits += declare_dependency(data, self._new_package, "depend", manifest)
+            compiled = any(not path.endswith(".py") for path in own)
+            data = self.read(build)
+            if data is None or not compiled:
+                continue
+            found = use_package(build, data, old, self._new_package, ros)
+            if found is None:
+                raise EditRefused(f"{build} does not name {old}, so that a package beside it cannot be found there")
+            edits += found
+            if ros == 1:
+                edits += order_after(build, data, (target.name for target in package.build.targets))
+
+    def _write_new_package(self, made: Iterable[_Made]) -> dict[str, bytes]:
+        """The files of the new package besides its messages, where there are any."""
+        texts = {
+            path: data
+            for one in made
+            if one.plan.light.partition("/")[0] == self._new_package
+            for path, data in one.created.items()
+        }
+        if not texts:
+            return {}
+        folder = next(iter(texts)).rpartition("/msg/")[0]
+        names = [path.rpartition("/")[2].removesuffix(".msg") for path in texts]
+        needs = set[str]()
+        for data in texts.values():
+            for field in extract(data, "msg").sections[0].fields:
+                plain = field.type.partition("<=")[0]
+                if plain not in PRIMITIVES and plain not in TIMES:
+                    needs.add(make_full_name(plain, self._new_package).partition("/")[0])
+        files = write_package(self._new_package, self.workspace.ros, names, needs - {self._new_package})
+        return {f"{folder}/{name}": data for name, data in files.items()}
 
     def find_definition(self, type_: str) -> bytes | None:
         """The text of the message `package/Name`: of the workspace, else as find_released() has it."""

@@ -16,7 +16,7 @@ from ...edges.documents import DocumentError, load_json
 from ...edges.files import write_file
 from ..analysis.fields import close
 from ..analysis.fix import make_unified_diff
-from ..analysis.message_files import MessageFolders
+from ..analysis.message_files import ReleasedMessages
 from ..analysis.session import load_settings, open_tree
 from ..facts.store import Store
 from ..model.fields.report import FieldReport
@@ -66,7 +66,7 @@ def prepare(
             if name not in names:
                 raise UserError(f"{escape(name)}: no such topic; `rosimpact fields` lists those there are")
         rows = tuple(close(one) if one.topic in known else one for one in report.topics)
-        installed = MessageFolders((), os.environ)
+        installed = ReleasedMessages(workspace.ros)
         planner = Planner(
             workspace, reader, FieldReport(rows, report.unknown), known, lambda each: _read(tree, each), length,
             installed.find,
