@@ -76,15 +76,17 @@ class TopicReader:
                 self.reader.uses.messages.update(Variable("local", fn.place, name) for name in names)
 
     def report(self) -> FieldReport:
-        """All topics, sorted by name."""
+        """All topics that the code itself sends or reads, sorted by name."""
         subscribers, publishers = self._group("subscriber"), self._group("publisher")
         found: list[TopicFields] = []
         unknown: list[tuple[str, str]] = []
         for topic, type_ in sorted({*subscribers, *publishers}):
-            if not self.shapes.is_known(type_):
-                unknown.append((topic, type_))
-                continue
             key = topic, type_
+            if all(one.implied for one in (*subscribers.get(key, ()), *publishers.get(key, ()))):
+                continue
+            if not self.shapes.is_known(type_):
+                unknown.append(key)
+                continue
             found.append(self._make_topic(topic, type_, subscribers.get(key, []), publishers.get(key, [])))
         return FieldReport(tuple(found), tuple(unknown))
 
