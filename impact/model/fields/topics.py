@@ -10,6 +10,7 @@ from functools import cached_property
 import msgspec
 
 from ....edges.groups import group_pairs
+from ....edges.memory import cache_in_derived
 from ...facts.extract import ExtractedFacts, extract_all
 from ...facts.field_uses import FieldFile
 from ...facts.store import Store, recall
@@ -40,6 +41,42 @@ def report_fields(workspace: Workspace, graph: Graph, store: Store | None, jobs:
         return TopicReader(workspace, flow.code, graph, extract_uses(workspace, jobs)).report()
 
     return recall(store, "fields", key, FieldReport, make)
+
+
+@cache_in_derived
+def list_topic_fields(workspace: Workspace) -> tuple[TopicFields, ...]:
+    """The fields of all topics of a workspace as launch files start it, which is worked out once."""
+    return report_fields(workspace, get_flow(workspace).system, workspace.extraction.store, 1).topics
+
+
+def list_unset_fields(workspace: Workspace, topic: TopicFields) -> Iterator[tuple[str, FieldAt]]:
+    """The fields that a subscriber of a topic reads and no publisher sets, each with the place that reads it; nothing
+    where somebody else may set them."""
+    flow = get_flow(workspace)
+    ends = [one for one in flow.system.endpoints if one.role == "publisher"]
+    own = [one for one in ends if one.topic == topic.topic]
+    unsure = any(one.how in _UNSURE or one.implied for one in own) or any(
+        one.type in (topic.type, "") and one.how in _UNSURE and _may_be(one.topic, topic.topic) for one in ends
+    )
+    lost = any(
+        one.what.startswith(("publisher", "publish", "started node")) for one in flow.system.coverage.unresolved
+    )
+    if not topic.publishers or unsure or lost or any(one.unknown for one in topic.publishers):
+        return
+    stated = {(one.path, one.line) for one in topic.publishers}
+    if len(stated) < len({(one.path, one.line) for one in own}):
+        return  # a publisher whose statements are not known
+    done = [each.field for one in topic.publishers for each in one.sets]
+    for read in sorted({each for one in topic.subscribers for each in one.reads}, key=_get_place):
+        above = any(read.field == field or read.field.startswith((f"{field}.", f"{field}[]")) for field in done)
+        below = any(field.startswith((f"{read.field}.", f"{read.field}[]")) for field in done)
+        if not above and not below and read.field.rpartition(".")[2] != "seq":
+            done.append(read.field)
+            yield read.field, read
+
+
+def _get_place(one: FieldAt) -> tuple[str, int, str]:
+    return one.path, one.line, one.field
 
 
 def _make_graph_key(graph: Graph) -> bytes:
