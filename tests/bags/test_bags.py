@@ -158,6 +158,23 @@ def test_compressed_bags_tell_the_same(tmp_path, form, compression):
     assert measure_bag(packed) == measure_bag(plain)
 
 
+def test_a_compressed_file_that_unpacks_to_too_much(tmp_path, monkeypatch):
+    store = make_store()
+    how = (rosbag2.CompressionMode.FILE, rosbag2.CompressionFormat.ZSTD)
+    path = write_bag(tmp_path, "mcap", make_quays(store, 9), store=store, compression=how)
+    file = next(path.glob("*.zstd"))
+    assert measure_bag(file).count == 10
+    monkeypatch.setattr(shutil, "disk_usage", lambda folder: shutil._ntuple_diskusage(9_000, 1_000, 8_000))
+    failed = run_fields("--bag", path)
+    assert f"{file}: unpacks to more than half of what is free in " in failed.stderr
+    monkeypatch.undo()
+    file.write_bytes(file.read_bytes()[:-20])
+    failed = run_fields("--bag", path)
+    assert (failed.exit_code, failed.stderr.count("\n")) == (2, 1)
+    file.write_bytes(b"no zstd at all")
+    assert f"{file}: cannot be unpacked: " in run_fields("--bag", path).stderr
+
+
 def test_several_ways_to_name_a_bag(quay):
     form, path = quay
     if form == "rosbag":
