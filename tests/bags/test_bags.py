@@ -138,6 +138,16 @@ def test_the_command_as_json(quay):
     }  # fmt: skip
 
 
+def test_fields_of_arrays_that_were_always_empty(tmp_path):
+    store = make_store()
+    rows = [("/quay", "quay_msgs/Quay", 1.0, make_message(store, "quay_msgs/Quay"))]
+    found = run_fields("--bag", write_bag(tmp_path, "mcap", rows, store=store)).stdout
+    said = {line.split()[0]: line.split("%")[-1].strip() for line in found.splitlines() if line.startswith("    ")}
+    assert said["berths"] == said["picture"] == said["names"] == "always empty"
+    assert said["berths[].depth"] == "never sent"
+    assert said["spare"] == "always 0"
+
+
 COMPRESSED = [
     ("rosbag", (rosbag1.Writer.CompressionFormat.BZ2,)),
     ("rosbag", (rosbag1.Writer.CompressionFormat.LZ4,)),
