@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
+import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 from ...edges.console import UserError, escape, format_count
 from ...edges.documents import DocumentError, load_yaml
-from ...edges.files import open_regular, read_file
+from ...edges.files import open_for_replacing, open_regular, read_file
 from ...edges.limits import get_limits
 from ...edges.processes import limit_memory
 from ..model.wire import Encoding
@@ -21,6 +23,7 @@ _STORAGE = (".mcap", ".db3")
 # What `rosbag record` has not closed ends in `.active`.
 _ROS1 = (".bag", ".active")
 _COMPRESSED = ".zstd"
+_PIECE = 1 << 20
 _NAME_ONE = "name a .bag, .mcap or .db3 file, or the folder of a bag"
 _INSTALL = "install it with `pip install 'rosimpact[bags]'`"
 _REPAIRS = {
@@ -134,9 +137,14 @@ def open_bag(path: Path) -> Iterator[OpenedBag]:
     except OSError as error:
         raise BagError(f"{name}: {error.strerror or error}; {_NAME_ONE}") from None
     form = "rosbag" if files[0].suffix in _ROS1 else "mcap" if ".mcap" in files[0].suffixes else "sqlite3"
-    whole = path.is_dir() and (path / _METADATA).exists()
     with contextlib.ExitStack() as stack:
         stack.enter_context(limit_memory(get_limits().bag))
+        if any(file.name.endswith(_COMPRESSED) for file in files):
+            folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+            files = [_unpack(file, folder) for file in files]
+            whole = False
+        else:
+            whole = path.is_dir() and (path / _METADATA).exists()
         try:
             opened = OpenedBag(
                 path, form, [stack.enter_context(_open_file(each, form)) for each in ([path] if whole else files)]
@@ -168,7 +176,7 @@ def _list_files(path: Path) -> list[Path]:
     elif (path / _METADATA).exists():
         files = _read_metadata(path)
     else:
-        files = sorted(each for each in path.iterdir() if each.suffix in _STORAGE)
+        files = sorted(each for each in path.iterdir() if each.name.removesuffix(_COMPRESSED).endswith(_STORAGE))
         if not files:
             raise BagError(f"{escape(str(path))}: holds no {_METADATA} and no .mcap or .db3 file; name a bag")
     for file in files:
@@ -176,6 +184,29 @@ def _list_files(path: Path) -> list[Path]:
         if file.suffix not in (*_ROS1, *_STORAGE) and not file.name.endswith(_COMPRESSED):
             raise BagError(f"{escape(str(file))}: is no bag; {_NAME_ONE}")
     return files
+
+
+def _unpack(file: Path, folder: Path) -> Path:
+    """A file of a bag as it was before it was compressed, in another folder. Raises BagError."""
+    import zstandard
+
+    target = folder / file.name.removesuffix(_COMPRESSED)
+    left = shutil.disk_usage(folder).free // 2
+    name = escape(str(file))
+    try:
+        with os.fdopen(open_regular(file), "rb") as packed, open_for_replacing(target) as plain:
+            reader = zstandard.ZstdDecompressor().stream_reader(packed, read_across_frames=True)
+            while data := reader.read(_PIECE):
+                left -= len(data)
+                if left < 0:
+                    raise BagError(
+                        f"{name}: unpacks to more than half of what is free in {escape(str(folder.parent))}; "
+                        "name a larger folder with TMPDIR"
+                    )
+                plain.write(data)
+    except (OSError, zstandard.ZstdError) as error:
+        raise BagError(f"{name}: cannot be unpacked: {_describe(error)}; copy or record it again") from None
+    return target
 
 
 def _read_metadata(folder: Path) -> list[Path]:

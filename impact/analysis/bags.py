@@ -174,7 +174,7 @@ class _TopicCount:
         self.size += len(data)
         self.sizes[-(-len(data) // self.step) * self.step] += 1
         if len(self.sizes) > _SIZES_AT_MOST:
-            self.coarsen()
+            self.merge_sizes()
         if self.tally is not None:
             try:
                 self.tally.add(data)
@@ -183,7 +183,7 @@ class _TopicCount:
                     self.problem = f"a message {error}"
                 self.unlike += 1
 
-    def coarsen(self) -> None:
+    def merge_sizes(self) -> None:
         """Counts sizes in wider steps, so that they stay few."""
         while len(self.sizes) > _SIZES_AT_MOST // 2:
             self.step *= 2

@@ -167,7 +167,7 @@ class MessageTally:
             if not order:
                 raise WrongBytes(f"begins with {data[:4].hex(' ')}, which is no CDR of the first version")
         try:
-            end = _Walk(data, self._head, self._mask, order).advance(self._steps, self._head)
+            end = _Walk(data, self._head, self._mask, order).walk(self._steps, self._head)
         except struct.error:
             raise WrongBytes(f"ends early, after {len(data)} bytes") from None
         rest = len(data) - end
@@ -190,7 +190,7 @@ class _Walk:
         self.order = order
         self.read = _UINT32[order]
 
-    def advance(self, steps: tuple[_Step, ...], at: int) -> int:
+    def walk(self, steps: tuple[_Step, ...], at: int) -> int:
         """Where these steps end that begin at a place. Raises WrongBytes, struct.error."""
         data, base, mask = self.data, self.base, self.mask
         for step in steps:
@@ -305,10 +305,10 @@ class _Walk:
                 first = block.forms[(at - self.base) & self.mask]
                 then = block.forms[first.after & self.mask]
                 if then.after & self.mask == first.after & self.mask:
-                    at = self.advance(steps, at)
+                    at = self.walk(steps, at)
                     return self.take_equal(block, then, at, number - 1)
         for _ in range(number):
-            at = self.advance(steps, at)
+            at = self.walk(steps, at)
         return at
 
     def take_equal(self, block: _Block, form: _Form, at: int, number: int) -> int:

@@ -14,6 +14,8 @@ from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
+from ...edges.files import open_regular
+
 _MAGIC = b"#ROSBAG V"
 _VERSION = b"#ROSBAG V2.0\n"
 _MESSAGE, _HEADER, _INDEX, _CHUNK, _CHUNK_INFO, _CONNECTION = 2, 3, 4, 5, 6, 7
@@ -44,7 +46,7 @@ class RosbagFile:
 
     def __init__(self, path: Path):
         self._path = path
-        self._file: IO[bytes] = path.open("rb")
+        self._file: IO[bytes] = os.fdopen(open_regular(path), "rb")
         self.connections: dict[int, BagConnection] = {}
         self.count = 0
         self.distro = ""

@@ -121,7 +121,7 @@ def compute_size(
     elements. default: of those that are not named.
     """
     sizer = _Sizer(lengths, encoding == "cdr", default)
-    return HEAD[encoding] + sizer.advance(layout, 0)
+    return HEAD[encoding] + sizer.walk(layout, 0)
 
 
 class _Sizer:
@@ -130,27 +130,27 @@ class _Sizer:
         self.aligned = aligned
         self.default = default
 
-    def advance(self, fields: tuple[WireField, ...], at: int) -> int:
+    def walk(self, fields: tuple[WireField, ...], at: int) -> int:
         """Where these fields end that begin at a place."""
         for field in fields:
             count = field.elements
             if count == VARIABLE:
-                at = self.align(at, 4) + 4
+                at = self.pad(at, 4) + 4
                 count = self.lengths.get(field.path, self.default)
             if field.members:
-                at = self.repeat(lambda place, inner=field.members: self.advance(inner, place), at, count)
+                at = self.loop(lambda place, inner=field.members: self.walk(inner, place), at, count)
             elif field.is_string:
                 length = self.lengths.get(field.path if field.elements is None else f"{field.path}[]", self.default)
                 end = 4 + length + self.aligned  # CDR counts and sends the zero behind a string
-                at = self.repeat(lambda place, end=end: self.align(place, 4) + end, at, count)
+                at = self.loop(lambda place, end=end: self.pad(place, 4) + end, at, count)
             elif count != 0:
-                at = self.align(at, field.alignment) + (1 if count is None else count) * field.size
+                at = self.pad(at, field.alignment) + (1 if count is None else count) * field.size
         return at
 
-    def align(self, at: int, size: int) -> int:
+    def pad(self, at: int, size: int) -> int:
         return -(-at // size) * size if self.aligned else at
 
-    def repeat(self, step: Callable[[int], int], at: int, count: int | None) -> int:
+    def loop(self, step: Callable[[int], int], at: int, count: int | None) -> int:
         """Where elements end of which each begins where the one before ended."""
         left = 1 if count is None else count
         seen: dict[int, tuple[int, int]] = {}

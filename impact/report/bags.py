@@ -67,6 +67,8 @@ def _render_topic(topic: BagTopicFacts, style: Style) -> Iterator[str]:
 
 def describe(field: BagField) -> str:
     """What is to be said of a field's values."""
+    if not field.bytes:
+        return "never sent"
     lengths = field.lengths
     said = "" if field.filled else "always empty" if lengths is not None and not lengths.most else "always 0"
     if field.filled and not field.nonzero and lengths is not None and not field.type.partition("[")[0].count("/"):
