@@ -83,6 +83,8 @@ class _Walk:
         self.seen: set[Holder] = set()
         self.left: list[Holder] = []
         self.results = _Results()
+        # What is no field of what a local variable holds, with that variable: it may hold something else there.
+        self.strange: list[tuple[Variable, UsePlace, Spot]] = []
 
     def run(self, holders: Iterable[Holder]) -> Reading:
         for holder in holders:
@@ -96,6 +98,9 @@ class _Walk:
                 self._follow(self.left.pop())
             else:
                 self._spread(*self.results.left.pop())
+        for variable, place, spot in self.strange:
+            if not self._holds_other(variable, place):
+                self.escape_at(spot, f"`{place.use.path}` is no field that is known", place)
         return Reading(self.reads, self.sizes, tuple(self.escapes.values()), frozenset(self.seen))
 
     def _follow(self, holder: Holder) -> None:
@@ -105,16 +110,22 @@ class _Walk:
         for place in self.uses.list_uses(variable):
             if variable.kind != "local" or variable.owner != place.fn.place:
                 self.results.open(place.fn.place)
-            parts = split_path(place.use.path)[place.at + 1 :]
-            self.judge(place, self.shapes.find(self.type, holder.base, parts))
+            self.judge(place, self._find_spot(place, holder.base), variable)
+
+    def _find_spot(self, place: UsePlace, base: Path) -> Spot:
+        return self.shapes.find(self.type, base, split_path(place.use.path)[place.at + 1 :])
+
+    def _holds_other(self, variable: Variable, place: UsePlace) -> bool:
+        """Whether a variable holds a field too of which the path of a use is one: `for p in a`, then `for p in b`."""
+        others = (holder.base for holder in self.seen if holder.variable == variable)
+        return any(self._find_spot(place, base).kind != "none" for base in others)
 
     def _spread(self, fn: Fn, path: Path) -> None:
         """What is done with a field that a function gives back, where the message may have come from to it."""
         for result in self.uses.list_results(fn):
             if not self.results.take(fn, path, result):
                 continue
-            parts = split_path(result.use.path)[result.at + 1 :]
-            self.judge(result, self.shapes.find(self.type, path, parts))
+            self.judge(result, self._find_spot(result, path))
 
     def hold(self, variable: Variable, base: Path) -> None:
         """A variable that holds a field of the message."""
@@ -156,13 +167,15 @@ class _Walk:
     def escape_at(self, spot: Spot, why: str, place: UsePlace) -> None:
         self.escape(spot.path, why, place.fn.source.path, place.use.line)
 
-    def judge(self, place: UsePlace, spot: Spot) -> None:
-        """What a use means for what it is a use of."""
+    def judge(self, place: UsePlace, spot: Spot, variable: Variable | None = None) -> None:
+        """What a use means for what it is a use of. variable: whose use it is; None for what a function gives back."""
         use = place.use
         if use.how in ("write", "change") and not (use.how == "write" and use.to not in ("=", "del", "")):
             return
         if spot.kind == "leaf":
             self.note_read(spot.path, place)
+        elif spot.kind == "none" and variable is not None and variable.kind == "local":
+            self.strange.append((variable, place, spot))
         elif spot.kind == "none":
             self.escape_at(spot, f"`{use.path}` is no field that is known", place)
         elif use.how == "size":
@@ -282,13 +295,31 @@ class _Walk:
             plain = self._holds(kind.name, spot) and not re.search(r"\bset\s*<", text)
         else:
             values = [each.value for _, each in self.code.list_writes(variable)]
-            plain = bool(values) and all(_is_fresh(value, False) for value in values)
+            plain = self._is_list(variable, fn, ())
             if variable.kind == "local" and not plain:
                 plain = all(value.kind == "name" or _is_fresh(value, False) for value in values) and bool(values)
         if plain:
             self._put(target, variable, place, spot)
         else:
             self.escape_at(spot, f"given to `{use.to}`", place)
+
+    def _is_list(self, variable: Variable, fn: Fn, seen: tuple[Variable, ...]) -> bool:
+        """Whether a variable of Python is only ever a container made anew, or a copy of such a variable."""
+        if variable in seen:
+            return True
+        writes = self.code.list_writes(variable)
+        return bool(writes) and all(
+            _is_fresh(each.value, False)
+            or (
+                each.value.kind == "call"
+                and get_tail(each.value.text) == "copy"
+                and each.value.text.count(".")
+                and self._is_list(
+                    self.code.identify(each.value.text.rpartition(".")[0], writer), writer, (*seen, variable)
+                )
+            )
+            for writer, each in writes
+        )
 
     def _is_declared(self, variable: Variable, fn: Fn) -> bool:
         """Whether a variable is declared in the code, so that nobody else can read it: a member may be that of a base

@@ -206,6 +206,13 @@ CPP = {
     "swapped": ("robot::Status s = *msg; last_.swap(s); x_ = last_.level;", "Swap last_; int x_;",
                 "struct Swap { int level; };", "", "", "*"),
     "moved": ("auto s = std::move(msg); int x = s->level;", "", "", "", "level", ""),
+    "a template that is made": ("last_ = *msg; x_ = last_.level;", "robot::Status last_; int x_;",
+                                "template <class T> struct Box { T t; };",
+                                "template class Box<int>; extern template struct Box<char>;", "level", ""),
+    "two loops of a name": ("for (const auto& p : msg->points) sum_ += p.x;\n"
+                            "for (const auto& p : list_.back().poses) sum_ += p.position.y;",
+                            "double sum_; std::vector<geometry_msgs::PoseArray> list_;", "", "", "points[].x",
+                            "points[]"),
     "returned through": ("int x = pass(msg)->level;", "",
                          "robot::StatusConstPtr pass(const robot::StatusConstPtr& s) { return s; }", "", "level", ""),
 }  # fmt: skip
@@ -232,6 +239,13 @@ PYTHON = {
     "elements of a message": ("x = sum(p.x for p in msg.points)", "", "", "points[].x", ""),
     "numbered elements": ("for i, p in enumerate(msg.points):\n    x = p.y * i", "", "", "points[].y", ""),
     "pairs": ("for a, p in zip(msg.ranges, msg.points):\n    x = p.z", "", "", "ranges points[].z", ""),
+    "two loops of a name": ("for p in msg.points:\n    x = p.y\nfor p in [msg.pose]:\n    x = p.position.x",
+                            "", "", "points[].y", "pose points[]"),
+    "one name for two fields": ("p = msg.pose\nx = p.orientation.w\nfor p in msg.points:\n    x = p.y",
+                                "", "", "pose.orientation.w points[].y", ""),
+    "a copy of a list": ("self.some.append(msg)", "some = []\nothers = []\n"
+                         "def tick(self):\n    self.others = self.some.copy()\n    self.some = self.others.copy()\n"
+                         "def see(self):\n    return self.others[0].level", "", "level", ""),
     "numpy": ("x = np.array(msg.ranges, dtype=float)", "", "", "ranges", ""),
     "a slice": ("x = [p.x for p in msg.points[1:]]", "", "", "points[].x", ""),
     "a name for a part": ("p = msg.pose.position\nx = p.x", "", "", "pose.position.x", ""),
