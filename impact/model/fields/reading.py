@@ -238,6 +238,8 @@ class _Walk:
         else:
             for one in (variable, *refers):
                 self.hold(one, spot.path)
+                if one.owner != fn.place:
+                    self.results.open(one.owner)
             if fn.source.facts.language != "cpp" and variable.kind == "member":
                 self._set_properties(variable.name, spot)
 

@@ -210,7 +210,8 @@ CPP = {
                                 "template <class T> struct Box { T t; };",
                                 "template class Box<int>; extern template struct Box<char>;", "level", ""),
     "an algorithm": ("std::for_each(msg->points.begin(), msg->points.end(),"
-                     " [&](const geometry_msgs::Point& p) { sum_ += p.x; });", "double sum_;", "", "", "points[].x", ""),
+                     " [&](const geometry_msgs::Point& p) { sum_ += p.x; });", "double sum_;", "", "",
+                     "points[].x", ""),
     "an algorithm that finds": ("auto it = std::find_if(msg->points.begin(), msg->points.end(),"
                                 " [](const auto& p) { return p.x > 0; }); x_ = it->z;", "double x_;", "", "",
                                 "points[].x points[].z", ""),
@@ -234,6 +235,11 @@ CPP = {
                             "for (const auto& p : list_.back().poses) sum_ += p.position.y;",
                             "double sum_; std::vector<geometry_msgs::PoseArray> list_;", "", "", "points[].x",
                             "points[]"),
+    "given back by what is around a lambda": ("x_ = get(*msg).level;", "int x_;",
+                                              "robot::Status get(const robot::Status& s) { robot::Status found;"
+                                              " auto f = [&]() { found = s; }; f(); return found; }", "", "level", ""),
+    "set by a lambda": ("robot::Status found; auto f = [&]() { found = *msg; }; f(); x_ = found.level;", "int x_;", "",
+                        "", "level", ""),
     "returned through": ("int x = pass(msg)->level;", "",
                          "robot::StatusConstPtr pass(const robot::StatusConstPtr& s) { return s; }", "", "level", ""),
 }  # fmt: skip
@@ -304,6 +310,14 @@ PYTHON = {
                                     "def pick(status):\n    return status\n", "level", ""),
     "given back from what is kept": ("self.last = msg", "def get(self, other):\n    x = other or self.last\n"
                                      "    return x\ndef see(self):\n    return self.get(3).level", "", "level", ""),
+    "given back by what is around": ("def get():\n    found = None\n    def see(status):\n        nonlocal found\n"
+                                     "        found = status\n    self.call(see)\n    see(msg)\n    return found\n"
+                                     "x = get().level", "", "", "level", ""),
+    "given back by a function that is called": ("self.see(msg)", "def see(self, status):\n    self.keep(status)\n"
+                                                "def keep(self, status):\n    global kept\n    kept = status\n"
+                                                "def get(self, n):\n    return kept\n"
+                                                "def tick(self):\n    return self.get(1).level", "kept = None\n",
+                                                "level", ""),
     "given back to who is given it": ("self.last = msg", "def get(self):\n    return self.last\n"
                                       "def more(self, n):\n    return self.get()\n"
                                       "def see(self):\n    return self.more(1).level", "", "level", ""),
