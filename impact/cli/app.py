@@ -356,6 +356,17 @@ def prune(
     apply: bool = _make_option("Write the changes to the workspace.", "--apply", default=False),
     out: Path | None = _make_option("Write a changed copy of the workspace to this folder."),
     undo: bool = _make_option("Take back what --apply wrote.", "--undo", default=False),
+    verify: bool = _make_option(
+        "Build the workspace as it is and pruned, and with --run compare what both do (ROS 1 with catkin).",
+        "--verify",
+        default=False,
+    ),
+    run: list[str] = _make_option(
+        "With --verify: start this, 'PACKAGE/PROGRAM ARGUMENTS' or a command of the shell such as 'rosbag play a.bag' "
+        "or 'roslaunch a.launch'. May be repeated."
+    ),
+    seconds: float = _make_option("With --verify: how long both run.", default=10.0, min=1.0),
+    keep_builds: Path | None = _make_option("With --verify: a folder for both versions.", "--keep-builds"),
     length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
     config: _Config = None,
     follow_links: _FollowLinks = False,
@@ -367,7 +378,7 @@ def prune(
 ) -> None:
     """Give topics lighter messages, without the fields that nobody reads: show the plan, or write it.
 
-    Exit status: 0 done, 2 the tool failed.
+    Exit status: 0 done, 1 with --verify where both versions differ, 2 the tool failed.
     """
 
 

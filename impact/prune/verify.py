@@ -73,8 +73,8 @@ def verify(
     root: Path, prepared: Prepared, *, commands: Sequence[str] = (), seconds: float = 10.0,
     say: Say = lambda text: None, keep: Path | None = None,
 ) -> Verification:  # fmt: skip
-    """Builds a workspace of ROS 1 before and after its pruning; with commands, runs these with both for some seconds,
-    and compares what is published. commands: each starts a node, or plays a recording: `package/executable arguments`, or
+    """Builds a workspace of ROS 1 before and after its pruning; with commands, runs both for some seconds, and compares
+    what is published. commands: each starts a node, or plays a recording: `package/executable arguments`, or
     anything of the shell. keep: a folder for both versions, a temporary one without. Raises UserError where something
     that it needs is missing."""
     if not prepared.plan.plans:
