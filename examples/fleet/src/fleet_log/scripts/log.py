@@ -25,7 +25,8 @@ class Log:
             self.alarm.publish(alarm)
 
     def on_alarm(self, alarm):
-        self.said.publish("alarm " + str(alarm).replace("\n", "|"))
+        _, _, text = str(alarm).partition("state:")
+        self.said.publish("alarm " + text.replace("\n", "|"))
 
 
 if __name__ == "__main__":
