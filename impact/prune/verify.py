@@ -286,11 +286,16 @@ def compare(plans: Sequence[TopicPlan], before: _Run, after: _Run, commands: Seq
         paths = keep.get(key[0])
         old, new = ([_spell(project(one.fields, paths)) for one in rows] for rows in (first, second))
         how, difference = find_difference(old, new)
-        sizes = [sum(one.size for one in rows) / len(rows) if rows else 0.0 for rows in (first, second)]
-        results.append(TopicResult(*key, len(old), len(new), *sizes, how, difference))
+        results.append(
+            TopicResult(*key, len(old), len(new), _average(first), _average(second), how, difference)
+        )
     if not results:
         return Verification("nothing was published in either run; give it more --seconds, or other commands")
     return Verification("", tuple(results), exits)
+
+
+def _average(messages: Sequence[_Message]) -> float:
+    return sum(one.size for one in messages) / len(messages) if messages else 0.0
 
 
 def _name_exit(status: int | None) -> str:
