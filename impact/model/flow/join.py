@@ -50,6 +50,8 @@ from .values import ASKING, FlowValue, FlowValues, spell_condition
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
+# The condition of a name that code gives which a node does not run.
+_PASSED = "something that runs passes the name"
 _MOST_WAYS = 16
 _DEEPEST = 10
 _TRIGGERS = {
@@ -207,9 +209,7 @@ class Join:
         """The guards, by their places, that may ask for a parameter by what stands in them, and under which nodes or
         objects of the code are made or functions called that lead to an endpoint; by the function."""
         uses = self.calls.select_uses("parameter")
-        words = {get_tail(use.call.callee) for use in uses}
-        words |= {get_tail(use.call.target) for use in uses if use.call.target}
-        words |= {variable.name for variable in self.values.filled}
+        words = self.values.parameter_words.union(get_tail(use.call.callee) for use in uses)
         making = {fn for site in self.sites.endpoints for fn in (site.use.fn, *self._find_leading(site.use.fn))}
         nodes = group_pairs((use.fn, use.call.guard) for use in self.calls.select_uses("node"))
         found: dict[Fn, list[int]] = {}
@@ -591,7 +591,12 @@ class Join:
         # What code that the node does not run passes to its functions is none of its names.
         names = self.sites.list_names(site.use, site.prefix, owner.values.run(owner.functions))
         if all(name.text is None for name in names):
-            names = self.sites.list_names(site.use, site.prefix, owner.values)
+            # It comes from code that the node does not run, as far as is known.
+            elsewhere = self.sites.list_names(site.use, site.prefix, owner.values)
+            names = tuple(
+                name if name.text is None else name._replace(only_if=_join_conditions(name.only_if, _PASSED))
+                for name in elsewhere
+            )
         type_ = site.type or self.sites.find_type(site.use, owner.values)
         found = site._replace(names=names, type=type_)
         known.append((owner, dict(self.values.asked), found))
@@ -609,7 +614,7 @@ class Join:
             qos = apply_overrides(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         replaced = "the name is not replaced" if value.how == "partly" else ""
         conditions = ("" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
-        only_if = " && ".join(dict.fromkeys(filter(None, conditions)))
+        only_if = _join_conditions(*conditions)
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
@@ -803,6 +808,11 @@ def _make_code_name(site: Site, text: str) -> str:
         return f"~/{text[1:]}"
     private = site.prefix == "~" and text and text[0] not in "/~"
     return f"~/{text}" if private else text
+
+
+def _join_conditions(*conditions: str) -> str:
+    """Conditions that all have to hold, empty ones left out."""
+    return " && ".join(dict.fromkeys(filter(None, conditions)))
 
 
 def _get_node(owner: Owner) -> Node | None:
