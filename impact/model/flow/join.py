@@ -580,7 +580,7 @@ class Join:
 
     def _adapt_site(self, site: Site, owner: Owner) -> Site:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
-        if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
+        if not isinstance(owner, Running) or site.implied or (owner.values is self.values and self._is_written(site)):
             return site
         arguments, made = owner.values.arguments, id(owner.values.made)
         known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments, made), [])
@@ -601,6 +601,11 @@ class Join:
         found = site._replace(names=names, type=type_)
         known.append((owner, dict(self.values.asked), found))
         return found
+
+    def _is_written(self, site: Site) -> bool:
+        """Whether a site's only name is written where it is made."""
+        named = self.calls.find_argument(site.use, site.use.row.topic)
+        return len(site.names) < 2 and (named is None or named.kind == "text")
 
     def _make_endpoint(self, site: Site, value: FlowValue, type_: str, owner: Owner) -> Endpoint:
         use = site.use
