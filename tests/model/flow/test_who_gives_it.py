@@ -1,4 +1,4 @@
-"""Names by what gives them: the branch that a launch opens, a function that is passed a variable, a header's variable."""
+"""Names by what gives them: a branch that a launch opens, a reference that is passed on, a variable of a header."""
 
 import pytest
 from joining import ends, graph, graph_on_disk, manifest
@@ -200,3 +200,21 @@ def test_what_another_program_passes_to_a_method_is_not_sure_to_be_a_name_of_a_n
     assert ("p/drive.py", "/switch_to_navigation", "") in clients
     others = {only_if for node, _, only_if in clients if node == "p/scan.py"}
     assert others == {"something that runs passes the name"}
+
+
+def test_a_launch_file_starts_a_program_by_the_name_that_it_is_installed_under(tmp_path):
+    files = {
+        "map/package.xml": manifest("map", "ament_cmake"),
+        "map/CMakeLists.txt": (
+            "cmake_minimum_required(VERSION 3.8)\nproject(map)\nfind_package(ament_cmake REQUIRED)\n"
+            "install(PROGRAMS script/mapper_node.py DESTINATION lib/${PROJECT_NAME} RENAME mapper)\nament_package()\n"
+        ),
+        "map/script/mapper_node.py": SCOUT.replace('"scout"', '"mapper"') + "\n    if __name__ == '__main__':\n"
+                                     "        main()\n",
+        "map/launch/map.launch.xml": (
+            '<launch><node pkg="map" exec="mapper"><param name="kind" value="a"/><remap from="of_a" to="/a"/>'
+            '<param name="far" value="false"/></node></launch>\n'
+        ),
+    }  # fmt: skip
+    found = graph_on_disk(tmp_path, files, "map/launch/map.launch.xml")
+    assert {one.topic for one in found.endpoints if not one.implied} == {"/a", "/near"}
