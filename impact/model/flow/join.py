@@ -13,7 +13,7 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...facts.flow import FlowFile, Guard
+from ...facts.flow import FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
@@ -39,7 +39,7 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, list_loaded
-from .names import NameRefused, is_open, normalise, resolve_ros1_name, resolve_ros2_name
+from .names import NameRefused, is_open, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
@@ -390,6 +390,9 @@ class Join:
         # What loads a plugin is another program, which gives it a node, or a nodelet its name; who makes the node of a
         # program that makes none is not known either.
         unknown = program.kind in ("plugin", "nodelet") or not (named or self.ros == 2)
+        written = self.calls.find_argument(use, use.row.topic) if use is not None and not name else None
+        if written is not None and written.kind != "text" and not self.calls.is_node(written, use.fn):
+            default = _spell_open(written)  # what the code gives is not known
         full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
         if use is not None and full:
             full = self.objects.join_namespace(use, full.lstrip("/"), self.values)
@@ -818,6 +821,12 @@ def _make_code_name(site: Site, text: str) -> str:
 def _join_conditions(*conditions: str) -> str:
     """Conditions that all have to hold, empty ones left out."""
     return " && ".join(dict.fromkeys(filter(None, conditions)))
+
+
+def _spell_open(name: FlowExpr) -> str:
+    """The name that an expression gives a node, with brackets for what is not known."""
+    parts = name.parts if name.kind == "join" else (name,)
+    return "".join(part.text if part.kind == "text" else make_open_part(f"<{unparse(part)}>") for part in parts)
 
 
 def _get_node(owner: Owner) -> Node | None:
