@@ -131,7 +131,7 @@ class Join:
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             functions, classes = self._find_reached(program)
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
-            node, use = self._make_node(program, named)
+            node, use = self._make_node(program, named, self.values.run(functions))
             one = Running(program, node, functions, classes, self.values)
             several = program.kind in ("executable", "script", "component")
             found += self._split_by_object(one, use) if several else [one]
@@ -360,9 +360,10 @@ class Join:
         )
 
     def _make_node(
-        self, program: StartableProgram, named: list[FrameworkCall]
+        self, program: StartableProgram, named: list[FrameworkCall], running: FlowValues
     ) -> tuple[Node, FrameworkCall | None]:  # fmt: skip
-        """The node that a program is, or the first of those, and the use that names it."""
+        """The node that a program is, or the first of those, and the use that names it. running: what expressions are
+        worth in what it runs."""
         own = (
             [use for use in named if get_tail(use.fn.facts.owner) == get_tail(program.plugin)] if program.plugin else []
         )
@@ -379,7 +380,7 @@ class Join:
         name, use = "", None
         for candidate in [*own, *in_main, *others]:
             written = self.calls.find_argument(candidate, candidate.row.topic)
-            values = self.values.evaluate(written, candidate.fn, candidate.call.line)
+            values = running.evaluate(written, candidate.fn, candidate.call.line)
             # `_` stands for a name that options give.
             found = next((value.text for value in values if value.text and value.text != "_"), "")
             if use is None or found:
@@ -395,7 +396,7 @@ class Join:
             default = _spell_open(written)  # what the code gives is not known
         full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
         if use is not None and full:
-            full = self.objects.join_namespace(use, full.lstrip("/"), self.values)
+            full = self.objects.join_namespace(use, full.lstrip("/"), running)
         language = "python" if program.kind == "script" else "cpp"
         node = Node(
             f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,

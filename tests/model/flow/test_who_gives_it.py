@@ -196,6 +196,7 @@ ARM = """
 def test_what_another_program_passes_to_a_method_is_not_sure_to_be_a_name_of_a_node():
     drive = SCAN.replace("scan", "drive") + '    arm.switch("navigation")\n'
     found = graph({"p/arm.py": ARM, "p/scan.py": SCAN, "p/drive.py": drive})
+    assert {one.id: one.name for one in found.nodes} == {"p/scan.py": "/scan", "p/drive.py": "/drive"}
     clients = {(one.node, one.topic, one.only_if) for one in found.endpoints if one.role == "client"}
     assert ("p/drive.py", "/switch_to_navigation", "") in clients
     others = {only_if for node, _, only_if in clients if node == "p/scan.py"}
@@ -218,3 +219,26 @@ def test_a_launch_file_starts_a_program_by_the_name_that_it_is_installed_under(t
     }  # fmt: skip
     found = graph_on_disk(tmp_path, files, "map/launch/map.launch.xml")
     assert {one.topic for one in found.endpoints if not one.implied} == {"/a", "/near"}
+
+
+@pytest.mark.parametrize(("name", "expected"), [
+    ('f"robot_{number}"', "/robot_<number>"), ("number", "/<number>"), ('"robot"', "/robot"),
+])  # fmt: skip
+def test_a_node_whose_name_is_not_known_has_brackets_in_it(name, expected):
+    robot = f"""
+        import sys
+        import rclpy
+        from rclpy.node import Node
+        from std_msgs.msg import Empty
+
+        class Robot(Node):
+            def __init__(self, number):
+                super().__init__({name})
+                self.one = self.create_publisher(Empty, "~/one", 1)
+
+        rclpy.init()
+        rclpy.spin(Robot(sys.argv[1]))
+    """
+    found = graph({"p/robot.py": robot})
+    assert ends(found, "publisher") == {("p/robot.py", f"{expected}/one", "std_msgs/Empty")}
+    assert [one.name for one in found.nodes] == [expected]
