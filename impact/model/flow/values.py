@@ -526,15 +526,18 @@ class FlowValues:
             found.add(values, guard)
 
     def _decide_branch(self, guard: int, fn: Fn, seen: tuple) -> DecidedCondition:
-        """Whether a place in a function is come to, as far as the launch decides it by parameters; holds is None for
-        all else, and for what is asked for by the way."""
-        if guard < 0 or len(seen) > _NEAR or not self.settings:
+        """Whether a place in a function is come to, as far as the launch decides it by parameters, or by how many
+        arguments it gives; holds is None for all else, and for what is asked for by the way."""
+        if guard < 0 or len(seen) > _NEAR or not (self.settings or self.arguments):
             return DecidedCondition()
         opens = True
         for place in list_guards_around(fn, guard):
             one = fn.facts.guards[place]
+            number = None if self.arguments is None else self.command_line.decide_number(one, self.arguments)
             asks = one.kind in ASKING and not self.parameter_words.isdisjoint(_WORD.findall(one.text))
             decided = self._decide_guard(one, fn, seen) if asks and not _is_asking(one, fn, seen) else None
+            if number is not None:
+                decided = DecidedCondition(number, frozenset(("given",)))
             if decided is None or not decided.is_given or decided.holds is None:
                 opens = False
             elif not decided.holds:

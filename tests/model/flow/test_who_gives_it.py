@@ -242,3 +242,33 @@ def test_a_node_whose_name_is_not_known_has_brackets_in_it(name, expected):
     found = graph({"p/robot.py": robot})
     assert ends(found, "publisher") == {("p/robot.py", f"{expected}/one", "std_msgs/Empty")}
     assert [one.name for one in found.nodes] == [expected]
+
+
+COUNTED = """
+    #include <ros/ros.h>
+    std::string topic = "of_none";
+    int main(int argc, char ** argv) {
+      ros::init(argc, argv, "count");
+      ros::NodeHandle nh;
+      if (argc > 1) topic = std::string(argv[1]) + "/of_one";
+      if (argc > 2) topic = "of_two";
+      ros::Publisher pub = nh.advertise<std_msgs::Empty>(topic, 1);
+    }
+"""
+
+
+@pytest.mark.parametrize(("args", "expected"), [
+    ("a", {"/a/of_one"}), ("a b", {"/of_two"}), ("a b c", {"/of_two"}),
+])  # fmt: skip
+def test_how_many_arguments_a_launch_gives_decides_a_branch(tmp_path, args, expected):
+    files = {
+        "count/package.xml": manifest("count", "catkin"),
+        "count/CMakeLists.txt": (
+            "cmake_minimum_required(VERSION 3.0)\nproject(count)\nfind_package(catkin REQUIRED roscpp)\n"
+            "catkin_package()\nadd_executable(count src/count.cpp)\n"
+        ),
+        "count/src/count.cpp": COUNTED,
+        "count/launch/count.launch": f'<launch><node pkg="count" type="count" name="count" args="{args}"/></launch>\n',
+    }
+    found = graph_on_disk(tmp_path, files, "count/launch/count.launch")
+    assert {one.topic for one in found.endpoints if one.role == "publisher" and not one.implied} == expected
