@@ -596,11 +596,28 @@ class FlowCode:
                         if each.type and parse_flow_type(each.type).name:
                             return each.type, one.source, one.name
         else:
-            source = self._by_path.get(variable.owner, fn.source)
-            for constant in source.facts.constants:
-                if constant.name == variable.name and constant.type:
-                    return constant.type, source, ""
+            own = self._by_path.get(variable.owner, fn.source)
+            for source in (own, *self._list_declaring_headers(variable, own)):
+                for constant in source.facts.constants:
+                    if constant.name == variable.name and constant.type:
+                        return constant.type, source, ""
         return "", fn.source, fn.scope
+
+    def _list_declaring_headers(self, variable: Variable, source: CodeFile) -> list[CodeFile]:
+        """The headers that a file in C++ sees and that declare a variable outside of functions."""
+        by_path = self._constants.get(get_tail(variable.name), {}) if source.facts.language == "cpp" else {}
+        others = [path for path in by_path if path != source.path and not path.endswith(SOURCES)]
+        seen = self._seen_files.list_seen(source.path) if others else ()
+        return [self._by_path[path] for path in others if path in seen]
+
+    @cache_method
+    def list_copies(self, variable: Variable) -> list[Variable]:
+        """What a variable that a header declares outside of functions is in the files that include the header."""
+        rows = self._constants.get(get_tail(variable.name), {}).get(variable.owner, ())
+        if variable.kind != "global" or not rows or not variable.owner.endswith(_HEADERS):
+            return []
+        including = sorted(self._seen_files.list_including(variable.owner))
+        return [Variable("global", path, variable.name) for path in including if path.endswith(SOURCES)]
 
     def list_declared_values(self, variable: Variable, fn: Fn) -> Iterator[tuple[FlowExpr, Fn]]:
         """What a member or a constant is declared with, and a function of the file in which to read it."""

@@ -13,7 +13,7 @@ from msgspec import structs
 from ....edges.groups import group_pairs
 from ....edges.memory import cache_method
 from ....edges.reach import walk
-from ...facts.flow import FlowFile, Guard
+from ...facts.flow import FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
@@ -39,7 +39,7 @@ from .graph import (
     Way,
 )
 from .loads import Loaded, list_loaded
-from .names import NameRefused, is_open, normalise, resolve_ros1_name, resolve_ros2_name
+from .names import NameRefused, is_open, make_open_part, normalise, resolve_ros1_name, resolve_ros2_name
 from .nodes import BuiltPackage, CodeReach, StartableProgram
 from .objects import NodeObjects, make_key
 from .qos import apply_overrides, find_qos, list_overridable
@@ -50,6 +50,8 @@ from .values import ASKING, FlowValue, FlowValues, spell_condition
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _OVERRIDES = re.compile(r"qos_overrides\.").match
+# The condition of a name that code gives which a node does not run.
+_PASSED = "something that runs passes the name"
 _MOST_WAYS = 16
 _DEEPEST = 10
 _TRIGGERS = {
@@ -129,7 +131,7 @@ class Join:
         for program in programs_of.list_programs(self.code, self.built, self._find_kinds):
             functions, classes = self._find_reached(program)
             named = [use for use in self.calls.select_uses("node") if use.fn in functions]
-            node, use = self._make_node(program, named)
+            node, use = self._make_node(program, named, self.values.run(functions))
             one = Running(program, node, functions, classes, self.values)
             several = program.kind in ("executable", "script", "component")
             found += self._split_by_object(one, use) if several else [one]
@@ -207,9 +209,7 @@ class Join:
         """The guards, by their places, that may ask for a parameter by what stands in them, and under which nodes or
         objects of the code are made or functions called that lead to an endpoint; by the function."""
         uses = self.calls.select_uses("parameter")
-        words = {get_tail(use.call.callee) for use in uses}
-        words |= {get_tail(use.call.target) for use in uses if use.call.target}
-        words |= {variable.name for variable in self.values.filled}
+        words = self.values.parameter_words.union(get_tail(use.call.callee) for use in uses)
         making = {fn for site in self.sites.endpoints for fn in (site.use.fn, *self._find_leading(site.use.fn))}
         nodes = group_pairs((use.fn, use.call.guard) for use in self.calls.select_uses("node"))
         found: dict[Fn, list[int]] = {}
@@ -360,9 +360,10 @@ class Join:
         )
 
     def _make_node(
-        self, program: StartableProgram, named: list[FrameworkCall]
+        self, program: StartableProgram, named: list[FrameworkCall], running: FlowValues
     ) -> tuple[Node, FrameworkCall | None]:  # fmt: skip
-        """The node that a program is, or the first of those, and the use that names it."""
+        """The node that a program is, or the first of those, and the use that names it. running: what expressions are
+        worth in what it runs."""
         own = (
             [use for use in named if get_tail(use.fn.facts.owner) == get_tail(program.plugin)] if program.plugin else []
         )
@@ -379,7 +380,7 @@ class Join:
         name, use = "", None
         for candidate in [*own, *in_main, *others]:
             written = self.calls.find_argument(candidate, candidate.row.topic)
-            values = self.values.evaluate(written, candidate.fn, candidate.call.line)
+            values = running.evaluate(written, candidate.fn, candidate.call.line)
             # `_` stands for a name that options give.
             found = next((value.text for value in values if value.text and value.text != "_"), "")
             if use is None or found:
@@ -390,9 +391,12 @@ class Join:
         # What loads a plugin is another program, which gives it a node, or a nodelet its name; who makes the node of a
         # program that makes none is not known either.
         unknown = program.kind in ("plugin", "nodelet") or not (named or self.ros == 2)
+        written = self.calls.find_argument(use, use.row.topic) if use is not None and not name else None
+        if written is not None and written.kind != "text" and not self.calls.is_node(written, use.fn):
+            default = _spell_open(written)  # what the code gives is not known
         full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
         if use is not None and full:
-            full = self.objects.join_namespace(use, full.lstrip("/"), self.values)
+            full = self.objects.join_namespace(use, full.lstrip("/"), running)
         language = "python" if program.kind == "script" else "cpp"
         node = Node(
             f"{program.package}/{program.executable or program.plugin}", full, program.package, program.kind,
@@ -580,7 +584,7 @@ class Join:
 
     def _adapt_site(self, site: Site, owner: Owner) -> Site:
         """A site as it is for whoever runs it: with the parameters and the arguments that a launch gives."""
-        if not isinstance(owner, Running) or site.implied or (owner.values is self.values and len(site.names) < 2):
+        if not isinstance(owner, Running) or site.implied or (owner.values is self.values and self._is_written(site)):
             return site
         arguments, made = owner.values.arguments, id(owner.values.made)
         known = self._sites_of.setdefault((id(site.use), id(owner.functions), arguments, made), [])
@@ -591,11 +595,21 @@ class Join:
         # What code that the node does not run passes to its functions is none of its names.
         names = self.sites.list_names(site.use, site.prefix, owner.values.run(owner.functions))
         if all(name.text is None for name in names):
-            names = self.sites.list_names(site.use, site.prefix, owner.values)
+            # It comes from code that the node does not run, as far as is known.
+            elsewhere = self.sites.list_names(site.use, site.prefix, owner.values)
+            names = tuple(
+                name if name.text is None else name._replace(only_if=_join_conditions(name.only_if, _PASSED))
+                for name in elsewhere
+            )
         type_ = site.type or self.sites.find_type(site.use, owner.values)
         found = site._replace(names=names, type=type_)
         known.append((owner, dict(self.values.asked), found))
         return found
+
+    def _is_written(self, site: Site) -> bool:
+        """Whether a site's only name is written where it is made."""
+        named = self.calls.find_argument(site.use, site.use.row.topic)
+        return len(site.names) < 2 and (named is None or named.kind == "text")
 
     def _make_endpoint(self, site: Site, value: FlowValue, type_: str, owner: Owner) -> Endpoint:
         use = site.use
@@ -609,7 +623,7 @@ class Join:
             qos = apply_overrides(qos, topic, site.role, policies, owner.values.settings) if policies else qos
         replaced = "the name is not replaced" if value.how == "partly" else ""
         conditions = ("" if site.implied else self._describe_condition(use, owner), value.only_if, replaced)
-        only_if = " && ".join(dict.fromkeys(filter(None, conditions)))
+        only_if = _join_conditions(*conditions)
         return Endpoint(
             site.role, node.id if node else "", topic, type_, *_get_place(use), site.written, how, qos,
             _make_callback(site.callbacks), use.fn.name, use.call.target, reason or site.reason, site.implied,
@@ -803,6 +817,17 @@ def _make_code_name(site: Site, text: str) -> str:
         return f"~/{text[1:]}"
     private = site.prefix == "~" and text and text[0] not in "/~"
     return f"~/{text}" if private else text
+
+
+def _join_conditions(*conditions: str) -> str:
+    """Conditions that all have to hold, empty ones left out."""
+    return " && ".join(dict.fromkeys(filter(None, conditions)))
+
+
+def _spell_open(name: FlowExpr) -> str:
+    """The name that an expression gives a node, with brackets for what is not known."""
+    parts = name.parts if name.kind == "join" else (name,)
+    return "".join(part.text if part.kind == "text" else make_open_part(f"<{unparse(part)}>") for part in parts)
 
 
 def _get_node(owner: Owner) -> Node | None:

@@ -175,10 +175,16 @@ def _find_scripts(package: Package, files: Mapping[str, FlowFile]) -> dict[str, 
             if where:
                 found[name] = where
     reached = {where.partition(":")[0] for where in found.values()}
-    programs = {item for install in package.build.installs if install.kind == "programs" for item in install.items}
+    # With the name that a program is installed under.
+    programs = {
+        item: install.rename
+        for install in package.build.installs
+        if install.kind == "programs"
+        for item in install.items
+    }
     runs = [path for path in package.linked.files if path in files and _runs(files[path])]
-    for path in (*sorted(programs & files.keys()), *runs):
-        name = path.rpartition("/")[2]
+    for path in (*sorted(programs.keys() & files.keys()), *runs):
+        name = programs.get(path) or path.rpartition("/")[2]
         if path not in reached and name not in ("setup.py", "conf.py"):
             found.setdefault(name, path)
             reached.add(path)
