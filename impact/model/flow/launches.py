@@ -73,13 +73,16 @@ class LaunchedNode(msgspec.Struct, frozen=True):
 class Launch(msgspec.Struct, frozen=True):
     """What a launch file starts. path: in the workspace. graph: of all that it starts. missing: it starts programs too
     whose code is not in the workspace, or that are not known, or it includes what is not followed; elsewhere: the
-    lines, as `path:line`, of the remappings and parameters that those programs are given."""
+    lines, as `path:line`, of the remappings and parameters that those programs are given. possible: the graph of what
+    it starts only if conditions hold that do not with the defaults of its arguments, of programs that no launch file
+    starts with these; None for nothing."""
 
     path: str
     graph: Graph
     starts: tuple[LaunchedNode, ...]
     missing: bool
     elsewhere: tuple[str, ...] = ()
+    possible: Graph | None = None
 
 
 _Followed = tuple[str, Launched]
@@ -129,7 +132,7 @@ def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) ->
 
 
 def _select_working(followed: Iterable[_Followed]) -> list[_Followed]:
-    return [row for row in followed if row[1].started or row[1].outside]
+    return [row for row in followed if row[1].started or row[1].outside or row[1].possible]
 
 
 def _run_within_limits(task: Callable[..., Iterable[_Row]], *given: Any) -> list[_Row]:
@@ -158,11 +161,13 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
             for started in others
             for given in (*started.remaps, *started.settings)
         }
-        yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)))
+        possible = join.build(launch=launch.possible) if launch.possible is not None else None
+        yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)), possible)
 
 
 def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list[_Followed]:
-    """Each launch file that no other includes, followed. files: as list_launch_files() gives them."""
+    """Each launch file that no other includes, followed, with what it may start of programs that none of them does.
+    files: as list_launch_files() gives them."""
     sources, changed = InWorkspace(workspace), ChangedFiles()
     found: list[_Followed] = []
     included: set[str] = set()
@@ -174,7 +179,24 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
         found.append((path, launch))
         own, *others = launch.files or (("", ""),)
         included.update(sources.find_workspace_path(*other) for other in others if other != own)
-    return [row for row in found if row[0] not in included]
+    rows = [row for row in found if row[0] not in included]
+    started = {_identify(one) for _, launch in rows for one in launch.started}
+    for at, (path, launch) in enumerate(rows):
+        if launch.left_out and left > 1:
+            (package, inner), most = launch.files[0], min(MOST_ACTIONS, left)
+            every = follow(
+                package, inner, sources, {}, generation=workspace.ros, most=most, changed=changed, undecided=True
+            )
+            left = max(1, left - every.actions)
+            rest = tuple(one for one in every.started if _identify(one) not in started)
+            if rest:
+                rows[at] = path, launch._replace(possible=every._replace(started=rest, outside=()))
+    return rows
+
+
+def _identify(started: Started) -> tuple[str | None, str]:
+    """The program that is started, as the launch file names it."""
+    return started.package.value, (started.plugin.shown or started.executable.shown).removesuffix(".py")
 
 
 def list_launch_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from ...facts.launch.actions import LaunchFile
 from ...facts.launch.parameter_files import ParameterFile
 from ..launch.follow import follow
-from ..launch.result import Launched, Remap, Started
+from ..launch.result import Launched, LaunchParameter, Remap, Started
 from ..launch.text import LaunchText
 from ..workspace import Workspace
 from .names import RemappingRule, join_name, make_open_part, remap_ros1_name, remap_ros2_name
@@ -92,8 +92,21 @@ class Instance(NamedTuple):
     uncertain: tuple[str, ...]
 
     def remap_name(self, name: str, ros: int, kind: str = "topic") -> str:
-        """A name as the code has it, after the remappings of this start; full."""
-        pairs = [(r.old.value, _fill(r.new)) for r in self.remaps if r.old.value is not None]
+        """A name as the code has it, after the remappings of this start; full. It is known in part where a remapping
+        under an undecided condition gives it another name."""
+        given = self.started.conditions
+        sure = [r for r in self.remaps if r.is_sure(given)]
+        names = [self._apply(name, sure, ros, kind)]
+        if len(sure) < len(self.remaps):
+            for one in self.remaps:
+                if not one.is_sure(given):
+                    names.append(self._apply(name, [r for r in self.remaps if r is one or r in sure], ros, kind))
+        found = tuple(dict.fromkeys(names))
+        shown = " or ".join(each[1:] for each in found)
+        return found[0] if len(found) == 1 else f"/{make_open_part(f'<{shown}>')}"
+
+    def _apply(self, name: str, remaps: Iterable[Remap], ros: int, kind: str) -> str:
+        pairs = [(r.old.value, _fill(r.new)) for r in remaps if r.old.value is not None]
         if ros == 1:
             return remap_ros1_name(name, self.name, pairs)
         namespace, _, own = self.name.rpartition("/")
@@ -110,9 +123,15 @@ def make_instance(all_started: Launched, own_name: str, started: Started, own_na
     full = join_name("/" + (_fill(started.namespace) or own_namespace).lstrip("/"), name)
     one = started.generation == 1
     given = all_started.server if one else all_started.collect_parameters(started, full)
-    settings = {key: _fill(one.text) for key, one in given.items()}
+    settings = {key: _fill_setting(one, started) for key, one in given.items()}
     uncertain = (*started.conditions, *(r for r in (*started.name.reasons, *started.namespace.reasons) if r))
     return Instance(started, full, settings, started.remaps, uncertain)
+
+
+def _fill_setting(one: LaunchParameter, started: Started) -> str:
+    if one.is_sure(started.conditions):
+        return _fill(one.text)
+    return make_open_part(f"<{one.text.shown} or not given>")
 
 
 def _fill(text: LaunchText) -> str:
