@@ -98,12 +98,14 @@ class Action(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class LaunchFile(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """language: `xml`, `yaml` or `python`. generation: 1 or 2, 0 where an XML file could be of either."""
+    """language: `xml`, `yaml` or `python`. generation: 1 or 2, 0 where an XML file could be of either. imports: what a
+    file in Python imports, dotted, other than of launch itself."""
 
     language: str
     generation: int
     actions: tuple[Action, ...] = ()
     problems: tuple[Problem, ...] = ()
+    imports: tuple[str, ...] = ()
 
 
 SHOWN = 120

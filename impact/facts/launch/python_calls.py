@@ -62,7 +62,7 @@ class LaunchCall(NamedTuple):
 
     @property
     def line(self) -> int:
-        return self.node.lineno
+        return self.walker.locate(self.node)
 
     @property
     def unknown(self) -> Unknown:

@@ -137,10 +137,15 @@ class Object(msgspec.Struct, eq=False):
 
 
 class LaunchScope(msgspec.Struct, eq=False):
-    """Names and what they stand for."""
+    """Names and what they stand for. module: of the outermost scope of another file, its dotted name."""
 
     parent: LaunchScope | None
     names: dict[str, Any] = {}
+    module: str = ""
+
+    def find_module(self) -> str:
+        """The dotted name of the file that it is in; empty for the launch file itself."""
+        return self.module if self.parent is None else self.parent.find_module()
 
     def look(self, name: str) -> Any:
         if name in self.names or self.parent is None:

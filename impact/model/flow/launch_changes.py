@@ -157,6 +157,7 @@ class _Side:
     def settings(self) -> dict[str, str]:
         """Contents of launch files, parameter files and robot descriptions, by path; those of tests are left out."""
         found = {path: "" for _, path, _ in list_launch_files(self.workspace)}
+        found |= {helper: "" for path in tuple(found) for helper in self.sources.list_helpers(path)}
         for package in self.workspace:
             start = len(package.path) + 1 if package.path else 0
             for path in package.linked.files:
@@ -188,7 +189,10 @@ class _Side:
     def list_files(self, launched: Launched) -> Iterator[str]:
         """All files that decide what a launch starts."""
         for place in (*launched.files, *launched.parameter_files):
-            yield self.sources.find_workspace_path(*place)
+            path = self.sources.find_workspace_path(*place)
+            yield path
+            if place in launched.files:
+                yield from self.sources.list_helpers(path)
         for started in (*launched.started, *launched.outside):
             for text in _list_texts(launched, started):
                 yield from self.list_described(text)
