@@ -149,3 +149,7 @@ def make_named(kind: str, name: Value, *rest: Value) -> ValuePart:
 def make_other(source: str) -> ValuePart:
     """A piece that could not be read."""
     return ValuePart("other", " ".join(source.split())[:SHOWN])
+
+
+BRIDGE_FILE: Value = (ValuePart("find", "ros_gz_bridge"), ValuePart("text", "/launch/ros_gz_bridge.launch.py"))
+"""What the action of ros_gz_bridge includes."""

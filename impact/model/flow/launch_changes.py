@@ -16,6 +16,7 @@ from ..launch.result import Launched, LaunchParameter, SettingFile, ShareLine, S
 from ..launch.text import wrap
 from ..package import find_folder_role
 from ..workspace import Workspace
+from .bridges import add_bridges
 from .graph import Graph
 from .join import Join, Running
 from .launches import follow_launch_files, list_launch_files
@@ -215,7 +216,8 @@ class _Side:
     def start(self, launched: Launched | None) -> tuple[list[StartedNode], Graph]:
         """What a launch starts, and its graph."""
         launched = launched or Launched((), {}, ())
-        return list(self._list_starts(launched)), self.find_code().build(launch=launched)
+        graph = add_bridges(self.find_code().build(launch=launched), launched, self.sources)
+        return list(self._list_starts(launched)), graph
 
     def _list_starts(self, launched: Launched) -> Iterator[StartedNode]:
         running, _ = self.find_code().find_started(launched)

@@ -18,6 +18,7 @@ from ..launch.follow import MOST_ACTIONS, follow
 from ..launch.result import Launched, SettingFile, Started, select_file_values
 from ..package import find_folder_role
 from ..workspace import Workspace
+from .bridges import add_bridges
 from .escape_analysis import EscapeAnalysis, UnknownReasons
 from .file_selection import compute_stamp
 from .graph import Graph
@@ -147,7 +148,7 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
     unknown: dict[str, UnknownReasons] = {}
     for path, launch in followed:
         running, missing = join.find_started(launch)
-        graph = join.build(launch=launch)
+        graph = add_bridges(join.build(launch=launch), launch, sources)
         starts = []
         for one in running:
             program = f"{one.program.package}/{one.program.executable or one.program.plugin}"
@@ -161,7 +162,7 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
             for started in others
             for given in (*started.remaps, *started.settings)
         }
-        possible = join.build(launch=launch.possible) if launch.possible is not None else None
+        possible = launch.possible and add_bridges(join.build(launch=launch.possible), launch.possible, sources)
         yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)), possible)
 
 

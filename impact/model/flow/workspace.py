@@ -222,11 +222,12 @@ def make_graph(
     started them.
     """
     if chosen is not None:
-        from .started import follow_workspace_launch
+        from .bridges import add_bridges
+        from .started import InWorkspace, follow_workspace_launch
 
         start = join_launched([follow_workspace_launch(workspace, one.path, one.arguments) for one in chosen])
         code = get_flow(workspace).code
-        return code.build(root, rev, _list_unread(code), start)
+        return add_bridges(code.build(root, rev, _list_unread(code), start), start, InWorkspace(workspace))
 
     def make() -> Graph:
         code = get_flow(workspace).code
