@@ -182,6 +182,7 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
         included.update(sources.find_workspace_path(*other) for other in others if other != own)
     rows = [row for row in found if row[0] not in included]
     started = {_identify(one) for _, launch in rows for one in launch.started}
+    given: set[tuple[str | None, str, str, str]] = set()
     for at, (path, launch) in enumerate(rows):
         if launch.left_out and left > 1:
             (package, inner), most = launch.files[0], min(MOST_ACTIONS, left)
@@ -189,7 +190,14 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
                 package, inner, sources, {}, generation=workspace.ros, most=most, changed=changed, undecided=True
             )
             left = max(1, left - every.actions)
-            rest = tuple(one for one in every.started if _identify(one) not in started)
+            # Of a program that several files may start under one name, the first start.
+            fresh = {
+                (*_identify(one), one.name.shown, one.namespace.shown): one
+                for one in reversed(every.started)
+                if _identify(one) not in started
+            }
+            rest = tuple(one for key, one in reversed(fresh.items()) if key not in given)
+            given.update(fresh)
             if rest:
                 rows[at] = path, launch._replace(possible=every._replace(started=rest, outside=()))
     return rows

@@ -106,6 +106,7 @@ class _Launch(Filling):
             # One after the other: the value of one argument may name an argument given before it.
             for name, text in self.list_passed(action):
                 self.scope.arguments[name] = text
+                self.scope.maybe.pop(name, None)
         self.chain.append(place)
         self.files.append(place)
         self.package, self.path = place
@@ -194,8 +195,12 @@ class _Launch(Filling):
             before = self.scope.arguments.get(name)
             if before is not None and before.value is not None and before.value == text.value:
                 return
+            if before is None:
+                self.scope.maybe[name] = text
             shown = text.shown if before is None else f"{before.shown} or {text.shown}"
             text = make_unknown(shown, f"`{name}` is set only if {self.open[-1]}")
+        else:
+            self.scope.maybe.pop(name, None)
         self.scope.arguments[name] = text
 
     def read_name(self, action: Action) -> str | None:
@@ -214,6 +219,12 @@ class _Launch(Filling):
                 self.scope.arguments[name] = make_unknown(f"{name}", reason)
             else:
                 self.set(name, self.fill(default))
+        elif default is not None and name in self.scope.maybe:
+            before, text = self.scope.maybe.pop(name), self.fill(default)
+            if before.value is None or before.value != text.value:
+                reasons = (*before.reasons, *text.reasons, *self.scope.arguments[name].reasons)
+                text = make_unknown(f"{before.shown} or {text.shown}", *reasons)
+            self.scope.arguments[name] = text
         self.declared.add(name)
 
     def do_let(self, action: Action) -> None:

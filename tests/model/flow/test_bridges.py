@@ -136,7 +136,8 @@ CONFIGURED = [
     "Node(package='ros_gz_bridge', executable='bridge_node', name='b', parameters=[{'config_file': CONFIG}])",
     "bridge('--ros-args', '-p', ['config_file:=', CONFIG], name='b')",
     "ComposableNodeContainer(name='c', namespace='', package='rclcpp_components', executable='component_container', "
-    "composable_node_descriptions=[ComposableNode(package='ros_gz_bridge', plugin='ros_gz_bridge::RosGzBridge', name='b', "
+    "composable_node_descriptions=[ComposableNode(package='ros_gz_bridge', name='b', "
+    "plugin='ros_gz_bridge::RosGzBridge', "
     "parameters=[{'config_file': CONFIG}])])",
     "RosGzBridge(bridge_name='b', config_file=CONFIG)",
     "IncludeLaunchDescription(PathJoinSubstitution([FindPackageShare('ros_gz_bridge'), 'launch', "

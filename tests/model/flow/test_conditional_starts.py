@@ -184,3 +184,35 @@ def test_a_start_whose_name_is_computed_is_not_called_like_its_program(tmp_path,
     found = start(tmp_path, f"Node(package='talk', executable='talker', name={name})")
     (node,) = found.nodes
     assert node.uncertain and "<" in node.name
+
+
+@pytest.mark.parametrize(
+    ("inner", "name"),
+    [("r", "/r"), ("s", "/<s_or_r>")],
+)
+def test_an_argument_that_an_included_file_may_have_declared(tmp_path, inner, name):
+    """Either the included file declares it, or this one does."""
+    after = "DeclareLaunchArgument('ns', default_value='r'), Node(package='talk', executable='talker', "
+    after += "name=LaunchConfiguration('ns'))"
+    found = start(tmp_path, f"{INCLUDED}, {after}", b=f"DeclareLaunchArgument('ns', default_value='{inner}')")
+    assert [node.name for node in found.nodes] == [name]
+
+
+def test_an_argument_that_is_passed_is_sure_whoever_may_have_declared_it(tmp_path):
+    passed = "IncludeLaunchDescription([ThisLaunchFileDir(), '/c.launch.py'], launch_arguments={'ns': 'q'}.items())"
+    declared = "DeclareLaunchArgument('ns', default_value='{}')"
+    started = "Node(package='talk', executable='talker', name=LaunchConfiguration('ns'))"
+    found = start(
+        tmp_path, f"{INCLUDED}, {passed}", b=declared.format("r"), c=f"{declared.format('s')}, {started}"
+    )
+    assert [node.name for node in found.nodes] == ["/q"]
+
+
+def test_one_of_several_starts_that_may_be_under_one_name(tmp_path):
+    """What several launch files may start alike is told once, at the first of them."""
+    hidden = "GroupAction([PushRosNamespace('r'), TALKER], condition=NEVER)"
+    other = "GroupAction([PushRosNamespace('s'), TALKER], condition=NEVER)"
+    found = start(tmp_path, hidden, launch="", b=hidden, c=other)
+    assert [(node.name, node.launches) for node in found.nodes] == [
+        ("/r/t", ("talk/launch/a.launch.py",)), ("/s/t", ("talk/launch/c.launch.py",)),
+    ]  # fmt: skip
