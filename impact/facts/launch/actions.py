@@ -70,7 +70,7 @@ class Action(msgspec.Struct, frozen=True, array_like=True, gc=False):
     | composable | package, plugin, name, namespace | remap, parameter, parameter-file |
     | load | container: its full name, or container-node: the name of a container of the same file, before the
       namespaces that are pushed | composable |
-    | include | file, namespace, pass-all (ROS 1), clear | pass, environment |
+    | include | file, namespace, pass-all (ROS 1), clear, optional: only if it is there | pass, environment |
     | group | namespace (ROS 1), scoped, forwarding, clear | any |
     | namespace | namespace: pushed for what follows | |
     | remap | from, to | |

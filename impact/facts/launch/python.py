@@ -7,7 +7,7 @@ from ..place import Problem
 from ..python.source import read
 from .actions import Action, LaunchFile
 from .parameter_files import DEEPEST
-from .python_calls import make
+from .python_moveit import make
 from .python_values import TooMuch
 from .python_walk import MOST_STEPS, HelperModule, Walker
 

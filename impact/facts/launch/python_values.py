@@ -153,6 +153,23 @@ class LaunchScope(msgspec.Struct, eq=False):
         return self.parent.look(name)
 
 
+class MoveItFile(NamedTuple):
+    """A YAML file of a MoveIt configuration. below: the parameter that its content is under, None for none; on_disk:
+    whether it is read hangs on what is there."""
+
+    below: Value | None
+    file: Value
+    on_disk: bool = False
+
+
+class MoveItConfig(msgspec.Struct, eq=False):
+    """A MoveItConfigsBuilder, or what it builds (is_whole). folder: of its package; files: by section."""
+
+    folder: Value
+    files: dict[str, list[MoveItFile]] = {}
+    is_whole: bool = False
+
+
 class Context(NamedTuple):
     """The LaunchContext given to an OpaqueFunction, or its dict of configurations."""
 

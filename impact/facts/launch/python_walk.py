@@ -38,6 +38,7 @@ from .python_values import (
     LaunchModule,
     LaunchScope,
     Method,
+    MoveItConfig,
     Object,
     Pairs,
     TextValue,
@@ -421,6 +422,10 @@ class Walker:
                 return receiver.attributes[name]
             method = receiver.type.methods.get(name)
             return Unknown(get_source(node)) if method is None else method._replace(self=receiver)
+        if isinstance(receiver, MoveItConfig):
+            from .python_moveit import read_attribute
+
+            return read_attribute(receiver, name, self.locate(node)) or Method(receiver, name)
         if isinstance(receiver, Context) and name == "launch_configurations":
             return Context(True)
         if isinstance(receiver, TextValue) and name == "parent":
@@ -692,6 +697,10 @@ class Walker:
     def call_method(self, method: Method, arguments: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
         receiver, name = method
         first = arguments[0] if arguments else None
+        if isinstance(receiver, MoveItConfig):
+            from .python_moveit import call_method
+
+            return call_method(receiver, name, arguments, keywords, self, node)
         if isinstance(receiver, Items):
             if name in ("append", "add_action", "add_entity") and arguments:
                 self.extend(receiver, arguments[:1])
@@ -702,6 +711,8 @@ class Walker:
                 receiver.items.insert(place, self.add_conditions(arguments[1], receiver.depth))
             elif name == "remove" and first in receiver.items:
                 receiver.items.remove(first)
+            elif name == "update" and receiver.kind == "parameters" and arguments:
+                self.extend(receiver, arguments[:1])
             elif name == "copy":
                 return Items(list(receiver.items), len(self.conditions), receiver.kind)
             else:

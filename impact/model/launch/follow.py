@@ -90,7 +90,7 @@ class _Launch(Filling):
     def include(self, place: tuple[str, str], action: Action | None = None) -> None:
         """Follows a file that an action includes; without one the file that is launched."""
         file = self.sources.find_launch_file(*place)
-        if file is None and action is not None:
+        if file is None and action is not None and action.get("optional") is None:
             self.note_outside(wrap(place[0]), wrap(place[1]), action)
         if file is None or len(self.chain) > DEEPEST or self.chain[:-1].count(place) > 3:
             return
