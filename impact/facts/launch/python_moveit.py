@@ -104,6 +104,8 @@ _FILES = {
 }
 # Which of several files is taken, or whether there is one, is told by what is on the disk.
 _ON_DISK = frozenset(("sensors_3d", "trajectory_execution"))
+_SECTIONS = (*_FILES, "planning_pipelines", "robot_description", "robot_description_semantic", "planning_scene_monitor",
+             "move_group_capabilities")  # fmt: skip
 _BY_DEFAULT = ("robot_description_kinematics", "trajectory_execution", "sensors_3d", "joint_limits")
 _DEMO = (("rsp", ""), ("move_group", ""), ("moveit_rviz", "use_rviz"), ("warehouse_db", "db"))
 
@@ -114,6 +116,8 @@ def make(walker: Walker, node: ast.Call, path: str, arguments: list[Any], keywor
     if path.partition(".")[0] != PACKAGE:
         return make_any(walker, node, path, arguments, keywords)
     call = LaunchCall(walker, node, path, arguments, keywords)
+    if arguments and isinstance(arguments[0], MoveItConfig) and path == f"{arguments[0].path}.{name}":
+        return _call_method(arguments[0], call)
     maker = _MAKERS.get(name)
     if maker is not None:
         return maker(call)
@@ -122,17 +126,19 @@ def make(walker: Walker, node: ast.Call, path: str, arguments: list[Any], keywor
     return make_any(walker, node, path, arguments, keywords)
 
 
-def call_method(
-    config: MoveItConfig, name: str, arguments: list[Any], keywords: dict[str, Any], walker: Walker, node: ast.Call
-) -> Any:
-    """What a method of a builder, or of what it builds, gives."""
-    call = LaunchCall(walker, node, name, arguments, keywords)
+def _call_method(config: MoveItConfig, call: LaunchCall) -> Any:
+    """What a method of a builder, or of what it builds, gives. call: with the builder before the arguments."""
+    name = call.path.rpartition(".")[2]
     if name == "to_moveit_configs":
-        return MoveItConfig(config.folder, dict(config.files), True)
+        whole = MoveItConfig(config.path, config.folder, dict(config.files), True, dict(config.attributes))
+        whole.attributes |= {
+            section: call.make_list(_list_parts(whole, (section,), call.line), "parameters") for section in _SECTIONS
+        }
+        return whole
     if name == "to_dict":
         return call.make_list(_list_parts(config, (_ANY,), call.line), "parameters")
     if name == "planning_pipelines":
-        given = call.get(1, "pipelines")
+        given = call.get(2, "pipelines")
         items = given.items if isinstance(given, Items) else ()
         names = [call.make_text(split_conditions(item)[0]) for item in items]
         paths = (join_all([make_literal("config/"), each, make_literal("_planning.yaml")]) for each in names)
@@ -140,20 +146,11 @@ def call_method(
             MoveItFile(each, _join(config, path), True) for each, path in zip(names, paths, strict=True)
         ]
     elif name in _FILES:
-        given, (below, default) = call.get(0, "file_path"), _FILES[name]
+        given, (below, default) = call.get(1, "file_path"), _FILES[name]
         file = call.make_text(given) if is_given(given) else make_literal(default)
         on_disk = name in _ON_DISK and (not is_given(given) or name == "sensors_3d")
         config.files[name] = [MoveItFile(make_literal(below) if below else None, _join(config, file), on_disk)]
     return config
-
-
-def read_attribute(config: MoveItConfig, name: str, line: int) -> Any:
-    """What an attribute of a whole configuration holds; None for what is no attribute."""
-    if name == "package_path":
-        return TextValue(config.folder)
-    if not config.is_whole or name in ("to_dict", "to_moveit_configs"):
-        return None
-    return Items(list(_list_parts(config, (name,), line)), 0, "parameters")
 
 
 def _make_builder(call: LaunchCall) -> Any:
@@ -164,7 +161,8 @@ def _make_builder(call: LaunchCall) -> Any:
         name = join_all([call.make_text(robot), make_literal("_moveit_config")])
     else:
         return call.unknown
-    return MoveItConfig((make_named("find", name),))
+    folder: Value = (make_named("find", name),)
+    return MoveItConfig(f"{PACKAGE}.MoveItConfigs", folder, attributes={"package_path": TextValue(folder)})
 
 
 def _join(config: MoveItConfig, file: Value) -> Value:
@@ -242,7 +240,7 @@ def _make_possible(call: LaunchCall, reason: str) -> tuple[ActionCondition, ...]
     return (ActionCondition("each", (make_other(reason),), call.line),)
 
 
-def _spawn_controllers(call: LaunchCall) -> Any:
+def _start_spawners(call: LaunchCall) -> Any:
     program = (("package", make_literal("controller_manager")), ("executable", make_literal("spawner")))
     each = _make_possible(call, "for each controller of moveit_simple_controller_manager")
     made = (
@@ -313,7 +311,7 @@ def _add_debuggable_node(call: LaunchCall) -> Any:
 _MAKERS: dict[str, Callable[[LaunchCall], Any]] = {
     "MoveItConfigsBuilder": _make_builder,
     "generate_demo_launch": _start_demo,
-    "generate_spawn_controllers_launch": _spawn_controllers,
+    "generate_start_spawners_launch": _start_spawners,
     "generate_static_virtual_joint_tfs_launch": _send_virtual_joints,
     "add_debuggable_node": _add_debuggable_node,
 }

@@ -163,11 +163,14 @@ class MoveItFile(NamedTuple):
 
 
 class MoveItConfig(msgspec.Struct, eq=False):
-    """A MoveItConfigsBuilder, or what it builds (is_whole). folder: of its package; files: by section."""
+    """A MoveItConfigsBuilder, or what it builds (is_whole). path: what its methods are called below; folder: of its
+    package; files: by section."""
 
+    path: str
     folder: Value
     files: dict[str, list[MoveItFile]] = {}
     is_whole: bool = False
+    attributes: dict[str, Any] = {}
 
 
 class Context(NamedTuple):

@@ -423,9 +423,7 @@ class Walker:
             method = receiver.type.methods.get(name)
             return Unknown(get_source(node)) if method is None else method._replace(self=receiver)
         if isinstance(receiver, MoveItConfig):
-            from .python_moveit import read_attribute
-
-            return read_attribute(receiver, name, self.locate(node)) or Method(receiver, name)
+            return receiver.attributes.get(name) or Method(receiver, name)
         if isinstance(receiver, Context) and name == "launch_configurations":
             return Context(True)
         if isinstance(receiver, TextValue) and name == "parent":
@@ -698,9 +696,7 @@ class Walker:
         receiver, name = method
         first = arguments[0] if arguments else None
         if isinstance(receiver, MoveItConfig):
-            from .python_moveit import call_method
-
-            return call_method(receiver, name, arguments, keywords, self, node)
+            return self.make(self, node, f"{receiver.path}.{name}", [receiver, *arguments], keywords)
         if isinstance(receiver, Items):
             if name in ("append", "add_action", "add_entity") and arguments:
                 self.extend(receiver, arguments[:1])
