@@ -51,7 +51,8 @@ def read_tables() -> int:
         changes.load_uses(kind)
     for load in (
         *(changes.load_rows, changes.load_transitive, parameters.load_renamed_parameters, load_sonames, load_offered),
-        *(index_headers, load_gazebo_topics, load_gz_systems, lambda: load_apt("ubuntu jammy"), lambda: load_shipped().about),
+        *(index_headers, load_gazebo_topics, load_gz_systems),
+        *(lambda: load_apt("ubuntu jammy"), lambda: load_shipped().about),
     ):
         load()
     return 0
