@@ -30,6 +30,8 @@ _INCLUDED = re.compile(r"launch/ros_gz_(?:bridge|sim)\.launch(?:\.py|\.xml)?\Z")
 _INCLUDING = frozenset(("ros_gz_bridge", "ros_gz_sim"))
 # `/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan`
 _ARGUMENT = re.compile(r"(?P<name>[^@]+)@(?P<type>\w+(?:/\w+){1,2})(?:(?P<direction>[@\[\]]).+)?\Z", re.DOTALL)
+# Names of interfaces begin with a capital letter; of another type a bridge makes nothing.
+_TYPE = re.compile(r"\w+/(?:\w+/)?[A-Z][A-Za-z0-9]*\Z")
 _SHARED = re.compile(r"\$\(find ([\w.-]+)\)/(.+)\Z")
 _BOTH: tuple[Role, ...] = ("publisher", "subscriber")
 _ROLES: dict[str, tuple[Role, ...]] = {
@@ -155,7 +157,7 @@ def _list_own_words(started: Started) -> Iterator[str]:
 
 def _parse_argument(word: str, place: tuple[str, int]) -> Carried | None:
     m = _ARGUMENT.match(word)
-    if m is None:
+    if m is None or not _TYPE.match(m["type"]):
         return None
     name, type_, direction = make_open_part(m["name"]), _shorten_type(m["type"]), m["direction"]
     if "/srv/" in m["type"]:
@@ -176,7 +178,7 @@ def _read_configuration(data: bytes, path: str) -> Iterator[Carried]:
         given = {key: node.value for key, node in rows.items() if isinstance(node.value, str) and node.value}
         type_, direction = given.get("ros_type_name", ""), given.get("direction", "")
         key = next((key for key in _NAMES if key in given), "")
-        if not key or not type_ or (key != "service_name" and direction not in _ROLES):
+        if not key or not _TYPE.match(type_) or (key != "service_name" and direction not in _ROLES):
             continue
         roles: tuple[Role, ...] = ("server",) if key == "service_name" else _ROLES[direction]
         yield Carried(roles, given[key], _shorten_type(type_), given[key], path, rows[key].line)

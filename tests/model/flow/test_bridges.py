@@ -29,6 +29,8 @@ CONFIG = """
       ros_type_name: "std_msgs/msg/String"
       direction: SIDEWAYS
     - ros_type_name: "std_msgs/msg/String"
+    - topic_name: "/clock"
+      ros_type_name: "rosgraph_msgs/msg/clock"
     - just text
 """
 LISTED = {
@@ -90,6 +92,7 @@ def carried(found):
         ("/world/w/control@ros_gz_interfaces/srv/ControlWorld[gz.msgs.WorldControl", set()),
         ("/scan@sensor_msgs/msg/LaserScan", set()),
         ("/scan", set()),
+        ("/clock@rosgraph_msgs/msg/clock[gz.msgs.Clock", set()),
         ("@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan", set()),
         ("/a b@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan", set()),
         ("--verbose", set()),
