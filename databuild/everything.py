@@ -186,6 +186,7 @@ STEPS = (
     BuildStep("fields", ("fields.json.zst",), ("manifests",),
          lambda sources, data, own: _call("databuild.fields", sources.clones, "--output", data / "fields.json.zst")
          if sources.clones else None),
+    BuildStep("gazebo-topics", ("gazebo_topics.json.zst",), (), _read_clones("databuild.gazebo_topics")),
     BuildStep("gz-systems", ("gz_systems.json.zst",), (), _read_clones("databuild.gz_systems")),
     BuildStep("conda", ("conda.json.zst",), (), _read_clones("databuild.conda")),
     BuildStep("libraries",

@@ -387,7 +387,9 @@ class Join:
                 name, use = found or "", candidate
             if found and "{" not in found:
                 break
-        default = program.executable or _convert_to_snake(get_tail(parse_flow_type(program.plugin).name))
+        default = f"<{program.executable or _convert_to_snake(get_tail(parse_flow_type(program.plugin).name))}>"
+        if use is not None and (written := self.calls.find_argument(use, use.row.topic)) is not None:
+            default = programs_of.spell_unknown_name(written) or default
         # What loads a plugin is another program, which gives it a node, or a nodelet its name; who makes the node of a
         # program that makes none is not known either.
         unknown = program.kind in ("plugin", "nodelet") or not (named or self.ros == 2)

@@ -18,6 +18,7 @@ from ..launch.follow import MOST_ACTIONS, follow
 from ..launch.result import Launched, SettingFile, Started, select_file_values
 from ..package import find_folder_role
 from ..workspace import Workspace
+from .bridges import add_bridges
 from .escape_analysis import EscapeAnalysis, UnknownReasons
 from .file_selection import compute_stamp
 from .graph import Graph
@@ -73,13 +74,16 @@ class LaunchedNode(msgspec.Struct, frozen=True):
 class Launch(msgspec.Struct, frozen=True):
     """What a launch file starts. path: in the workspace. graph: of all that it starts. missing: it starts programs too
     whose code is not in the workspace, or that are not known, or it includes what is not followed; elsewhere: the
-    lines, as `path:line`, of the remappings and parameters that those programs are given."""
+    lines, as `path:line`, of the remappings and parameters that those programs are given. possible: the graph of what
+    it starts only if conditions hold that do not with the defaults of its arguments, of programs that no launch file
+    starts with these; None for nothing."""
 
     path: str
     graph: Graph
     starts: tuple[LaunchedNode, ...]
     missing: bool
     elsewhere: tuple[str, ...] = ()
+    possible: Graph | None = None
 
 
 _Followed = tuple[str, Launched]
@@ -129,7 +133,7 @@ def _find_launches(workspace: Workspace, code: Callable[[], Join], jobs: int) ->
 
 
 def _select_working(followed: Iterable[_Followed]) -> list[_Followed]:
-    return [row for row in followed if row[1].started or row[1].outside]
+    return [row for row in followed if row[1].started or row[1].outside or row[1].possible]
 
 
 def _run_within_limits(task: Callable[..., Iterable[_Row]], *given: Any) -> list[_Row]:
@@ -144,7 +148,7 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
     unknown: dict[str, UnknownReasons] = {}
     for path, launch in followed:
         running, missing = join.find_started(launch)
-        graph = join.build(launch=launch)
+        graph = add_bridges(join.build(launch=launch), launch, sources)
         starts = []
         for one in running:
             program = f"{one.program.package}/{one.program.executable or one.program.plugin}"
@@ -158,11 +162,13 @@ def _start(workspace: Workspace, join: Join, followed: Sequence[_Followed]) -> I
             for started in others
             for given in (*started.remaps, *started.settings)
         }
-        yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)))
+        possible = launch.possible and add_bridges(join.build(launch=launch.possible), launch.possible, sources)
+        yield Launch(path, graph, tuple(starts), bool(others or missing), tuple(sorted(elsewhere)), possible)
 
 
 def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list[_Followed]:
-    """Each launch file that no other includes, followed. files: as list_launch_files() gives them."""
+    """Each launch file that no other includes, followed, with what it may start of programs that none of them does.
+    files: as list_launch_files() gives them."""
     sources, changed = InWorkspace(workspace), ChangedFiles()
     found: list[_Followed] = []
     included: set[str] = set()
@@ -174,7 +180,32 @@ def _follow(workspace: Workspace, files: Sequence[tuple[str, str, str]]) -> list
         found.append((path, launch))
         own, *others = launch.files or (("", ""),)
         included.update(sources.find_workspace_path(*other) for other in others if other != own)
-    return [row for row in found if row[0] not in included]
+    rows = [row for row in found if row[0] not in included]
+    started = {_identify(one) for _, launch in rows for one in launch.started}
+    given: set[tuple[str | None, str, str, str]] = set()
+    for at, (path, launch) in enumerate(rows):
+        if launch.left_out and left > 1:
+            (package, inner), most = launch.files[0], min(MOST_ACTIONS, left)
+            every = follow(
+                package, inner, sources, {}, generation=workspace.ros, most=most, changed=changed, undecided=True
+            )
+            left = max(1, left - every.actions)
+            # Of a program that several files may start under one name, the first start.
+            fresh = {
+                (*_identify(one), one.name.shown, one.namespace.shown): one
+                for one in reversed(every.started)
+                if _identify(one) not in started
+            }
+            rest = tuple(one for key, one in reversed(fresh.items()) if key not in given)
+            given.update(fresh)
+            if rest:
+                rows[at] = path, launch._replace(possible=every._replace(started=rest, outside=()))
+    return rows
+
+
+def _identify(started: Started) -> tuple[str | None, str]:
+    """The program that is started, as the launch file names it."""
+    return started.package.value, (started.plugin.shown or started.executable.shown).removesuffix(".py")
 
 
 def list_launch_files(workspace: Workspace) -> Iterator[tuple[str, str, str]]:

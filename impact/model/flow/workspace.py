@@ -24,6 +24,7 @@ from .join import Join
 from .launches import Launch
 from .nodes import BuiltPackage, asks_for_name, find_entry_point
 from .plugins import assign_plugins, list_plugin_loads
+from .simulated import add_simulated
 from .system import ChosenLaunch, join_launched, merge_launches
 from .uncompiled import find_uncompiled
 
@@ -63,7 +64,8 @@ class WorkspaceFlow:
     def system(self) -> Graph:
         """The graph of what its launch files start, and of the programs that none of them does."""
         launches = self.launches
-        return assign_plugins(merge_launches(self.graph, launches), list_plugin_loads(self._workspace))
+        found = assign_plugins(merge_launches(self.graph, launches), list_plugin_loads(self._workspace))
+        return add_simulated(found, self._workspace)
 
     @cached_property
     def callers(self) -> Callers:
@@ -228,11 +230,12 @@ def make_graph(
     started them.
     """
     if chosen is not None:
-        from .started import follow_workspace_launch
+        from .bridges import add_bridges
+        from .started import InWorkspace, follow_workspace_launch
 
         start = join_launched([follow_workspace_launch(workspace, one.path, one.arguments) for one in chosen])
         code = get_flow(workspace).code
-        return code.build(root, rev, _list_unread(code), start)
+        return add_bridges(code.build(root, rev, _list_unread(code), start), start, InWorkspace(workspace))
 
     def make() -> Graph:
         code = get_flow(workspace).code
