@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import posixpath
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 from typing import Any, TypeVar
@@ -15,14 +16,18 @@ from ...facts.kinds import find_kind
 from ...facts.store import recall
 from ..launch.fill import ChangedFiles
 from ..launch.follow import MOST_ACTIONS, follow
-from ..launch.result import Launched, SettingFile, Started, select_file_values
+from ..launch.result import Launched, LaunchParameter, SettingFile, Started, select_file_values
+from ..launch.text import parse_yaml_value
 from ..package import find_folder_role
+from ..parameter_library import find_terms, list_libraries
+from ..parameter_values import GivenValue, ParameterTerms, find_broken_limit, fits_type, make_given_value
 from ..workspace import Workspace
 from .escape_analysis import EscapeAnalysis, UnknownReasons
 from .file_selection import compute_stamp
 from .graph import Graph
 from .join import Join, Running
 from .names import NameRefused, normalise, parse_ros2_rule, resolve_ros1_name, resolve_ros2_name
+from .parameter_terms import list_terms
 from .started import Instance, InWorkspace, classify_launch_file
 
 _Row = TypeVar("_Row")
@@ -52,10 +57,36 @@ class GivenParameter(msgspec.Struct, frozen=True):
     line: int
 
 
+class RefusedValue(msgspec.Struct, frozen=True):
+    """A value that a node is given, and that its parameter does not take. broken: the limit that it breaks, empty where
+    its type is wrong. clamped: the server of dynamic_reconfigure changes it and goes on."""
+
+    given: GivenValue
+    terms: ParameterTerms
+    broken: str = ""
+    clamped: bool = False
+
+    @property
+    def is_type(self) -> bool:
+        """Whether the type is wrong."""
+        return not self.broken
+
+    @property
+    def path(self) -> str:
+        """The file that sets it."""
+        return self.given.path
+
+    @property
+    def line(self) -> int:
+        """The line that sets it."""
+        return self.given.line
+
+
 class LaunchedNode(msgspec.Struct, frozen=True):
     """A node as a launch file starts it. node: its id in the graph of that launch. names: the full names that its code
     uses, before remapping; parameters: those it declares or reads. hidden, hidden_parameters: why these are not all
-    known, and so left empty. uncertain: why it may have another name, or may not be started at all.
+    known, and so left empty. uncertain: why it may have another name, or may not be started at all. refused: values
+    that it is given and that its parameters do not take.
     """
 
     node: str
@@ -68,6 +99,7 @@ class LaunchedNode(msgspec.Struct, frozen=True):
     hidden: str
     hidden_parameters: str
     uncertain: tuple[str, ...]
+    refused: tuple[RefusedValue, ...] = ()
 
 
 class Launch(msgspec.Struct, frozen=True):
@@ -213,8 +245,75 @@ def _start_node(
     asked = _collect_parameters(join, one) if (given or renamed) and not reasons.parameters else ()
     return LaunchedNode(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
-        reasons.names, reasons.parameters, instance.uncertain,
+        reasons.names, reasons.parameters, instance.uncertain, tuple(_list_refused(join, sources, one, instance)),
     )  # fmt: skip
+
+
+def _list_refused(join: Join, sources: InWorkspace, one: Running, instance: Instance) -> Iterator[RefusedValue]:
+    """The values that a node of ROS 2 is given and does not take."""
+    if instance.started.generation == 1 or not instance.started.settings:
+        return
+    terms = list_terms(join, one, list_libraries(sources.workspace))
+    for given in _collect_values(sources, instance.started, instance.name).values() if terms else ():
+        declared = find_terms(terms, given.name)
+        if declared is not None:
+            yield from find_refused(given, declared)
+
+
+def find_refused(given: GivenValue, terms: ParameterTerms) -> Iterator[RefusedValue]:
+    """Why a parameter does not take a value, if it does not."""
+    if not fits_type(given, terms):
+        yield RefusedValue(given, terms)
+    elif broken := find_broken_limit(given, terms):
+        yield RefusedValue(given, terms, broken)
+
+
+def _collect_values(sources: InWorkspace, start: Started, full: str) -> dict[str, GivenValue]:
+    """The values that hold for a node, by the names of the parameters: the last that it is given for each."""
+    found: dict[str, GivenValue] = {}
+    for setting in start.settings:
+        if isinstance(setting, SettingFile):
+            place = sources.find_workspace_path(*setting.source) if setting.source is not None else ""
+            own = (setting.file.value or "").startswith("$(find ")  # one that is changed first is not what it says
+            for name, entry in select_file_values(setting, full).items():
+                value = make_given_value(normalise(name), place, entry.line, entry.value)
+                found[normalise(name)] = value if place and own and not setting.conditions else _make_unknown(value)
+            continue
+        place = sources.find_workspace_path(setting.at.package, setting.at.path)
+        value = _read_value(setting, place)
+        found[setting.name] = value if place and not setting.conditions else _make_unknown(value)
+    return found
+
+
+def _make_unknown(value: GivenValue) -> GivenValue:
+    return GivenValue(value.name, value.path, value.line, "", "")
+
+
+# Types of launch files as ROS names them.
+_GIVEN_TYPES = {
+    "str": "string", "string": "string", "bool": "bool", "boolean": "bool", "int": "integer", "double": "double",
+    "float": "double",
+}  # fmt: skip
+# What PyYAML, which launch reads values with, takes for a text.
+_NO_NUMBER = re.compile(r"[-+]?[0-9]+[eE]")
+
+
+def _read_value(setting: LaunchParameter, path: str) -> GivenValue:
+    """The value of a parameter that a launch file of ROS 2 gives."""
+    text = setting.text.value
+    value = parse_yaml_value(text) if text is not None else None
+    type_ = _GIVEN_TYPES.get(setting.type, "")
+    is_text = type_ == "string" and not isinstance(value, str)  # launch may read a text as YAML once more
+    lost = text is None or is_text or _NO_NUMBER.match(text) or (setting.type and not type_ and setting.type != "list")
+    if lost or not _fits(value, type_):
+        return GivenValue(setting.name, path, setting.at.line, "", "")
+    return make_given_value(setting.name, path, setting.at.line, value, type_)
+
+
+def _fits(value: object, type_: str) -> bool:
+    """Whether a text can be made into a type."""
+    numeric = type_ in ("integer", "double")
+    return not numeric or (isinstance(value, (int, float)) and not isinstance(value, bool))
 
 
 def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
