@@ -17,7 +17,7 @@ from ...facts.store import recall
 from ..launch.fill import ChangedFiles
 from ..launch.follow import MOST_ACTIONS, follow
 from ..launch.result import Launched, LaunchParameter, SettingFile, Started, select_file_values
-from ..launch.text import parse_yaml_value
+from ..launch.text import parse_ros1_value, parse_yaml_value
 from ..package import find_folder_role
 from ..parameter_library import find_terms, list_libraries
 from ..parameter_values import GivenValue, ParameterTerms, find_broken_limit, fits_type, make_given_value
@@ -27,7 +27,7 @@ from .file_selection import compute_stamp
 from .graph import Graph
 from .join import Join, Running
 from .names import NameRefused, normalise, parse_ros2_rule, resolve_ros1_name, resolve_ros2_name
-from .parameter_terms import list_terms
+from .parameter_terms import list_reconfigurable, list_terms
 from .started import Instance, InWorkspace, classify_launch_file
 
 _Row = TypeVar("_Row")
@@ -245,19 +245,51 @@ def _start_node(
     asked = _collect_parameters(join, one) if (given or renamed) and not reasons.parameters else ()
     return LaunchedNode(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
-        reasons.names, reasons.parameters, instance.uncertain, tuple(_list_refused(join, sources, one, instance)),
+        reasons.names, reasons.parameters, instance.uncertain,
+        tuple(_list_refused(join, launch, sources, one, instance)),
     )  # fmt: skip
 
 
-def _list_refused(join: Join, sources: InWorkspace, one: Running, instance: Instance) -> Iterator[RefusedValue]:
-    """The values that a node of ROS 2 is given and does not take."""
-    if instance.started.generation == 1 or not instance.started.settings:
+def _list_refused(
+    join: Join, launch: Launched, sources: InWorkspace, one: Running, instance: Instance
+) -> Iterator[RefusedValue]:
+    """The values that a node is given and does not take."""
+    if instance.started.generation == 1:
+        yield from _list_clamped(join, launch, sources, one, instance)
+        return
+    if not instance.started.settings:
         return
     terms = list_terms(join, one, list_libraries(sources.workspace))
     for given in _collect_values(sources, instance.started, instance.name).values() if terms else ():
         declared = find_terms(terms, given.name)
         if declared is not None:
             yield from find_refused(given, declared)
+
+
+def _list_clamped(
+    join: Join, launch: Launched, sources: InWorkspace, one: Running, instance: Instance
+) -> Iterator[RefusedValue]:
+    """The values of ROS 1 that a server of dynamic_reconfigure changes, or leaves for its default."""
+    given = launch.collect_parameters(instance.started, instance.name)
+    terms = list_reconfigurable(join, one, sources.workspace) if given else {}
+    for name, setting in given.items():
+        declared = terms.get(name)
+        at = setting.source or setting.at
+        path = sources.find_workspace_path(at.package, at.path)
+        if declared is None or not path or setting.conditions or setting.text.value is None:
+            continue
+        text = setting.text.value
+        value = text if setting.type in ("str", "string") else parse_ros1_value(text)
+        if not isinstance(value, str) or setting.type in ("", "str", "string"):
+            refused = next(find_refused(make_given_value(name, path, at.line, value), declared), None)
+            if refused is not None and not (refused.is_type and _converts(refused)):
+                yield msgspec.structs.replace(refused, clamped=True)
+
+
+def _converts(refused: RefusedValue) -> bool:
+    """Whether ROS 1 makes a number of one type into the other, or the value is no plain one."""
+    given, declared = refused.given.type, refused.terms.type
+    return {given, declared} <= {"integer", "double"} or refused.given.text[:1] in ("[", "{", "")
 
 
 def find_refused(given: GivenValue, terms: ParameterTerms) -> Iterator[RefusedValue]:

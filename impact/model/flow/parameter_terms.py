@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from ....edges.memory import cache_in_derived
 from ...facts.flow import Assignment, FlowCall, FlowExpr
+from ...facts.reconfigure import ReconfigurableParameter, ReconfigureFile
 from ..parameter_library import LISTENER
 from ..parameter_values import Limit, ParameterTerms, parse_cpp_type, parse_named_type
+from ..workspace import Workspace
 from .calls import FrameworkCall
 from .code import Fn, get_tail, list_made
 from .join import Join, Running
@@ -15,6 +18,7 @@ from .types import split_name
 _RANGES = ("floating_point_range", "integer_range")
 _BOUNDS = {"from_value": ">=", "to_value": "<=", "step": "step"}
 _DYNAMIC = "dynamic_typing"
+_RECONFIGURE = "dynamic_reconfigure"
 
 
 def list_terms(
@@ -48,6 +52,41 @@ def _list_roots(join: Join, one: Running) -> Iterator[str]:
             *scope, last = split_name(name.partition("<")[0])
             if last == LISTENER and not any(argument.kind == "text" and argument.text for argument in arguments[1:2]):
                 yield from scope[-1:] or split_name(fn.scope)
+
+
+def list_reconfigurable(join: Join, one: Running, workspace: Workspace) -> dict[str, ParameterTerms]:
+    """The private parameters that servers of dynamic_reconfigure read for a program of ROS 1. Their types count where
+    the server is written in C++: it leaves a value of a wrong type unread."""
+    found: dict[str, ParameterTerms] = {}
+    for use in join.calls.select_uses("server"):
+        if use.row.framework != _RECONFIGURE or use.fn not in one.functions:
+            continue
+        given = any(join.calls.is_node(argument, use.fn) for argument in use.call.arguments)
+        if given and join.sites.find_prefix(use) != "~":
+            continue
+        python = use.fn.source.facts.language == "python"
+        first = use.call.arguments[0] if use.call.arguments else FlowExpr("other")
+        written = join.code.resolve_name(first.text, use.fn.source) if python else use.call.types
+        package, name = split_name(written)[0], get_tail(written).removesuffix("Config")
+        for path, parameter in list_configurations(workspace).get((package, name), ()):
+            limits = ((">=", parameter.low), ("<=", parameter.high))
+            found[parameter.name] = ParameterTerms(
+                parameter.name, "" if python else parameter.type,
+                tuple((sign, bound) for sign, bound in limits if bound is not None), (), path, parameter.line,
+            )  # fmt: skip
+    return found
+
+
+@cache_in_derived
+def list_configurations(workspace: Workspace) -> dict[tuple[str, str], list[tuple[str, ReconfigurableParameter]]]:
+    """The parameters of dynamic_reconfigure with the files that have them, by package and name of the configuration."""
+    found: dict[tuple[str, str], list[tuple[str, ReconfigurableParameter]]] = {}
+    for package in workspace:
+        paths = [path for path in package.files if path.endswith(".cfg")]
+        looked: Mapping[str, ReconfigureFile] = workspace.extraction.look(paths, "flow_reconfigure")
+        for path, file in looked.items():
+            found.setdefault((package.name, file.generated), []).extend((path, one) for one in file.parameters)
+    return found
 
 
 def _read_terms(join: Join, use: FrameworkCall, name: str) -> ParameterTerms:

@@ -1,14 +1,17 @@
 """parameter-type: a launch or parameter file sets a parameter to a value of another type than it is declared with.
 
 What it does
-    Compares the values that launch files, and the parameter files that they load, set for nodes of ROS 2 with the types
-    that the nodes declare: by the default value, by the template argument or the named type of `declare_parameter`, or
-    in a file of generate_parameter_library.
+    Compares the values that launch files, and the parameter files that they load, set for nodes with the types that the
+    nodes declare. In ROS 2: by the default value, by the template argument or the named type of `declare_parameter`, or
+    in a file of generate_parameter_library; in ROS 1: in a .cfg file of dynamic_reconfigure, for nodes in C++.
 
 Why it breaks
-    Types are not converted into each other, also no integer into a double: declaring the parameter throws
+    ROS 2 converts no type into another, also no integer into a double: declaring the parameter throws
     InvalidParameterTypeException, and the node stops. So it is from Galactic on; in Foxy, nodes in Python take any
-    type.
+    type. In ROS 1, dynamic_reconfigure leaves the value unread, and the node runs with its default.
+
+Severity
+    error in ROS 2; warning in ROS 1, which makes a number of one type into the other.
 
 Example
     base_node:
@@ -31,10 +34,18 @@ from .refused_values import find_refused_values
     scope="flow",
     severity="error",
     preview=True,
-    texts=Text(
-        "the parameter `{subject}` is set to {article} {given}, and `{program}` declares it as {declared} at {place}",
-        help="{remedy}",
-    ),
+    texts={
+        "refused": Text(
+            "the parameter `{subject}` is set to {article} {given}, and `{program}` declares it as {declared} at "
+            "{place}",
+            help="{remedy}",
+        ),
+        "clamped": Text(
+            "the parameter `{subject}` is set to {article} {given}, and dynamic_reconfigure does not read it for "
+            "`{program}`, since it is declared as {declared} at {place}",
+            help="{remedy}",
+        ),
+    },
 )
 def parameter_type(workspace: Workspace):
     return (found for refused, found in find_refused_values(workspace) if refused.is_type)

@@ -14,7 +14,7 @@ def find_refused_values(workspace: Workspace) -> Iterator[tuple[RefusedValue, Di
     for (path, line, name), rows in settings:
         start, refused = rows[0]
         data = describe_refused(refused, start.program.partition("/")[2])
-        kind = ("clamped" if refused.clamped else "refused") if not refused.is_type else ""
+        kind = "clamped" if refused.clamped else "refused"
         doubts = (Doubt.DISTURBS,) if refused.clamped else ()
         yield refused, Diagnostic(At(path, line), name, start.package, data, kind, doubts)
 
