@@ -22,6 +22,7 @@ from ..package import find_folder_role
 from ..parameter_library import find_terms, list_libraries
 from ..parameter_values import GivenValue, ParameterTerms, find_broken_limit, fits_type, make_given_value
 from ..workspace import Workspace
+from .endpoints import LOST
 from .escape_analysis import EscapeAnalysis, UnknownReasons
 from .file_selection import compute_stamp
 from .graph import Graph
@@ -84,9 +85,10 @@ class RefusedValue(msgspec.Struct, frozen=True):
 
 class LaunchedNode(msgspec.Struct, frozen=True):
     """A node as a launch file starts it. node: its id in the graph of that launch. names: the full names that its code
-    uses, before remapping; parameters: those it declares or reads. hidden, hidden_parameters: why these are not all
-    known, and so left empty. uncertain: why it may have another name, or may not be started at all. refused: values
-    that it is given and that its parameters do not take.
+    uses, before remapping; parameters: those it declares or reads, in ROS 1 by their full names, or as `*/name` where
+    the code does not tell the namespace. hidden, hidden_parameters: why these are not all known, and so left empty.
+    uncertain: why it may have another name, or may not be started at all. refused: values that it is given and that its
+    parameters do not take.
     """
 
     node: str
@@ -242,7 +244,7 @@ def _start_node(
     renamed = tuple(_list_given_remappings(sources, instance, join.ros))
     given = tuple(_list_given(sources, launch, instance.started, instance))
     names = {name for name in _list_names(join, one, instance) if name} if renamed and not reasons.names else ()
-    asked = _collect_parameters(join, one) if (given or renamed) and not reasons.parameters else ()
+    asked = _collect_parameters(join, one, instance) if (given or renamed) and not reasons.parameters else ()
     return LaunchedNode(
         one.node.id, program, one.program.package, tuple(sorted(names)), tuple(sorted(asked)), renamed, given,
         reasons.names, reasons.parameters, instance.uncertain,
@@ -360,12 +362,33 @@ def _list_names(join: Join, one: Running, instance: Instance) -> Iterator[str]:
                 yield join.resolve_name(site, value, bare)[0]
 
 
-def _collect_parameters(join: Join, one: Running) -> set[str]:
+def _collect_parameters(join: Join, one: Running, instance: Instance) -> set[str]:
+    """The parameters that a program asks for; of ROS 1 by their full names, or `*/name` where the node handle does not
+    tell its namespace."""
     found: set[str] = set()
     for use in join.calls.select_uses("parameter"):
         if use.fn in one.functions and join.runs(one, join.objects.find_keys(use)):
-            found.update(value.text for value in join.list_parameter_names(use) if value.text)
+            names = {value.text for value in join.list_parameter_names(use) if value.text}
+            if instance.started.generation != 1:
+                found |= names
+                continue
+            prefix = LOST if one.loaded is not None else join.sites.find_prefix(use)
+            found.update(_resolve_parameter(name, prefix, instance) for name in names)
     return found
+
+
+def _resolve_parameter(name: str, prefix: str, instance: Instance) -> str:
+    """The full name of a parameter of ROS 1. prefix: the namespace of the node handle."""
+    namespace = instance.name.rpartition("/")[0] or "/"
+    text = name.replace("{node}", instance.name).replace("{ns}", namespace)
+    if text[0] not in "/~":
+        if prefix.startswith(LOST):
+            return f"*/{text}"
+        text = f"{prefix}/{text}".replace("~/", "~") if prefix else text
+    try:
+        return instance.remap_name(text, 1)
+    except NameRefused:
+        return f"*/{text}"
 
 
 def _list_given_remappings(sources: InWorkspace, instance: Instance, ros: int) -> Iterator[GivenRemapping]:
