@@ -417,9 +417,11 @@ def _list_given(sources: InWorkspace, launch: Launched, start: Started, instance
     if start.generation == 1:
         below = f"{instance.name}/"
         for name, setting in launch.server.items():
-            place = sources.find_workspace_path(setting.at.package, setting.at.path)
+            # By the line of a parameter file, which several programs may load for themselves.
+            at = setting.source or setting.at
+            place = sources.find_workspace_path(at.package, at.path)
             if name.startswith(below) and place and not setting.conditions:
-                yield GivenParameter(name[len(below) :], place, setting.at.line)
+                yield GivenParameter(name[len(below) :], place, at.line)
         return
     for setting in start.settings:
         if setting.conditions:
