@@ -48,9 +48,9 @@ def _check(view: TargetView, use: ValueUse) -> Iterator[RefusedSetting]:
     if offer is None:
         return
     last = find_last_part(use.name)
-    named = {name: default for name, default in offer.parameters.items() if find_last_part(name) == last}
-    defaults = [default for name, default in named.items()
-                if means(name, use.name, of_plugin=bool(use.plugin)) or len(named) == 1]  # fmt: skip
+    declared_so = offer.history.list_parameters(offer.stored)
+    named = [(name, default) for name, default in declared_so if find_last_part(name) == last]
+    defaults = [default for name, default in named if means(name, use.name, of_plugin=bool(use.plugin))]
     types = {_find_default_type(default) for default in defaults}
     if len(types) != 1 or len(defaults) != len(named):
         return
@@ -65,7 +65,8 @@ def _find_owner(view: TargetView, use: ValueUse) -> PackageOffer | None:
     if offer is None:
         return None
     if not use.plugin:
-        return offer if use.node in {program.name for program in offer.build.programs} else None
+        # Which of several programs declares a parameter is not stored.
+        return offer if {program.name for program in offer.build.programs} == {use.node} else None
     return offer if use.plugin in {name for one in offer.build.plugins for name in (one.name, one.type)} else None
 
 

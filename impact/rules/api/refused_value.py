@@ -20,8 +20,8 @@ Use instead
 
 Not reported
     Defaults that are computed; a whole number as the default of what is set to a real one, since the type may be given
-    beside it; texts, which launch files often replace; names that several plugins of a package declare with different
-    types; tests; parameter files of ROS 1.
+    beside it; texts, which launch files often replace; nodes of packages that have several programs; names that several
+    plugins of a package declare with different types; tests; parameter files of ROS 1.
 """
 
 from ...model.refused_settings import RefusedSetting, list_refused_settings
