@@ -130,7 +130,7 @@ def _find_type(join: Join, value: FlowExpr | None, fn: Fn) -> str:
         named = parse_named_type(get_tail(value.text))
         if named or python:
             return named
-        return parse_cpp_type(_spell(join, value, fn))
+        return parse_cpp_type(_find_written_type(join, value.text, fn))
     if value.kind in ("call", "make"):
         if get_tail(value.text) == "ParameterValue" and len(value.parts) == 1:
             return _find_type(join, value.parts[0], fn)
@@ -142,9 +142,15 @@ def _find_type(join: Join, value: FlowExpr | None, fn: Fn) -> str:
     return ""
 
 
-def _spell(join: Join, value: FlowExpr, fn: Fn) -> str:
-    kind = join.code.resolve_type(value, fn)
-    return kind.name if not kind.arguments else ""
+def _find_written_type(join: Join, path: str, fn: Fn) -> str:
+    """The type that C++ code writes for a variable, with its containers; empty where it writes none."""
+    owner = join.code.find_owner(fn)
+    members = [one for cls in join.code.list_class_bodies(owner.key) for one in cls.facts.members] if owner else []
+    name = path.removeprefix("this.")
+    written = [one.type for one in fn.facts.assignments if one.target == path and one.type]
+    written = written or [one.type for one in fn.facts.parameters if one.name == path]
+    written = written or [one.type for one in (*members, *fn.source.facts.constants) if one.name == name]
+    return written[0] if len(set(written)) == 1 else ""
 
 
 def _find_number_type(text: str, python: bool) -> str:
