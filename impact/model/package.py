@@ -66,7 +66,7 @@ if TYPE_CHECKING:
     from .members import FoundField
     from .members import NamedInterface as Meant
     from .python.api import Changing
-    from .settings import Setting
+    from .settings import NamedNode, Setting
 
 # Folders whose files run only by hand or are read only by people: what they need is worth a note at most.
 ASIDE = frozenset({"example", "examples", "demo", "demos", "doc", "docs", "tutorial", "tutorials", "sample", "samples"})
@@ -253,6 +253,20 @@ class SettingUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
     value: str = ""
 
 
+class ValueUse(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """A value that a file of parameters sets for a node or plugin of a package, see settings.py; no text. name,
+    package, plugin, node: as in SettingUse. type, text: as GivenValue has them."""
+
+    name: str
+    package: str
+    plugin: str
+    node: str
+    at: At
+    role: str
+    type: str
+    text: str
+
+
 class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """All that rules ask of one package. Paths are relative to the workspace.
 
@@ -345,6 +359,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     # packages, and with all that the source includes from elsewhere; where there are such bases, misspelt ones alone.
     undeclared: tuple[tuple[NameUse, tuple[str, ...], tuple[str, ...]], ...] = ()
     own_fields: tuple[FieldOfWorkspace, ...] = ()
+    values: tuple[ValueUse, ...] = ()
 
 
 # What no other package is asked about but one that has to do with it, see Workspace.groups: what its code says.
@@ -354,7 +369,7 @@ _INWARD = {
     if field.name in {
         "includes", "imports", "needed_headers", "reaches", "inner", "written_inner", "syntax", "allows", "problems",
         "uses", "members", "python_api", "cpp_api", "unresolved_receivers", "undefined", "own_calls", "unsearched",
-        "unincluded", "undeclared", "settings", "testing", "python_offer",
+        "unincluded", "undeclared", "settings", "testing", "python_offer", "values",
     }
 }  # fmt: skip
 
@@ -708,6 +723,7 @@ class PackageJoin:
             own_calls=tuple(self.list_own_calls(roles)),
             unresolved_receivers=self.unresolved_receivers,
             settings=tuple(self.list_settings(parameters, launches)),
+            values=tuple(self.list_values(parameters, launches)),
             distros=tuple(distros),
             requirements=tuple(requirements),
             unsearched=tuple(self.list_unsearched(roles)),
@@ -1107,39 +1123,68 @@ class PackageJoin:
 
     def list_settings(self, parameters: Iterable[str], launches: list[tuple[str, str]]) -> Iterator[SettingUse]:
         """Parameters of other packages' nodes that files of parameters and launch files set, of those that change."""
-        from .settings import NamedNode, list_launch_settings, list_named_nodes, list_settings, mentions_changing
+        from .settings import list_launch_settings, list_settings, mentions_changing
 
         changing = self.watched.changing_parameters
         if not changing:
             return
+        find_node = self.make_node_finder(launches)
+        words = self.read_words
+        wanted = [p for p in parameters if "ros__parameters" in words(p) and words(p) & changing.keys()]
+        for path, file in self.look(wanted, "flow_parameters").items():
+            for found in list_settings(file, changing, find_node):
+                yield self.make_setting_use(path, found)
+        for path, kind in launches:
+            for file in self.read_launches(path, kind) if mentions_changing(words(path), changing) else ():
+                for found in list_launch_settings(file, changing):
+                    yield self.make_setting_use(path, found)
+
+    def list_values(self, parameters: Iterable[str], launches: list[tuple[str, str]]) -> Iterator[ValueUse]:
+        """What files of parameters set for nodes and plugins of known packages, but for texts."""
+        from .parameter_values import find_type, show_value
+        from .settings import list_every_setting
+
+        find_node = self.make_node_finder(launches)
+        wanted = [path for path in parameters if "ros__parameters" in self.read_words(path)]
+        for path, file in self.look(wanted, "flow_parameters").items():
+            for found in list_every_setting(file, find_node):
+                type_ = find_type(found.value)
+                if found.package and type_ and not type_.startswith("string"):
+                    place = At(path, found.line), self.find_python_role(path)
+                    yield ValueUse(
+                        found.name, found.package, found.plugin, found.node, *place, type_, show_value(found.value)
+                    )
+
+    @cache_method
+    def read_words(self, path: str) -> set[str]:
+        """The words of a parameter or launch file."""
+        return set(self.facts(path).facts.words.split(" "))
+
+    def read_launches(self, path: str, kind: str) -> Iterable[LaunchFile]:
+        """A launch file as the message flow has it; none where it cannot be read."""
+        return self.look((path,), f"flow_{kind}").values()
+
+    def make_node_finder(
+        self, launches: list[tuple[str, str]]
+    ) -> Callable[[str, Collection[str]], NamedNode | None]:  # fmt: skip
+        """What gives the node that launch files start by a name, one of some packages first."""
+        from .settings import list_named_nodes
+
         started: dict[str, list[NamedNode]] = {}
 
         @cache
-        def read_words(path: str) -> set[str]:
-            return set(self.facts(path).facts.words.split(" "))
-
-        def read_launches(path: str, kind: str) -> Iterable[LaunchFile]:
-            return self.look((path,), f"flow_{kind}").values()
-
         def find_node(name: str, packages: Collection[str]) -> NamedNode | None:
             other = None
             for path, kind in launches:
-                if path not in started and mentions(name, read_words(path)):
-                    started[path] = [one for file in read_launches(path, kind) for one in list_named_nodes(file)]
+                if path not in started and mentions(name, self.read_words(path)):
+                    started[path] = [one for file in self.read_launches(path, kind) for one in list_named_nodes(file)]
                 for one in started.get(path, ()):
                     if one.name == name and one.package in packages:
                         return one
                     other = one if one.name == name else other
             return other
 
-        wanted = [p for p in parameters if "ros__parameters" in (words := read_words(p)) and words & changing.keys()]
-        for path, file in self.look(wanted, "flow_parameters").items():
-            for found in list_settings(file, changing, find_node):
-                yield self.make_setting_use(path, found)
-        for path, kind in launches:
-            for file in read_launches(path, kind) if mentions_changing(read_words(path), changing) else ():
-                for found in list_launch_settings(file, changing):
-                    yield self.make_setting_use(path, found)
+        return find_node
 
     def make_setting_use(self, path: str, found: Setting) -> SettingUse:
         """A value that a file sets, as rules ask of it."""

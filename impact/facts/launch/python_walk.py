@@ -323,7 +323,8 @@ class Walker:
 
     def evaluate_test(self, node: ast.expr) -> bool | Value:
         """Whether an expression is true: known, or a value that tells at launch."""
-        return self.find_truth(self.evaluate(node), node)
+        value = self._join_conditions(node) if isinstance(node, ast.BoolOp) else self.evaluate(node)
+        return self.find_truth(value, node)
 
     def find_truth(self, value: Any, node: ast.AST) -> bool | Value:
         if isinstance(value, LaunchConstant):
@@ -521,11 +522,17 @@ class Walker:
         return Unknown(get_source(node))
 
     def evaluate_BoolOp(self, node: ast.BoolOp) -> Any:
-        """`and` and `or`: known where what comes first decides, else a value that tells at launch."""
+        """`and` and `or`: known where what comes first decides, else a value that tells at launch whether they hold.
+        What they are worth is not known where that may be a text: `url or "http://localhost"`."""
+        found = self._join_conditions(node)
+        values = [self.evaluate(part) for part in node.values]
+        return found if found in values or all(map(_is_flag, values)) else Unknown(get_source(node))
+
+    def _join_conditions(self, node: ast.BoolOp) -> Any:
         is_or = isinstance(node.op, ast.Or)
         open_: list[Value] = []
         for place, part in enumerate(node.values):
-            value = self.evaluate(part)
+            value = self._join_conditions(part) if isinstance(part, ast.BoolOp) else self.evaluate(part)
             truth = self.find_truth(value, part)
             if isinstance(truth, bool):
                 if truth == is_or or (place == len(node.values) - 1 and not open_):
@@ -818,6 +825,14 @@ class Walker:
 _NO_ACTION = ("nothing()", "os.", "shutil.", "logging.", "sys.", "time.", "warnings.", "print(")
 _FINDING = frozenset(("find", "prefix"))
 _BOOLEAN_PIECES = frozenset(("equals", "not", "and", "or", "in"))
+
+
+def _is_flag(value: Any) -> bool:
+    """Whether a value is true or false, and no text that stands for either."""
+    if isinstance(value, LaunchConstant):
+        return isinstance(value.value, bool)
+    is_piece = isinstance(value, TextValue) and len(value.value) == 1
+    return is_piece and value.value[0].kind in _BOOLEAN_PIECES
 
 
 def _join_filled(pieces: Sequence[Any], node: ast.AST) -> TextValue | Unknown:

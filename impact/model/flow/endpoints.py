@@ -778,6 +778,8 @@ class Sites:
             return self._resolve_namespace(first, fn)
         if first.kind == "name" and not self.calls.is_node(first, fn) and self.calls.is_textual(first, fn):
             return self._resolve_namespace(first, fn)
+        if first.kind == "index":
+            return LOST  # no handle: those are not kept in lists, texts are
         base = self.resolve_handle(first, fn, depth + 1)
         if len(arguments) > 1 and (self.calls.is_textual(arguments[1], fn)):
             below = self._resolve_namespace(arguments[1], fn)

@@ -353,7 +353,8 @@ class _Launch(Filling):
         if name is None:
             return None
         text, at = self.read_field(action, "value"), self.locate_line(action.line)
-        return LaunchParameter(name, text, at, tuple(self.open[self.scope.open :]))
+        type_ = find_literal(action.get("type")) or ""
+        return LaunchParameter(name, text, at, tuple(self.open[self.scope.open :]), type=type_)
 
     def make_setting_file(self, action: Action) -> SettingFile:
         """A parameter file of a ROS 2 node."""
@@ -386,17 +387,20 @@ class _Launch(Filling):
         if name.value is None:
             return
         given = next((key for key in OF_RUNNING if action.get(key) is not None), "")
+        type_ = find_literal(action.get("type")) or ""
         if not given:
             text = self.read_field(action, "value")
         else:
             text = make_unknown(self.read_field(action, given).shown, f"it is {OF_RUNNING[given]}")
-        self.put(_fill_open(full), text, action.line)
+        self.put(_fill_open(full), text, action.line, type_=type_)
 
-    def put(self, name: str, text: LaunchText, line: int, source: ShareLine | None = None) -> None:
+    def put(
+        self, name: str, text: LaunchText, line: int, source: ShareLine | None = None, type_: str = ""
+    ) -> None:  # fmt: skip
         before = self.server.pop(name, None)
         if self.open and before is not None and before.text.value != text.value:
             text = make_unknown(f"{before.text.shown} or {text.shown}", f"set only if {self.open[-1]}")
-        self.server[name] = LaunchParameter(name, text, self.locate_line(line), tuple(self.open), source)
+        self.server[name] = LaunchParameter(name, text, self.locate_line(line), tuple(self.open), source, type_)
 
     def serve_file(self, action: Action, namespace: LaunchText) -> None:
         """Does a <rosparam>."""
@@ -425,7 +429,8 @@ class _Launch(Filling):
         for entry in self.substitute_entries(entries or ()) if fill else entries or ():
             key = "/".join(part.strip("/") for part in (full or "/", *entry.path) if part.strip("/"))
             source = ShareLine(*place, entry.line) if place is not None else None
-            self.put(f"/{key}", wrap(str(entry.value)), action.line, source)
+            type_ = "str" if isinstance(entry.value, str) else ""
+            self.put(f"/{key}", wrap(str(entry.value)), action.line, source, type_)
 
     def do_node(self, action: Action) -> None:
         if self.generation == 1:

@@ -49,13 +49,15 @@ class Remap(NamedTuple):
 
 class LaunchParameter(NamedTuple):
     """A parameter. name: private to its node (`scan_topic`), or global on ROS 1's parameter server (`/robot/scan`).
-    conditions: as in Started. source: the line of the parameter file that it comes from."""
+    conditions: as in Started. source: the line of the parameter file that it comes from. type: what its value is made
+    into, as the launch file says it; empty where YAML's rules decide."""
 
     name: str
     text: LaunchText
     at: ShareLine
     conditions: tuple[str, ...] = ()
     source: ShareLine | None = None
+    type: str = ""
 
     def is_sure(self, given: Collection[str]) -> bool:
         """As for Remap."""
