@@ -7,7 +7,8 @@ the diffs judged it benchmarks/histories/NAME.drawn.jsonl. A record is a fact, n
              sentence about it is not true), `not real` (when it publishes is as before), `wrong direction` (fewer cases
              said to be more, or the other way round); why: one clause; class: what kind of fault it is
     commit   a commit that changes conditions around a publish statement, found by reading `git log -p`: repo, commit,
-             path, function; found: the tool lists a change of that commit and function (`elsewhere`: of that commit alone)
+             path, function; found: the tool lists a change of that commit and function (`elsewhere`: of that commit alone;
+             `as gone`: the statement as gone)
 
 usage: logic_sight.py draw --set NAME --clones FOLDER [--number 10] [--whole 4] [--seed 19]
        logic_sight.py score --set NAME
@@ -79,10 +80,14 @@ def recheck(records: list[dict], listed: dict[str, list[dict]]) -> None:
     for one in records:
         changes = listed[one["repo"]]
         if one["record"] == "commit":
-            functions = {change["function"] for change in changes if change["commit"] == one["commit"]}
+            functions = {
+                change["function"].replace("::", ".").rpartition(".")[2]
+                for change in changes
+                if change["commit"] == one["commit"]
+            }
             now = one["function"] in functions or ("elsewhere" if functions else False)
             kept[f"commit, {one['found']} at first sight"][now is True] += 1
-            if now != one["found"]:
+            if (now is True) != (one["found"] is True):
                 print(f"{one['repo']} {one['commit'][:10]} {one['function']}: {now}, was {one['found']}")
         elif one.get("verdict"):
             about = ("commit", "path", "line", "kind", "function")
