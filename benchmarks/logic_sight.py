@@ -1,13 +1,13 @@
 """`rosimpact logic` at first sight: changes drawn from histories that nobody here had opened.
 
-A set of histories is benchmarks/histories/NAME.histories.jsonl (repo, commit), what was drawn of them and how readers of
-the diffs judged it benchmarks/histories/NAME.drawn.jsonl. A record is a fact, never text of a source:
+A set of histories is benchmarks/histories/NAME.histories.jsonl (repo, commit), what was drawn of them and how readers
+of the diffs judged it benchmarks/histories/NAME.drawn.jsonl. A record is a fact, never text of a source:
     change   a change that the tool lists: repo, commit, path, line, kind, function, topic, and how many the commit has
              of the same kind and reason (`alike`); verdict: `right`, `badly said` (publishing did change, and the
              sentence about it is not true), `not real` (when it publishes is as before), `wrong direction` (fewer cases
              said to be more, or the other way round); why: one clause; class: what kind of fault it is
     commit   a commit that changes conditions around a publish statement, found by reading `git log -p`: repo, commit,
-             path, function; found: the tool lists a change of that commit and function (`elsewhere`: of that commit alone;
+             function; found: the tool lists a change of that commit and function (`elsewhere`: of that commit alone;
              `as gone`: the statement as gone)
 
 usage: logic_sight.py draw --set NAME --clones FOLDER [--number 10] [--whole 4] [--seed 19]
@@ -15,7 +15,7 @@ usage: logic_sight.py draw --set NAME --clones FOLDER [--number 10] [--whole 4] 
        logic_sight.py recheck --set NAME --clones FOLDER
 
 `draw` writes records without verdicts: of each history `--number` changes of conditions, triggers and publishers, and
-`--whole` statements that are new or gone. Of changes of a commit that are of one kind for one reason, one is drawn from.
+`--whole` statements that are new or gone. Of changes of a commit that are of one kind for one reason, one is drawn.
 `score` prints the figures; `recheck` prints which judged changes the tool of today still lists, and which commits.
 """
 
@@ -75,7 +75,8 @@ def score(records: list[dict]) -> None:
 
 
 def recheck(records: list[dict], listed: dict[str, list[dict]]) -> None:
-    """Prints how many of the judged changes the tool of today lists, by verdict, and those whose fate is not as wished."""
+    """Prints how many of the judged changes the tool of today lists, by verdict: right ones that it lost, others that
+    it kept."""
     kept: dict[str, Counter[bool]] = defaultdict(Counter)
     for one in records:
         changes = listed[one["repo"]]
@@ -94,8 +95,8 @@ def recheck(records: list[dict], listed: dict[str, list[dict]]) -> None:
             now = any(all(change[name] == one[name] for name in about) for change in changes)
             kept[one["verdict"]][now] += 1
             if now != (one["verdict"] == "right"):
-                place = f"{one['commit'][:10]} {one['path']}:{one['line']}"
-                print(f"{one['repo']} {place} {one['kind']}: {one['verdict']}, {'still' if now else 'no longer'} listed")
+                said = f"{one['commit'][:10]} {one['path']}:{one['line']} {one['kind']}"
+                print(f"{one['repo']} {said}: {one['verdict']}, {'still' if now else 'no longer'} listed")
     for verdict, count in kept.items():
         print(f"{verdict}: {count[True]} of {sum(count.values())} listed")
 
