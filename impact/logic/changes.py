@@ -11,7 +11,16 @@ from ..model.flow.graph import GuardAt
 from . import guards
 from .guards import Ways
 from .history import PackageState
-from .match import SAME, OutletAt, Renames, StatementPlace, collect_conditions, match_outlets, match_statements
+from .match import (
+    SAME,
+    OutletAt,
+    Renames,
+    StatementPlace,
+    collect_conditions,
+    match_outlets,
+    match_statements,
+    normalize,
+)
 from .statements import Gate, Outlet, PackageStatements, Path, PublishStatement, StatementStart
 
 Kind = Literal["tightened", "widened", "equivalent", "changed", "new", "gone", "trigger changed"]
@@ -74,6 +83,10 @@ class Side(NamedTuple):
             s.name, d, statement, s.locate(statement.path)
         ) for s, d in self.packages for statement in d.statements]
 
+    def list_unread(self) -> frozenset[str]:
+        """The files that were not read in full."""
+        return frozenset(state.locate(path) for state, one in self.packages for path in one.unread)
+
     def list_outlets(self) -> list[OutletAt]:
         """All publishers."""
         found: list[OutletAt] = []
@@ -110,12 +123,25 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
     pairs, gone, come = match_statements(before, after, names)
     outlets = match_outlets(old.list_outlets(), new.list_outlets(), names)
     successors = {id(one.outlet): other.outlet for one, other in outlets}
-    for one, other in pairs:
-        yield from _compare_statements(one, other, names, successors)
+    said = [list(_compare_statements(one, other, names, successors)) for one, other in pairs]
+    for place, (one, other) in enumerate(pairs):
+        if any(change.kind != "equivalent" for change in said[place]):
+            merged = _find_merged(one, other, gone, come, names, successors)
+            if merged:
+                gone = [at for at in gone if at not in merged]
+                come = [at for at in come if at not in merged]
+                said[place] = []
+    for found in said:
+        yield from found
+    lost, gained = old.list_unread(), new.list_unread()
+    gone = [at for at in gone if at.path in lost or names.map_path(at.path) not in gained]
+    come = [at for at in come if at.path in gained or at.path not in {names.map_path(path) for path in lost}]
     gone = [at for at in gone if not _has_unclear_call(at, names, new)]
     come = [at for at in come if not _has_unclear_call(at, SAME, old, names)]
+    left = {state.name for state, _ in new.packages}
     for at in gone:
         was = _describe_trigger("was published", at.statement)
+        was = was if at.package in left else f"{was}; no package `{at.package}` is built any more"
         yield _make_change("gone", at, at.outlets, _format_ways(at.statement.ways, at.statement), None, was)
     for at in come:
         yield _make_change(
@@ -128,6 +154,46 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
         at = published.get(id(other.outlet))
         if at is not None:
             yield from _compare_outlets(one, other, at)
+
+
+def _find_merged(
+    one: StatementPlace,
+    other: StatementPlace,
+    gone: Sequence[StatementPlace],
+    come: Sequence[StatementPlace],
+    names: Renames,
+    successors: Mapping[int, Outlet],
+) -> list[StatementPlace]:
+    """The statements that became part of the new one, or were parts of the old one: of its publisher, and together with
+    them it runs when it ran before. Empty where there are none."""
+
+    def is_same(first: StatementPlace, second: StatementPlace) -> bool:
+        return all(change.kind == "equivalent" for change in _compare_statements(first, second, names, successors))
+
+    parts = [at for at in gone if _share_publisher(at, one)]
+    for some in (parts, *([at] for at in parts if len(parts) > 1)):
+        if some and is_same(_join_statements(one, some), other):
+            return some
+    parts = [at for at in come if _share_publisher(at, other)]
+    for some in (parts, *([at] for at in parts if len(parts) > 1)):
+        if some and is_same(one, _join_statements(other, some)):
+            return some
+    return []
+
+
+def _share_publisher(one: StatementPlace, other: StatementPlace) -> bool:
+    """Whether two statements of one revision publish through the same publisher."""
+    if one.package != other.package or one.statement.language != other.statement.language:
+        return False
+    if one.statement.outlets or other.statement.outlets:
+        return one.statement.outlets == other.statement.outlets
+    return one.path == other.path and one.statement.variable == other.statement.variable
+
+
+def _join_statements(one: StatementPlace, others: Iterable[StatementPlace]) -> StatementPlace:
+    """A statement that runs when one of these does."""
+    ways = dict.fromkeys(way for at in (one, *others) for way in at.statement.ways)
+    return one._replace(statement=msgspec.structs.replace(one.statement, ways=tuple(ways)))
 
 
 def _has_unclear_call(at: StatementPlace, names: Renames, other: Side, backwards: Renames = SAME) -> bool:
@@ -170,8 +236,12 @@ def _compare_statements(
             found = _make_change("tightened", other, outlets, old_shown, new_shown, why)
             yield msgspec.structs.replace(found, unreachable=True)
             return
-    if _cut_off(first) or _cut_off(second):
-        kind, why = _compare_guards(_select_own_way(first), _select_own_way(second), names, second.language)
+    if _cut_off(first) or _cut_off(second) or _has_unseen_callers(first, second, names):
+        if _cut_off(first) or _cut_off(second):
+            old_ways, new_ways = _select_own_way(first), _select_own_way(second)
+        else:
+            old_ways, new_ways = _select_common_gates(first, second, names)
+        kind, why = _compare_guards(old_ways, new_ways, names, second.language)
         if kind != "equivalent":
             yield _make_change(kind, other, outlets, old_shown, new_shown, why)
         return
@@ -190,7 +260,7 @@ def _compare_statements(
                 whys.append(f"{'also' if new_ways else 'no longer'} from {_describe_caller(new_ways or old_ways)}")
             continue
         kind, why = _compare_guards(old_ways, new_ways, names, second.language)
-        difference = _start_differs(old_ways[0].start, new_ways[0].start, names)
+        difference = _start_differs(old_ways, new_ways, names)
         if difference:
             starts.append(difference)
         kinds.append(kind)
@@ -241,6 +311,52 @@ def _select_own_way(statement: PublishStatement) -> list[Path]:
     """The one way through a statement's own function."""
     gates = tuple(gate for gate in statement.ways[0].gates if gate.of == statement.function)
     return [Path(StatementStart("unknown"), gates)]
+
+
+def _list_roots(statement: PublishStatement, names: Renames, own: str) -> frozenset[str]:
+    """The functions that nothing leads to in which ways begin, in the words of the new revision. own: what the function
+    of the statement itself is called."""
+    roots = (way.root for way in statement.ways if way.root)
+    return frozenset(own if root == statement.function else _map_function(root, names) for root in roots)
+
+
+def _list_functions(statement: PublishStatement, names: Renames, own: str) -> frozenset[str]:
+    """The functions that are seen to lead to a statement, as for _list_roots."""
+    named = (gate.of for way in statement.ways for gate in way.gates)
+    return frozenset((own, *(own if name == statement.function else _map_function(name, names) for name in named)))
+
+
+def _map_function(name: str, names: Renames) -> str:
+    return names.map_text(normalize(name))
+
+
+def _has_unseen_callers(first: PublishStatement, second: PublishStatement, names: Renames) -> bool:
+    """Whether what leads to some function is seen on one side alone. It may lead to it on the other one too: it tells
+    nothing of a change."""
+    own = normalize(second.function)
+    old_roots, new_roots = _list_roots(first, names, own), _list_roots(second, SAME, own)
+    lost, gained = old_roots - new_roots, new_roots - old_roots
+    if lost & _list_functions(second, SAME, own) or gained & _list_functions(first, names, own):
+        return True
+    led = _group_starts(second, SAME).keys() - _group_starts(first, names).keys()
+    return bool(lost) and any(kind not in _UNLED for kind, _ in led)
+
+
+def _select_common_gates(
+    first: PublishStatement, second: PublishStatement, names: Renames
+) -> tuple[list[Path], list[Path]]:
+    """The ways of both sides from the first function on that the other side is seen to run through too."""
+    own = normalize(second.function)
+    sides: list[list[Path]] = []
+    for one, here, other, there in ((first, names, second, SAME), (second, SAME, first, names)):
+        shared = _list_roots(other, there, own) | _list_functions(other, there, own)
+        ways: dict[tuple[Gate, ...], None] = {}
+        for way in one.ways:
+            of = [own if gate.of == one.function else _map_function(gate.of, here) for gate in way.gates]
+            start = next((place for place, name in enumerate(of) if name in shared), len(of))
+            ways[way.gates[start:]] = None
+        sides.append([Path(StatementStart("unknown"), gates) for gates in ways])
+    return sides[0], sides[1]
 
 
 def _combine_kinds(kinds: Iterable[guards.Kind]) -> guards.Kind:
@@ -340,7 +456,8 @@ def _describe_caller(ways: Sequence[Path]) -> str:
     return f"`{of}`" if of else "another caller"
 
 
-def _start_differs(old: StatementStart, new: StatementStart, names: Renames) -> str:
+def _start_differs(old_ways: Sequence[Path], new_ways: Sequence[Path], names: Renames) -> str:
+    old, new = old_ways[0].start, new_ways[0].start
     if old.kind == new.kind:
         if old.kind in _UNSAID or _normalize_detail(names.map_text(old.detail)) == _normalize_detail(new.detail):
             return ""
@@ -349,9 +466,12 @@ def _start_differs(old: StatementStart, new: StatementStart, names: Renames) -> 
                 return f"{_describe_start(new)}, was without pace"
             return f"{new.kind} without pace, was `{old.detail}`"
         return f"{_describe_start(new)}, was `{old.detail}`"
-    if _UNLED & {old.kind, new.kind}:
+    if "unknown" in (old.kind, new.kind):
         return ""
-    return f"on {_describe_start(new)}, was on {_describe_start(old)}"
+    if "thread" in (old.kind, new.kind) and {old.kind, new.kind} <= {"thread", "start", "loop"}:
+        return ""
+    was, is_now = (", ".join(sorted({_describe_start(way.start) for way in ways})) for ways in (old_ways, new_ways))
+    return f"on {is_now}, was on {was}"
 
 
 def _describe_start(start: StatementStart) -> str:

@@ -53,10 +53,12 @@ class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 class Path(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """One way to a statement; gates outermost first. Loops that last as long as the node does are not among them."""
+    """One way to a statement; gates outermost first. Loops that last as long as the node does are not among them. root:
+    the function where it begins when nothing is seen that leads to it: no caller, or nobody who makes the object."""
 
     start: StatementStart
     gates: tuple[Gate, ...] = ()
+    root: str = ""
 
 
 class Outlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -257,9 +259,10 @@ class _Digester:
 
     def _build_path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
         start = StatementStart(trigger.kind, trigger.detail)
+        unsaid = trigger.kind in ("start", "unknown")
+        unled = trigger.kind == "unknown" or (trigger.kind == "start" and trigger.detail not in ("", "main"))
         gates: list[Gate] = []
         for guard in guards:
-            unsaid = trigger.kind in ("start", "unknown")
             asked, lives = _strip_liveness(guard.text) if guard.kind in _LOOPS else (guard.text, False)
             if unsaid and guard.kind == "if" and _is_live(guard.text):
                 asked, lives = "", True  # what stands in the loop's condition itself
@@ -271,7 +274,12 @@ class _Digester:
                 gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
         if start.kind in ("start", "unknown"):
             start = StatementStart(start.kind)
-        return Path(start, tuple(gates))
+        return Path(start, tuple(gates), self._find_root(trigger) if unled else "")
+
+    def _find_root(self, trigger: Trigger) -> str:
+        """The whole name of the function that a way begins in."""
+        functions = self.join.code.functions_in.get(trigger.path, ())
+        return next((fn.name for fn in functions if fn.facts.line == trigger.line), trigger.detail)
 
     @cache_method
     def _is_fixed(self, guard: GuardAt) -> bool:

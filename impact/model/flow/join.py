@@ -443,17 +443,22 @@ class Join:
 
     def _walk_callers(self, fn: Fn, functions: set[Fn] | None, depth: int, seen: tuple[Fn, ...]) -> list[Way]:
         found = [Way(trigger) for trigger in self.triggers.get(fn, ())]
-        if fn in seen or depth > _DEEPEST:
+        if fn in seen:
             return found
         here = (*seen, fn)
-        for caller, call in self.code.callers.get(fn, ()):
+        goes_round = False
+        for caller, call in self.code.callers.get(fn, ()) if depth <= _DEEPEST else ():
             if functions is not None and caller not in functions:
                 continue
             own = self.list_guards(caller, call.guard)
-            for way in self._walk_callers(caller, functions, depth + 1, here):
+            led = self._walk_callers(caller, functions, depth + 1, here)
+            goes_round = goes_round or not led
+            for way in led:
                 found.append(Way(way.trigger, (*way.guards, *own)))
                 if len(found) >= _MOST_WAYS:
                     return found
+        if not found and goes_round and seen:
+            return found  # a call that only its own callee leads to is no further way
         if not found:
             around = self.code.find_enclosing(fn)
             if around is not None:
