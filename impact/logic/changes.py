@@ -236,11 +236,14 @@ def _compare_statements(
             found = _make_change("tightened", other, outlets, old_shown, new_shown, why)
             yield msgspec.structs.replace(found, unreachable=True)
             return
-    if _cut_off(first) or _cut_off(second) or _has_unseen_callers(first, second, names):
-        if _cut_off(first) or _cut_off(second):
-            old_ways, new_ways = _select_own_way(first), _select_own_way(second)
-        else:
-            old_ways, new_ways = _select_common_gates(first, second, names)
+    whole = not _cut_off(first) and not _cut_off(second)
+    unseen = _find_unseen(first, second, names) if whole else frozenset()
+    if unseen or not whole:
+        old_ways, new_ways = _select_own_way(first), _select_own_way(second)
+        if unseen:
+            old_ways, new_ways = _select_behind(unseen, first, second, names)
+        if not old_ways or not new_ways:
+            return
         kind, why = _compare_guards(old_ways, new_ways, names, second.language)
         if kind != "equivalent":
             yield _make_change(kind, other, outlets, old_shown, new_shown, why)
@@ -322,7 +325,7 @@ def _list_roots(statement: PublishStatement, names: Renames, own: str) -> frozen
 
 def _list_functions(statement: PublishStatement, names: Renames, own: str) -> frozenset[str]:
     """The functions that are seen to lead to a statement, as for _list_roots."""
-    named = (gate.of for way in statement.ways for gate in way.gates)
+    named = {name for way in statement.ways for name in way.functions}
     return frozenset((own, *(own if name == statement.function else _map_function(name, names) for name in named)))
 
 
@@ -330,31 +333,34 @@ def _map_function(name: str, names: Renames) -> str:
     return names.map_text(normalize(name))
 
 
-def _has_unseen_callers(first: PublishStatement, second: PublishStatement, names: Renames) -> bool:
-    """Whether what leads to some function is seen on one side alone. It may lead to it on the other one too: it tells
-    nothing of a change."""
+def _find_unseen(first: PublishStatement, second: PublishStatement, names: Renames) -> frozenset[str]:
+    """The functions of which it is seen on one side alone what leads to them, as they are called now. It may lead to
+    them on the other side too: only what they and those behind them ask tells of a change."""
     own = normalize(second.function)
     old_roots, new_roots = _list_roots(first, names, own), _list_roots(second, SAME, own)
     lost, gained = old_roots - new_roots, new_roots - old_roots
-    if lost & _list_functions(second, SAME, own) or gained & _list_functions(first, names, own):
-        return True
-    led = _group_starts(second, SAME).keys() - _group_starts(first, names).keys()
-    return bool(lost) and any(kind not in _UNLED for kind, _ in led)
+    found = lost & _list_functions(second, SAME, own) | gained & _list_functions(first, names, own)
+    if not found and any(way.start.kind == "unknown" for way in first.ways if way.root):
+        # What led to it and is not seen may be what leads to it now.
+        led = _group_starts(second, SAME).keys() - _group_starts(first, names).keys()
+        found = frozenset((own,)) if lost and any(kind not in _UNLED for kind, _ in led) else found
+    return frozenset((own,)) if own in found else found
 
 
-def _select_common_gates(
-    first: PublishStatement, second: PublishStatement, names: Renames
+def _select_behind(
+    functions: frozenset[str], first: PublishStatement, second: PublishStatement, names: Renames
 ) -> tuple[list[Path], list[Path]]:
-    """The ways of both sides from the first function on that the other side is seen to run through too."""
+    """The ways of both sides that are seen to run through some functions, from there on."""
     own = normalize(second.function)
     sides: list[list[Path]] = []
-    for one, here, other, there in ((first, names, second, SAME), (second, SAME, first, names)):
-        shared = _list_roots(other, there, own) | _list_functions(other, there, own)
+    for one, here in ((first, names), (second, SAME)):
         ways: dict[tuple[Gate, ...], None] = {}
         for way in one.ways:
-            of = [own if gate.of == one.function else _map_function(gate.of, here) for gate in way.gates]
-            start = next((place for place, name in enumerate(of) if name in shared), len(of))
-            ways[way.gates[start:]] = None
+            passed = [own if name == one.function else _map_function(name, here) for name in (*way.functions, one.function)]
+            start = next((place for place, name in enumerate(passed) if name in functions), None)
+            if start is not None:
+                behind = {*way.functions[start:], one.function}
+                ways[tuple(gate for gate in way.gates if gate.of in behind)] = None
         sides.append([Path(StatementStart("unknown"), gates) for gates in ways])
     return sides[0], sides[1]
 

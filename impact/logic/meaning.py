@@ -17,6 +17,7 @@ _CUT = 119
 """An expression as long as this may have been cut off when it was read."""
 _IDENTIFIER = re.compile(r"(?<![\w.>:\"'])(?:(?:this->|self\.)?)([A-Za-z_]\w*)(?![\w:\"'])")
 _PATH = re.compile(r"(?:this->|self\.)?[A-Za-z_]\w*(?:(?:\.|->)[A-Za-z_]\w*)+(?=\()")
+_CALL = re.compile(r"\w\s*\(")
 _PLAIN = re.compile(r"[\w.:]+(\(\))?")
 _WORDS = frozenset(
     ("and", "or", "not", "is", "in", "true", "false", "True", "False", "None", "nullptr", "NULL", "this")
@@ -94,6 +95,8 @@ class Meaning:
             return None
         owner = callee[: -len(get_tail(path))]
         if owner not in ("", "this->", "self."):
+            if _CALL.search(value):
+                return None  # what an object of another class computes is its own business
             value = self._put_owner_before(value, owner, targets[0])
         for parameter, argument in zip((one for one in target.parameters if one.name != "self"), given, strict=True):
             said = argument if _PLAIN.fullmatch(argument) else f"({argument})"
@@ -127,12 +130,8 @@ class Meaning:
 
         def name(match: re.Match[str]) -> str:
             own = match[0] != match[1]
-            if not own and (python or match[1] in parameters or match[1] in _WORDS or match[1].isupper()):
-                return match[0]
-            called = value[match.end() : match.end() + 1] == "("
-            if not own and called and not self.code.list_targets(f"this.{match[1]}", fn):
-                return match[0]
-            return f"{owner}{match[1]}"
+            other = python or match[1] in parameters or match[1] in _WORDS or match[1].isupper()
+            return match[0] if other and not own else f"{owner}{match[1]}"
 
         return _IDENTIFIER.sub(name, value)
 

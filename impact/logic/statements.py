@@ -54,11 +54,13 @@ class StatementStart(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 class Path(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """One way to a statement; gates outermost first. Loops that last as long as the node does are not among them. root:
-    the function where it begins when nothing is seen that leads to it: no caller, or nobody who makes the object."""
+    the function where it begins when nothing is seen that leads to it: no caller, or nobody who makes the object.
+    functions: those that it runs through before the statement's own."""
 
     start: StatementStart
     gates: tuple[Gate, ...] = ()
     root: str = ""
+    functions: tuple[str, ...] = ()
 
 
 class Outlet(msgspec.Struct, frozen=True, array_like=True, gc=False):
@@ -250,14 +252,15 @@ class _Digester:
         led = ((way, way.trigger) for way in join.list_ways(fn))
         found = [way for way, by in led if by.kind != "subscriber" or (by.path, by.line) not in self.implied]
         found = found or [Way(Trigger("unknown", "", "", 0))]
-        ways = [self._build_path(way.trigger, (*way.guards, *own)) for way in found]
+        ways = [self._build_path(way, own) for way in found]
         nodes = tuple(sorted({node.id for node in map(_get_node, self._find_owners(fn)) if node is not None}))
         return PublishStatement(
             fn.source.path, use.call.line, fn.name, join.calls.get_receiver(use), outlets, statement.type,
             statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
         )  # fmt: skip
 
-    def _build_path(self, trigger: Trigger, guards: tuple[GuardAt, ...]) -> Path:
+    def _build_path(self, way: Way, own: tuple[GuardAt, ...]) -> Path:
+        trigger, guards = way.trigger, (*way.guards, *own)
         start = StatementStart(trigger.kind, trigger.detail)
         unsaid = trigger.kind in ("start", "unknown")
         unled = trigger.kind == "unknown" or (trigger.kind == "start" and trigger.detail not in ("", "main"))
@@ -274,7 +277,7 @@ class _Digester:
                 gates.append(Gate(guard.kind, asked, guard.of, meaning, self._is_fixed(guard)))
         if start.kind in ("start", "unknown"):
             start = StatementStart(start.kind)
-        return Path(start, tuple(gates), self._find_root(trigger) if unled else "")
+        return Path(start, tuple(gates), self._find_root(trigger) if unled else "", way.functions)
 
     def _find_root(self, trigger: Trigger) -> str:
         """The whole name of the function that a way begins in."""

@@ -123,10 +123,13 @@ class Trigger(msgspec.Struct, frozen=True):
 
 
 class Way(msgspec.Struct, frozen=True):
-    """One way to a publish statement: what starts it, and the guards met on it up to the statement, outermost first."""
+    """One way to a publish statement: what starts it, and the guards met on it up to the statement, outermost first.
+    functions: those that it runs through before the statement's own, outermost first; of several ways with the same
+    guards, one."""
 
     trigger: Trigger
     guards: tuple[GuardAt, ...] = ()
+    functions: tuple[str, ...] = ()
 
 
 class Publish(msgspec.Struct, frozen=True):

@@ -454,7 +454,7 @@ class Join:
             led = self._walk_callers(caller, functions, depth + 1, here)
             goes_round = goes_round or not led
             for way in led:
-                found.append(Way(way.trigger, (*way.guards, *own)))
+                found.append(Way(way.trigger, (*way.guards, *own), (*way.functions, caller.name)))
                 if len(found) >= _MOST_WAYS:
                     return found
         if not found and goes_round and seen:
@@ -462,12 +462,13 @@ class Join:
         if not found:
             around = self.code.find_enclosing(fn)
             if around is not None:
-                return self._walk_callers(around, functions, depth + 1, here)
+                ways = self._walk_callers(around, functions, depth + 1, here)
+                return [Way(way.trigger, way.guards, (*way.functions, around.name)) for way in ways]
             owner = get_tail(fn.facts.owner)
             starts = fn.name in ("main", "") or (owner and get_tail(fn.name) in (owner, "__init__"))
             kind = "start" if starts else "unknown"
             found.append(Way(Trigger(kind, get_tail(fn.name), fn.source.path, fn.facts.line)))
-        return list(dict.fromkeys(found))
+        return list({(way.trigger, way.guards): way for way in reversed(found)}.values())[::-1]
 
     def build(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
