@@ -263,6 +263,8 @@ def _compare_statements(
                 whys.append(f"{'also' if new_ways else 'no longer'} from {_describe_caller(new_ways or old_ways)}")
             continue
         kind, why = _compare_guards(old_ways, new_ways, names, second.language)
+        if kind != "equivalent" and _has_unknown_start(old_ways) != _has_unknown_start(new_ways):
+            kind = "changed"  # how often what is not seen makes it run is not known
         difference = _start_differs(old_ways, new_ways, names)
         if difference:
             starts.append(difference)
@@ -356,8 +358,8 @@ def _select_behind(
     for one, here in ((first, names), (second, SAME)):
         ways: dict[tuple[Gate, ...], None] = {}
         for way in one.ways:
-            passed = [own if name == one.function else _map_function(name, here) for name in (*way.functions, one.function)]
-            start = next((place for place, name in enumerate(passed) if name in functions), None)
+            names_of = (own if name == one.function else _map_function(name, here) for name in way.functions)
+            start = next((place for place, name in enumerate((*names_of, own)) if name in functions), None)
             if start is not None:
                 behind = {*way.functions[start:], one.function}
                 ways[tuple(gate for gate in way.gates if gate.of in behind)] = None
@@ -392,7 +394,15 @@ def _compare_guards(old: Sequence[Path], new: Sequence[Path], names: Renames, la
         if written != "equivalent":
             reported = (written_old, written_new)
             kind = written if kind == "changed" else kind
+    if kind != "equivalent" and _count_loops(old) != _count_loops(new):
+        # A loop that comes or goes is a matter of how often, too.
+        return "changed", guards.explain_ways(*reported, reading)
     return kind, guards.explain_ways(*reported, reading) if kind != "equivalent" else ""
+
+
+def _count_loops(ways: Sequence[Path]) -> set[int]:
+    """How many loops there are on ways, each of which may run what is in it several times."""
+    return {sum(gate.kind in ("while", "for", "do") for gate in way.gates) for way in ways}
 
 
 def _build_guard_ways(ways: Iterable[Path], meant: bool = False) -> Ways:
@@ -460,6 +470,10 @@ def _normalize_detail(detail: str) -> str:
 def _describe_caller(ways: Sequence[Path]) -> str:
     of = next((gate.of for way in ways for gate in way.gates), "")
     return f"`{of}`" if of else "another caller"
+
+
+def _has_unknown_start(ways: Sequence[Path]) -> bool:
+    return all(way.start.kind == "unknown" for way in ways)
 
 
 def _start_differs(old_ways: Sequence[Path], new_ways: Sequence[Path], names: Renames) -> str:

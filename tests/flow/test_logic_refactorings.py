@@ -145,6 +145,18 @@ CPP_CASES = [
         say("for (size_t i = 0; i < items_.size(); ++i) { if (items_[0].loud) pub_.publish(msg); }"),
         [("changed", "`items_[0].loud` was `items_[i].loud`")],
     ),
+    (
+        "a loop that comes sends more and fewer",
+        say("pub_.publish(msg);"),
+        say("for (auto& item : items_) { pub_.publish(item); }"),
+        [("changed", "only inside `for (auto& item : items_)`")],
+    ),
+    (
+        "a loop that goes",
+        say("bool done = false; while (!done) { pub_.publish(msg); done = true; }"),
+        say("bool done = false; if (true) { pub_.publish(msg); done = true; }"),
+        [("changed", "no longer asks for `!done`")],
+    ),
     # Statements that become one, and one that becomes several.
     ("one statement behind both branches", say(BRANCHES), say("pub_.publish(msg.data.empty() ? msg : last_);"), []),
     ("one statement in each branch", say("pub_.publish(msg);"), say(BRANCHES), []),
@@ -200,6 +212,12 @@ CPP_CASES = [
         "void start() { send(); }\n  void send() { pub_.publish(last_); }\n" + say("last_ = msg;"),
         "void start() { last_.clear(); }\n  void send() { pub_.publish(last_); }\n" + say("if (loud_) send();"),
         [],
+    ),
+    (
+        "something unseen instead of messages",
+        "void send() { pub_.publish(last_); }\n" + say("if (loud_) send();"),
+        "void send() { pub_.publish(last_); }\n  void onOther() { if (loud_ && able_) send(); }\n" + say("last_ = msg;"),
+        [("changed", "only when `able_` too")],
     ),
     (
         "a call more where all are known",
