@@ -216,7 +216,8 @@ CPP_CASES = [
     (
         "something unseen instead of messages",
         "void send() { pub_.publish(last_); }\n" + say("if (loud_) send();"),
-        "void send() { pub_.publish(last_); }\n  void onOther() { if (loud_ && able_) send(); }\n" + say("last_ = msg;"),
+        "void send() { pub_.publish(last_); }\n  void onOther() { if (loud_ && able_) send(); }\n"
+        + say("last_ = msg;"),
         [("changed", "only when `able_` too")],
     ),
     (
