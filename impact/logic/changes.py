@@ -138,17 +138,15 @@ def changes(old: Side, new: Side, names: Renames = SAME) -> Iterator[LogicChange
     come = [at for at in come if at.path in gained or at.path not in {names.map_path(path) for path in lost}]
     gone = [at for at in gone if not _has_unclear_call(at, names, new)]
     come = [at for at in come if not _has_unclear_call(at, SAME, old, names)]
-    left = {state.name for state, _ in new.packages}
+    left, known = ({state.name for state, _ in side.packages} for side in (new, old))
     for at in gone:
         was = _describe_trigger("was published", at.statement)
         was = was if at.package in left else f"{was}; no package `{at.package}` is built any more"
         yield _make_change("gone", at, at.outlets, _format_ways(at.statement.ways, at.statement), None, was)
     for at in come:
-        yield _make_change(
-            "new", at, at.outlets, None, _format_ways(
-                at.statement.ways, at.statement
-            ), _describe_trigger("is published", at.statement)
-        )
+        is_now = _describe_trigger("is published", at.statement)
+        is_now = is_now if at.package in known else f"{is_now}; there was no package `{at.package}`"
+        yield _make_change("new", at, at.outlets, None, _format_ways(at.statement.ways, at.statement), is_now)
     published = {id(outlet): at for at in after for outlet in at.outlets}
     for one, other in outlets:
         at = published.get(id(other.outlet))

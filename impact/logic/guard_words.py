@@ -134,8 +134,8 @@ def _is_other_form(old: Term, new: Term) -> bool:
 
 def _is_alternative(old: Conjunct, new: Conjunct, asked: Asked) -> bool:
     """Whether one of two conditions is the other one with an alternative."""
-    either = next((one for one in (old, new) if _get_kind(one.term) == "or"), None)
-    return either is not None and (asked([old], new) or asked([new], old))
+    either = any(_get_kind(one.term) == ("and" if one.term.kind == "not" else "or") for one in (old, new))
+    return either and (asked([old], new) or asked([new], old))
 
 
 def _collect_names(term: Term) -> frozenset[str]:

@@ -91,14 +91,14 @@ class Meaning:
         target = targets[0].facts
         value = self._find_returned(targets[0], depth)
         given = split_outside(arguments, ",") if arguments.strip() else []
-        if value is None or len(given) != len([one for one in target.parameters if one.name != "self"]):
+        if value is None or len(given) != len(target.parameters):
             return None
         owner = callee[: -len(get_tail(path))]
         if owner not in ("", "this->", "self."):
             if _CALL.search(value):
                 return None  # what an object of another class computes is its own business
             value = self._put_owner_before(value, owner, targets[0])
-        for parameter, argument in zip((one for one in target.parameters if one.name != "self"), given, strict=True):
+        for parameter, argument in zip(target.parameters, given, strict=True):
             said = argument if _PLAIN.fullmatch(argument) else f"({argument})"
             value = re.sub(rf"(?<![\w.>]){re.escape(parameter.name)}\b", lambda _, said=said: said, value)
         return value

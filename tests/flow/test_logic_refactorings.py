@@ -146,6 +146,12 @@ CPP_CASES = [
         [("changed", "`items_[0].loud` was `items_[i].loud`")],
     ),
     (
+        "whether there is anything is asked by the loop itself",
+        say("if (items_.empty()) return; for (auto& item : items_) { pub_.publish(item); }"),
+        say("for (auto& item : items_) { pub_.publish(item); }"),
+        [],
+    ),
+    (
         "a loop that comes sends more and fewer",
         say("pub_.publish(msg);"),
         say("for (auto& item : items_) { pub_.publish(item); }"),
@@ -178,6 +184,13 @@ CPP_CASES = [
         say(BRANCHES),
         say("if (msg.data.empty()) { pub_.publish(msg); }"),
         [("gone", "was published on messages of `in`")],
+    ),
+    (
+        "a function of the same name with other arguments is called",
+        "void send() {}\n  void send(int level) { if (able_) pub_.publish(last_); }\n" + say("if (loud_) send(1);"),
+        "void send() {}\n  void send(int level) { if (able_) pub_.publish(last_); }\n"
+        + say("send(); if (loud_) send(1);"),
+        [],
     ),
     # A part of a function that calls itself through others.
     (
@@ -249,6 +262,12 @@ NUMBERED = EACH.replace("for item in self.items", "for i, item in enumerate(self
 
 PYTHON_CASES = [
     (
+        "whether there is anything is asked by the loop itself",
+        "        if not self.items:\n            return\n" + EACH,
+        EACH,
+        [],
+    ),
+    (
         "places in a list",
         EACH,
         "        for i in range(len(self.items)):\n            if self.items[i].loud:\n"
@@ -310,7 +329,7 @@ def test_a_file_that_cannot_be_read_any_more_loses_nothing() -> None:
 def test_a_package_that_is_not_built_any_more_is_named() -> None:
     files = {"talker.py": PYTHON.replace("BODY", SENDING)}
     assert compare(files, {}) == [("gone", "was published on messages of `in`; no package `talk` is built any more")]
-    assert [kind for kind, _ in compare({}, files)] == ["new"]
+    assert compare({}, files) == [("new", "is published on messages of `in`; there was no package `talk`")]
 
 
 SERIAL = """

@@ -850,7 +850,7 @@ class Sites:
         """Whether a method of the code's own is called as this is, and takes as many arguments, none or several."""
         given = len(use.call.arguments)
         return given != 1 and any(
-            target.facts.owner and len([one for one in target.facts.parameters if one.name != "self"]) == given
+            target.facts.owner and len(target.facts.parameters) == given
             for target in self.code.by_tail.get(get_tail(use.call.callee), ())
         )
 
