@@ -106,10 +106,11 @@ class Meaning:
     def _find_returned(self, fn: Fn, depth: int) -> str | None:
         """What a function returns that does nothing else: one expression, or whether a condition holds."""
         rows, asked = fn.facts.assignments, fn.facts.guards
-        if not rows or rows[-1].operator != "return" or len(rows) > 4:
+        last = rows[-1] if rows else None
+        if last is None or last.operator != "return" or len(rows) > 4:
             return None
         if not any(row.operator == "return" for row in rows[:-1]):
-            return self._format_value(rows[-1].value, fn, depth) if rows[-1].guard == -1 else None
+            return self._format_value(last.value, fn, depth) if last.guard == -1 else None
         if len(rows) != 2 or not 0 <= rows[0].guard < len(asked):
             return None
         first, other = asked[rows[0].guard], asked[rows[1].guard] if rows[1].guard >= 0 else None

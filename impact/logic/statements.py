@@ -3,17 +3,18 @@ publishers and its subscribers. Small enough to be kept for every commit of a re
 
 import re
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 from typing import Any
 
 import msgspec
 
 from ...edges.memory import cache_method
 from ..facts import kinds
-from ..facts.flow import FlowCall, FlowFile
+from ..facts.flow import FlowCall, FlowExpr, FlowFile
 from ..model.flow.code import FlowCode, Fn, get_tail
 from ..model.flow.endpoints import Site, Statement, unparse
-from ..model.flow.graph import GuardAt, Node, Trigger, Way
-from ..model.flow.join import Join, Owner
+from ..model.flow.graph import GuardAt, Node, Trigger
+from ..model.flow.join import CallWay, Join, Owner
 from ..model.flow.nodes import BuiltPackage, asks_for_name, find_entry_point
 from ..model.flow.qos import find_qos
 from ..model.flow.values import FlowValue
@@ -24,7 +25,8 @@ _LIVE = frozenset(
     ("ros::ok()", "rclcpp::ok()", "ok()", "true", "True", "1", "rclpy.ok()", "not rospy.is_shutdown()",
      "not rospy.core.is_shutdown()", "!ros::isShuttingDown()", "not is_shutdown()", "(1)", "(true)")
 )  # fmt: skip
-_OK = re.compile(r"(?:[\w.]|->)+(?:\.|->)ok\(\)")
+_OK = re.compile(r"(?:(?:[\w.]|->)+(?:\.|->))?(?:ros_?)?ok\(\)")
+"""That a node, its library or a wrapper of that is up."""
 _LOOPS = frozenset(("while", "do"))
 _CALLS = re.compile(r"\w\s*[(\[]|\]\s*\(")
 _NAMES = re.compile(r"(?<![\w.>:\"'])(?:this->|self\.)?([A-Za-z_]\w*)(?![\w\"':])")
@@ -251,16 +253,30 @@ class _Digester:
         own = join.list_guards(fn, use.call.guard)
         led = ((way, way.trigger) for way in join.list_ways(fn))
         found = [way for way, by in led if by.kind != "subscriber" or (by.path, by.line) not in self.implied]
-        found = found or [Way(Trigger("unknown", "", "", 0))]
-        ways = [self._build_path(way, own) for way in found]
+        found = found or [CallWay(Trigger("unknown", "", "", 0))]
+        ways = [self._build_path(way, fn, own) for way in found]
         nodes = tuple(sorted({node.id for node in map(_get_node, self._find_owners(fn)) if node is not None}))
         return PublishStatement(
             fn.source.path, use.call.line, fn.name, join.calls.get_receiver(use), outlets, statement.type,
             statement.expression, fn.source.facts.language, nodes, tuple(dict.fromkeys(ways)),
         )  # fmt: skip
 
-    def _build_path(self, way: Way, own: tuple[GuardAt, ...]) -> Path:
-        trigger, guards = way.trigger, (*way.guards, *own)
+    @cached_property
+    def _handed(self) -> dict[str, Fn]:
+        """Lambdas that no call is seen of, by their names: they run where they stand, or whenever who got them likes."""
+        code = self.join.code
+        return {fn.name: fn for fn in code.functions if fn.is_lambda and not code.callers.get(fn)}
+
+    def _find_trigger(self, way: CallWay, fn: Fn) -> Trigger:
+        """What a way begins with: not known where the start of a program hands a lambda to something."""
+        if way.trigger.kind == "start":
+            handed = next((self._handed[name] for name in (*way.functions, fn.name) if name in self._handed), None)
+            if handed is not None:
+                return Trigger("unknown", get_tail(handed.name), handed.source.path, handed.facts.line)
+        return way.trigger
+
+    def _build_path(self, way: CallWay, fn: Fn, own: tuple[GuardAt, ...]) -> Path:
+        trigger, guards = self._find_trigger(way, fn), (*way.guards, *own)
         start = StatementStart(trigger.kind, trigger.detail)
         unsaid = trigger.kind in ("start", "unknown")
         unled = trigger.kind == "unknown" or (trigger.kind == "start" and trigger.detail not in ("", "main"))
@@ -330,20 +346,30 @@ class _Digester:
 
     def _describe_sleep(self, call: FlowCall, fn: Fn) -> str:
         if call.arguments:
-            return f"every {unparse(call.arguments[0])}"
+            return f"every {_describe_number(call.arguments[0], fn)}"
         receiver = call.callee.rpartition(".")[0]
         if receiver.endswith("()"):
             name, line = receiver.removesuffix("()"), call.line
             made = [one for one in fn.facts.calls if one.callee == name and one.line == line]
-            return f"{get_tail(name).lower()} {unparse(made[0].arguments[0])}" if made and made[0].arguments else ""
+            pace = _describe_number(made[0].arguments[0], fn) if made and made[0].arguments else ""
+            return f"{get_tail(name).lower()} {pace}" if pace else ""
         code = self.join.code
         variable = code.identify(receiver, fn)
-        for _, each in code.list_writes(variable):
-            paces = [unparse(part) for part in each.value.parts if part.text not in ("this", "self", "*this")]
+        for writer, each in code.list_writes(variable):
+            parts = [part for part in each.value.parts if part.text not in ("this", "self", "*this")]
+            paces = [_describe_number(part, writer) for part in parts]
             if paces and each.value.kind in ("make", "call", "list"):
                 kind = get_tail(each.value.text).lower() if each.value.text else "rate"
                 return f"{kind} {paces[0]}"
         return ""
+
+
+def _describe_number(value: FlowExpr, fn: Fn) -> str:
+    """A number as written; that of a variable that is one and nothing else."""
+    made = fn.assigned.get(value.text, []) if value.kind == "name" and value.text in fn.locals else []
+    if len(made) == 1 and made[0].operator == "=" and made[0].value.kind == "number":
+        return unparse(made[0].value)
+    return unparse(value)
 
 
 def _get_node(owner: Owner) -> Node | None:

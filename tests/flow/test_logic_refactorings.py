@@ -312,6 +312,63 @@ def test_what_is_said_of_python(old: str, new: str, said: list[tuple[str, str]])
         assert wanted in why
 
 
+RUN = """
+import rospy
+from std_msgs.msg import String
+from wrapper import make_timer, ros_ok
+
+pub = rospy.Publisher("out", String, queue_size=1)
+
+def step():
+    if ready:
+        pub.publish("a")
+
+def main():
+    rospy.init_node("talker")
+BODY
+
+main()
+"""
+AT_TEN = "    rate = rospy.Rate(10)\n    while not rospy.is_shutdown():\n        step()\n        rate.sleep()"
+NAMED = AT_TEN.replace("Rate(10)", "Rate(pace)").replace("not rospy.is_shutdown()", "ros_ok()")
+LOOP_CASES = [
+    (
+        "a wrapper that asks whether the node is up, and a rate with a name",
+        AT_TEN,
+        "    pace = 10\n" + NAMED,
+        [],
+    ),
+    (
+        "another rate with a name",
+        AT_TEN,
+        "    pace = 20\n" + NAMED,
+        [("trigger changed", "loop `rate 20`, was `rate 10`")],
+    ),
+    (
+        "what a lambda is handed to calls it when it wants",
+        AT_TEN,
+        "    make_timer(0.1, lambda: step())\n    rospy.spin()",
+        [],
+    ),
+    (
+        "a loop that calls it and one that does not ask",
+        "    step()\n    rospy.spin()",
+        "    while ros_ok():\n        step()",
+        [("trigger changed", "on loop, was on the start")],
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"), [case[1:] for case in LOOP_CASES], ids=[case[0] for case in LOOP_CASES]
+)
+def test_what_is_said_of_loops(old: str, new: str, said: list[tuple[str, str]]) -> None:
+    found = compare({"run.py": RUN.replace("BODY", old)}, {"run.py": RUN.replace("BODY", new)})
+    assert [kind for kind, _ in found] == [kind for kind, _ in said], found
+    for (_, why), (_, wanted) in zip(found, said, strict=True):
+        assert wanted in why
+
+
 SENDING = "        if msg.data:\n            self.pub.publish(msg)"
 
 

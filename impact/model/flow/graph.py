@@ -123,13 +123,10 @@ class Trigger(msgspec.Struct, frozen=True):
 
 
 class Way(msgspec.Struct, frozen=True):
-    """One way to a publish statement: what starts it, and the guards met on it up to the statement, outermost first.
-    functions: those that it runs through before the statement's own, outermost first; of several ways with the same
-    guards, one."""
+    """One way to a publish statement: what starts it, and the guards met on it up to the statement, outermost first."""
 
     trigger: Trigger
     guards: tuple[GuardAt, ...] = ()
-    functions: tuple[str, ...] = ()
 
 
 class Publish(msgspec.Struct, frozen=True):
