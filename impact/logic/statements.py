@@ -263,7 +263,7 @@ class _Digester:
 
     @cached_property
     def _handed(self) -> dict[str, Fn]:
-        """Lambdas that no call is seen of, by their names: they run where they stand, or whenever who got them likes."""
+        """Lambdas that no call is seen of, by their names: they run where they stand, or when who got them wants."""
         code = self.join.code
         return {fn.name: fn for fn in code.functions if fn.is_lambda and not code.callers.get(fn)}
 
