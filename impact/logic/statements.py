@@ -327,11 +327,13 @@ class _Digester:
         return any(self.join.code.list_targets(call.callee, fn) for call in fn.facts.calls)
 
     def _find_rate(self, guard: GuardAt) -> str:
-        """The rate at which a loop goes round, as it is written where it is made; empty when none is seen."""
+        """The rate at which a loop goes round, as it is written where it is made; empty when none is seen, or several
+        that only some rounds keep."""
         fn = self.join.code.by_name.get((guard.path, guard.of))
         if fn is None:
             return ""
         rows = fn.facts.guards
+        paces: list[tuple[bool, bool, str]] = []
         for call in fn.facts.calls:
             if get_tail(call.callee) not in ("sleep", "sleep_for"):
                 continue
@@ -341,8 +343,10 @@ class _Digester:
             if 0 <= place < len(rows):
                 pace = self._describe_sleep(call, fn)
                 if pace:
-                    return pace
-        return ""
+                    paces.append((bool(call.arguments), place != call.guard, pace))
+        # What is made to keep a rate goes before pauses, what every round meets before what some do.
+        best = [pace for *kind, pace in paces if kind == list(min(paces)[:2])]
+        return best[0] if best and (len(set(best)) == 1 or not min(paces)[1]) else ""
 
     def _describe_sleep(self, call: FlowCall, fn: Fn) -> str:
         if call.arguments:

@@ -345,6 +345,18 @@ LOOP_CASES = [
         [("trigger changed", "loop `rate 20`, was `rate 10`")],
     ),
     (
+        "a pause in one branch beside the rate",
+        AT_TEN,
+        AT_TEN.replace("        step()", "        if old:\n            rospy.sleep(0.002)\n        step()"),
+        [],
+    ),
+    (
+        "a pause that every round meets",
+        AT_TEN,
+        AT_TEN.replace("rate.sleep()", "rospy.sleep(0.5)"),
+        [("trigger changed", "loop `every 0.5`, was `rate 10`")],
+    ),
+    (
         "what a lambda is handed to calls it when it wants",
         AT_TEN,
         "    make_timer(0.1, lambda: step())\n    rospy.spin()",
