@@ -912,7 +912,11 @@ class FlowCode:
     def callers(self) -> dict[Fn, list[tuple[Fn, FlowCall]]]:
         """Calls that reach a function of the code, by the function."""
         calls = self.list_calls_named(self.by_tail.keys() | self.classes.keys())
-        reached = ((target, (fn, call)) for fn, call in calls for target in self.list_targets(call.callee, fn))
+        reached = (
+            (target, (fn, call))
+            for fn, call in calls
+            for target in _select_overloads(self.list_targets(call.callee, fn), call)
+        )
         return group_pairs((target, caller) for target, caller in reached if caller[0] is not target)
 
     @cached_property
@@ -1086,3 +1090,11 @@ def _rate_nearness(cls: Cls, source: CodeFile, scope: str) -> int:
     same = cls.source.path == source.path
     near = 8 * (same or not cls.is_local) + 4 * same + 2 * (cls.source.package == source.package)
     return near + (_is_within(scope, get_outer(cls.name)) if get_outer(cls.name) else 0)
+
+
+def _select_overloads(targets: list[Fn], call: FlowCall) -> list[Fn]:
+    """Of functions of one name in C++ those that take as many arguments as a call has; all where none does."""
+    if len(targets) < 2 or targets[0].source.facts.language != "cpp":
+        return targets
+    given = len(call.arguments)
+    return [one for one in targets if len(one.facts.parameters) == given] or targets

@@ -856,10 +856,18 @@ class Sites:
         kind = self.code.resolve_name_type(receiver, use.fn)
         if not use.sure and kind.name:
             return None  # of a class that is not a framework's
-        if not use.sure and len(use.call.arguments) > 2:
+        if not use.sure and (len(use.call.arguments) > 2 or self._is_like_own_method(use)):
             return None
         known = self._resolve_interface(kind.arguments[0], use.fn) if kind.arguments else ""
         return Statement(use, (), known, expression, f"which publisher `{receiver}` is cannot be known")
+
+    def _is_like_own_method(self, use: FrameworkCall) -> bool:
+        """Whether a method of the code's own is called as this is, and takes as many arguments, none or several."""
+        given = len(use.call.arguments)
+        return given != 1 and any(
+            target.facts.owner and len(target.facts.parameters) == given
+            for target in self.code.by_tail.get(get_tail(use.call.callee), ())
+        )
 
     def list_publishers(self, receiver: str, fn: Fn, depth: int = 0) -> Iterator[Site]:
         """The publishers that an expression may stand for: kept there, passed in, or copied from elsewhere."""

@@ -60,6 +60,13 @@ _TRIGGERS = {
 }  # fmt: skip
 
 
+class CallWay(Way, frozen=True):
+    """A way to a function. functions: those that it runs through before it, outermost first; of several ways with the
+    same guards, those of one."""
+
+    functions: tuple[str, ...] = ()
+
+
 class Running(NamedTuple):
     """A program with the node it is, and what of the code it reaches. instance: how a launch starts it; values: what
     expressions are worth there; classes: by key. loaded: how the node loads this program, which is a nodelet then.
@@ -119,7 +126,7 @@ class Join:
         # With who runs it, so that nothing else comes by the same id().
         self._sites_of: dict[tuple, list[tuple[Running, dict[str, FlowValue | None], Site]]] = {}
         # Of a function it is the same in all nodes that run the same of what leads to it.
-        self._ways: dict[tuple[Fn, frozenset[Fn]], list[Way]] = {}
+        self._ways: dict[tuple[Fn, frozenset[Fn]], list[CallWay]] = {}
 
     def list_running(self) -> list[Running]:
         """All programs that talk, with their nodes, sorted."""
@@ -427,7 +434,7 @@ class Join:
                 use = timer.use
                 yield fn, Trigger("timer", timer.period, use.fn.source.path, use.call.line)
 
-    def list_ways(self, fn: Fn, functions: set[Fn] | None = None) -> list[Way]:
+    def list_ways(self, fn: Fn, functions: set[Fn] | None = None) -> list[CallWay]:
         """The ways that lead to a function from whatever triggers it. functions: those that run, all when None."""
         leading = self._find_leading(fn)
         key = (fn, leading if functions is None else leading & functions)
@@ -447,28 +454,34 @@ class Join:
 
         return frozenset(walk(list_above(fn), list_above))
 
-    def _walk_callers(self, fn: Fn, functions: set[Fn] | None, depth: int, seen: tuple[Fn, ...]) -> list[Way]:
-        found = [Way(trigger) for trigger in self.triggers.get(fn, ())]
-        if fn in seen or depth > _DEEPEST:
+    def _walk_callers(self, fn: Fn, functions: set[Fn] | None, depth: int, seen: tuple[Fn, ...]) -> list[CallWay]:
+        found = [CallWay(trigger) for trigger in self.triggers.get(fn, ())]
+        if fn in seen:
             return found
         here = (*seen, fn)
-        for caller, call in self.code.callers.get(fn, ()):
+        goes_round = False
+        for caller, call in self.code.callers.get(fn, ()) if depth <= _DEEPEST else ():
             if functions is not None and caller not in functions:
                 continue
             own = self.list_guards(caller, call.guard)
-            for way in self._walk_callers(caller, functions, depth + 1, here):
-                found.append(Way(way.trigger, (*way.guards, *own)))
+            led = self._walk_callers(caller, functions, depth + 1, here)
+            goes_round = goes_round or not led
+            for way in led:
+                found.append(CallWay(way.trigger, (*way.guards, *own), (*way.functions, caller.name)))
                 if len(found) >= _MOST_WAYS:
                     return found
+        if not found and goes_round and seen:
+            return found  # a call that only its own callee leads to is no further way
         if not found:
             around = self.code.find_enclosing(fn)
             if around is not None:
-                return self._walk_callers(around, functions, depth + 1, here)
+                ways = self._walk_callers(around, functions, depth + 1, here)
+                return [CallWay(way.trigger, way.guards, (*way.functions, around.name)) for way in ways]
             owner = get_tail(fn.facts.owner)
             starts = fn.name in ("main", "") or (owner and get_tail(fn.name) in (owner, "__init__"))
             kind = "start" if starts else "unknown"
-            found.append(Way(Trigger(kind, get_tail(fn.name), fn.source.path, fn.facts.line)))
-        return list(dict.fromkeys(found))
+            found.append(CallWay(Trigger(kind, get_tail(fn.name), fn.source.path, fn.facts.line)))
+        return list({(way.trigger, way.guards): way for way in reversed(found)}.values())[::-1]
 
     def build(self, root: str = "", rev: str = "", unread: Iterable[str] = (), launch: Launched | None = None) -> Graph:
         """The graph of all programs, or of what a launch starts. Without one, code that no program runs belongs to
