@@ -13,10 +13,11 @@ class Place(msgspec.Struct, frozen=True, array_like=True, gc=False, order=True):
 
 
 class Problem(msgspec.Struct, frozen=True, array_like=True, gc=False):
-    """A part of a file that could not be read: where, and in one clause why."""
+    """A part of a file that could not be read: where, and in one clause why. column: 0 where the line alone is known."""
 
     line: int
     message: str
+    column: int = 0
 
 
 class Allow(msgspec.Struct, frozen=True, array_like=True, gc=False):

@@ -237,12 +237,13 @@ class TargetView(WorkspaceOnTarget):
     def _list_tool_needs(self, package: Package, tool: str) -> Iterator[Need]:
         """The tool that packages of a build type are built with: CMake itself, or a package of ROS, where neither a
         part of it is declared to build with, such as ament_cmake_core, nor what is brings it."""
-        line = next((one.line for one in package.manifest.exports if one.text == tool), package.manifest.line)
+        named = next((one for one in package.manifest.exports if one.text == tool), package.manifest)
+        at = At(package.linked.manifest_path, named.line, named.column)
         providers = tuple(self.providers.find_executable(tool)) if tool == "cmake" else self.find_cmake(tool)
         first = [name for name, kinds in self.collect_declared(package).items() if kinds & {"build", "buildtool"}]
         parts = any(name.startswith(tool) for name in first)
         if tool == "cmake" or not (parts or self.is_met(providers, self.list_transitive(first))):
-            yield Need("tool", tool, providers, At(package.linked.manifest_path, line), "build", True)
+            yield Need("tool", tool, providers, at, "build", True)
 
     def _list_environment_needs(self, package: Package) -> Iterator[Need]:
         """Environment variables of ROS that CMake tests, or stops without, where nothing that sets them comes along:

@@ -413,7 +413,8 @@ def _drop_tolerated(data: bytes, problems: tuple[Problem, ...]) -> tuple[Problem
     if "declaration" in problems[0].message:
         blanked = DECLARATION.sub(lambda m: b"\n" * m.group().count(b"\n"), blanked, count=1)
     blanked = VALUE.sub(lambda m: m.group().replace(b"<", b"&lt;"), blanked)
-    return tuple(p for p in find_xml_problems(blanked) if "junk after document element" not in p.message)
+    found = (p for p in find_xml_problems(blanked) if "junk after document element" not in p.message)
+    return tuple(Problem(p.line, p.message) for p in found)  # columns are those of what is blanked
 
 
 PLUGIN_KEY = re.compile(r"(?:plugins?|kinematics_solver|_adapters|_layer)\Z")
