@@ -22,7 +22,7 @@ from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
 from ..facts.cpp.schema import CodeSpot
-from ..facts.cpp.tree_nodes import TreeNodes, merge_tree_nodes
+from ..facts.cpp.tree_nodes import TreeNodes, mark_extended, merge_tree_nodes
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
 from ..facts.kinds import HEADER_ENDINGS, make_empty
@@ -578,7 +578,8 @@ class PackageJoin:
                 self.cpp[path] = facts
                 registered.extend(getattr(facts, "exports", ()))
                 if facts.tree_nodes is not None:
-                    tree_nodes.append(facts.tree_nodes)
+                    beside = find_folder_role(self.strip_prefix(path)) is not None
+                    tree_nodes.append(mark_extended(facts.tree_nodes) if beside else facts.tree_nodes)
                 references.extend((path, r) for r in getattr(facts, "references", ()))
             elif isinstance(facts, PythonFile):
                 python[path] = facts

@@ -87,6 +87,13 @@ def merge_tree_nodes(found: Iterable[TreeNodes]) -> TreeNodes:
     )
 
 
+def mark_extended(found: TreeNodes) -> TreeNodes:
+    """The same, with nodes whose ports are not known, as of those that tests and examples register: others may be
+    called like them."""
+    nodes = (msgspec.structs.replace(node, extended=True) for node in found.nodes)
+    return msgspec.structs.replace(found, nodes=tuple(nodes))
+
+
 UNKNOWN_CALL = (COMPUTED, "")
 
 

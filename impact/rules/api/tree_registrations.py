@@ -71,11 +71,12 @@ _TELLING = 3
 @cache_in_derived
 def list_packages_along(view: TargetView, names: frozenset[str]) -> frozenset[str]:
     """The packages that register nodes and come along with the workspace, or with one that a tree of some nodes is
-    evidently written for."""
+    evidently written for, as far as the target has them."""
     owners = {name: list_owners(view, name) for name in names}
     sole = Counter(each[0] for each in owners.values() if len(each) == 1)
     meant = [owner for owner, count in sole.items() if count >= _TELLING and view.is_available(owner)]
-    return view.brought_to_workspace.union(view.list_transitive(meant)).intersection(list_known_packages(view))
+    along = view.brought_to_workspace.union(view.list_transitive(meant)).intersection(list_known_packages(view))
+    return frozenset(name for name in along if view.target.find_version(name) is not None)
 
 
 @cache_in_derived
