@@ -164,7 +164,9 @@ class _Constants:
 _CLASS = re.compile(
     r"\b(?:class|struct)\s+(?:[A-Z_]+\s+)?(?P<name>(?!final\b)\w+)\s*(?:final\s*)?(?::(?!:)(?P<bases>[^;{}()]{1,1000}))?\{"
 )
-_NODE = re.compile(r"Node|Action|Condition|Decorator|Control|Leaf|Service|Tree|PortsList")
+# One of these stands in every file that defines classes of nodes; far faster to look for than an expression.
+_NODES = ("TreeNode", "ActionNode", "ConditionNode", "DecoratorNode", "ControlNode", "LeafNode", "ServiceNode")
+_NODE_SIGNS = ("BT::", "PortsList", "namespace BT", *_NODES)
 _FUNCTION = re.compile(
     r"\b(?:PortsList|auto)\s+(?:(?P<of>\w+)\s*(?:<[^;{}()]{0,200}>\s*)?::\s*)?(?P<name>\w+)\s*"
     r"\((?P<parameters>[^;{}]{0,500}?)\)\s*(?:noexcept\s*)?\{"
@@ -174,7 +176,7 @@ _PARAMETER = re.compile(r"(\w+)\s*(?:=[^,]*)?(?:,|\Z)")
 
 def list_node_classes(text: str, visible: str) -> tuple[tuple[NodeClass, ...], tuple[PortFunction, ...]]:
     """The classes of a file that may be nodes, and its functions that return ports. text, visible: of its Scan."""
-    if not _NODE.search(visible):
+    if not any(sign in visible for sign in _NODE_SIGNS):
         return (), ()
     ends = _pair_brackets(visible)
     constants = _Constants(text, visible)
@@ -186,7 +188,7 @@ def list_node_classes(text: str, visible: str) -> tuple[tuple[NodeClass, ...], t
         found.append((start, end, match["name"]))
         bases = _split_bases(match["bases"] or "")
         own = visible.find(PORTS, start, end) >= 0
-        if bases or own or _NODE.search(match["name"]):
+        if bases or own or match["name"].endswith(_NODES):
             classes[NodeClass(sys.intern(match["name"]), bases, own)] = None
     functions: dict[PortFunction, None] = {}
     inside: list[tuple[int, str]] = []

@@ -45,14 +45,14 @@ CLASSES = [
     ("class A : public B<C<D>>, private virtual e::F {};", [("A", ("B", "F"), False)]),
     ("struct A final : BT::SyncActionNode { static BT::PortsList providedPorts(); };",
      [("A", ("SyncActionNode",), True)]),
-    ("class Action;\nclass Plain {};", []),
+    ("class ActionNode;\nclass Plain {};", []),
     ("class TreeNode { };", [("TreeNode", (), False)]),
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "expected"), CLASSES)
 def test_classes(text, expected):
-    facts = extract((text + "\nNode node;").encode()).tree_nodes
+    facts = extract((text + "\nBT::NodeStatus status;").encode()).tree_nodes
     found = facts.classes if facts is not None else ()
     assert [(one.name, one.bases, one.own) for one in found] == expected
 
