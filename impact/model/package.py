@@ -22,6 +22,7 @@ from ..facts.cmake import CMakeFile
 from ..facts.condition import Condition
 from ..facts.cpp.lexical import CppFile, Include
 from ..facts.cpp.schema import CodeSpot
+from ..facts.cpp.tree_nodes import TreeNodes, mark_extended, merge_tree_nodes
 from ..facts.distros import DistroFile
 from ..facts.interface import Interface
 from ..facts.kinds import HEADER_ENDINGS, make_empty
@@ -277,8 +278,8 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     nothing relative to their package, which a program cannot. plain_scripts: those
     whose first line names `python`, of no version. at_home: Python files whose first line names a Python in the home
     folder of a user, and that. shells: shell scripts without an ending. interpreted: names of
-    Python files that CMake code gives to an interpreter. tree_nodes: nodes of behaviour trees that C++ files register,
-    see tree_nodes.py; trees, modelled: see ReferenceFile.
+    Python files that CMake code gives to an interpreter. tree_nodes: what C++ files tell of nodes of behaviour trees,
+    see facts/cpp/tree_nodes.py; trees, modelled: see ReferenceFile.
     """
 
     name: str
@@ -306,7 +307,7 @@ class LinkedPackage(msgspec.Struct, frozen=True, array_like=True, gc=False):
     modules: tuple[str, ...] = ()
     plugins: tuple[tuple[str, PluginClass], ...] = ()
     registered: tuple[str, ...] = ()
-    tree_nodes: tuple[str, ...] = ()
+    tree_nodes: TreeNodes = TreeNodes()
     trees: tuple[str, ...] = ()
     modelled: tuple[str, ...] = ()
     setup: tuple[tuple[str, SetupFile], ...] = ()
@@ -568,7 +569,7 @@ class PackageJoin:
         launches: list[tuple[str, str]] = []
         data_words: list[str] = []
         references, plugins, registered, setup, requirements, interfaces = [], [], [], [], [], []
-        tree_nodes: set[str] = set()
+        tree_nodes: list[TreeNodes] = []
         trees: set[str] = set()
         modelled: set[str] = set()
         for path in self.files:
@@ -591,7 +592,9 @@ class PackageJoin:
             if isinstance(facts, CppFile):
                 self.cpp[path] = facts
                 registered.extend(getattr(facts, "exports", ()))
-                tree_nodes.update(facts.tree_nodes)
+                if facts.tree_nodes is not None:
+                    beside = find_folder_role(self.strip_prefix(path)) is not None
+                    tree_nodes.append(mark_extended(facts.tree_nodes) if beside else facts.tree_nodes)
                 references.extend((path, r) for r in getattr(facts, "references", ()))
             elif isinstance(facts, PythonFile):
                 python[path] = facts
@@ -685,7 +688,7 @@ class PackageJoin:
             modules=tuple(sorted(modules)),
             plugins=tuple(plugins),
             registered=tuple(registered),
-            tree_nodes=tuple(sorted(tree_nodes)),
+            tree_nodes=merge_tree_nodes(tree_nodes),
             trees=tuple(sorted(trees)),
             modelled=tuple(sorted(modelled)),
             testing=tuple(path for path in self.cpp if not _OF_TESTS.isdisjoint(self.list_words(path))),
