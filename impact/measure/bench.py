@@ -19,7 +19,7 @@ from ...edges.documents import DocumentError, load_json
 from ...edges.files import write_file
 from . import ros1
 from .children import Child
-from .intervals import Window, read_samples
+from .intervals import PublishReport, Window, read_samples
 from .messages import HEAD_BYTES, WireSchema
 from .namespaces import Site
 from .plan import TAIL, Conditions, NetworkCell
@@ -32,8 +32,8 @@ CLOCKS = {"monotonic": time.CLOCK_MONOTONIC, "realtime": time.CLOCK_REALTIME}
 
 
 class PreparedMessage(NamedTuple):
-    """A message as a cell sends it. contents: what it is filled with, in turn. bytes: of it on the wire, on the average,
-    the sample's head included."""
+    """A message as a cell sends it. contents: what it is filled with, in turn. bytes: of it on the wire, on average, with
+    the sample's head."""
 
     schema: WireSchema
     contents: Sequence[bytes]
@@ -152,20 +152,16 @@ class LocalPublishers:
         for node in self._nodes:
             _expect(node, "ready", _CONNECT)
 
-    def publish(self) -> int:
-        """Has them publish all they have to. Returns how many messages were late. Raises UserError."""
+    def publish(self) -> PublishReport:
+        """Has them publish all they have to. Raises UserError."""
         start = self._bench.read_clock() + int(_START_AHEAD * _NANO)
         for node in self._nodes:
             node.send(f"start {start}")
-        late = 0
-        for node in self._nodes:
-            # A publisher that cannot keep up needs longer, and says so.
-            said = node.wait_for_line(20 * self._seconds + 60)
-            try:
-                late += int(load_json(said)["late"])
-            except (DocumentError, KeyError, TypeError, ValueError):
-                raise UserError(f"a publisher reported `{said[:80]}`: {node.read_end()}") from None
-        return late
+        # A publisher that cannot keep up needs longer, and says so.
+        said = [_read_report(node, 20 * self._seconds + 60) for node in self._nodes]
+        published, late = (sum(one[name] for one in said) for name in ("published", "late"))
+        rate = min((one["published"] - 1) * _NANO / max(1, one["elapsed"]) for one in said)
+        return PublishReport(rate, 100 * late / published)
 
     def stop(self) -> None:
         """Ends them."""
@@ -204,3 +200,12 @@ def _expect(node: Child, word: str, seconds: float) -> None:
     said = node.wait_for_line(seconds)
     if said != word:
         raise UserError(f"a node said `{said[:80]}` where `{word}` was expected: {node.read_end()}")
+
+
+def _read_report(node: Child, seconds: float) -> dict[str, int]:
+    said = node.wait_for_line(seconds)
+    try:
+        report = load_json(said)
+        return {name: int(report[name]) for name in ("published", "late", "elapsed")}
+    except (DocumentError, KeyError, TypeError, ValueError):
+        raise UserError(f"a publisher reported `{said[:80]}`: {node.read_end()}") from None

@@ -184,5 +184,3 @@ def _check_contents(found: Iterable[bytes], bag: Path, type_: str, schema: WireS
                 f"--bag {bag}: message {number} of {type_} does not have the fields that the workspace defines; give a "
                 "bag that was recorded with this definition"
             ) from None
-
-

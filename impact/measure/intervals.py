@@ -27,9 +27,10 @@ class NetworkResult(msgspec.Struct, frozen=True, kw_only=True):
     bytes: of the message on the wire, its sample's head included. offered_mbit: what the publishers give, in Mbit/s,
     without headers of protocols. published, arrived, delivered: messages of the measured seconds; what is missing
     between them was dropped by the queue of the publisher, and by that of the subscriber, in percent of those
-    published. late: messages that were published more than a period behind schedule. latency: from the call that
-    publishes to the callback, in milliseconds; none where nothing was delivered. waited_ms: how much of it, on the
-    average, a message spent in the subscriber's queue. clock_offset_ms, clock_uncertainty_ms: of two machines.
+    published. achieved_rate: at which the slowest publisher published. late_percent: of all that was published, how
+    much was more than a period behind schedule. latency: from the call that publishes to the callback, in
+    milliseconds; none where nothing was delivered. waited_ms: how much of it, on the average, a message spent in the
+    subscriber's queue. clock_offset_ms, clock_uncertainty_ms: of two machines.
     """
 
     repetition: int
@@ -42,7 +43,8 @@ class NetworkResult(msgspec.Struct, frozen=True, kw_only=True):
     published: int
     arrived: int
     delivered: int
-    late: int
+    achieved_rate: float
+    late_percent: float
     dropped_percent: float
     dropped_publisher_percent: float
     dropped_subscriber_percent: float
@@ -69,6 +71,14 @@ def read_samples(path: Path) -> Any:
     return np.frombuffer(data, "<i8").reshape(-1, _RECORD)
 
 
+class PublishReport(NamedTuple):
+    """How the publishers of a cell kept to their schedule: the rate of the slowest, and the share that was more than a
+    period late, in percent."""
+
+    rate: float
+    late_percent: float
+
+
 class Window(NamedTuple):
     """Which messages of each publisher count: those from `first` on, before `end`."""
 
@@ -77,18 +87,20 @@ class Window(NamedTuple):
 
 
 def compute_result(
-    samples: Any, cell: NetworkCell, repetition: int, window: Window, *, bytes: int, late: int = 0,
+    samples: Any, cell: NetworkCell, repetition: int, window: Window, report: PublishReport, *, bytes: int,
     offset: float = 0, uncertainty: float = 0,
 ) -> NetworkResult:  # fmt: skip
     """The numbers of one repetition.
 
-    samples: as read_samples() gives them. bytes: of one message. late: messages published behind schedule. offset:
-    what the subscriber's clock is ahead of the publishers', in nanoseconds; uncertainty: of that.
+    samples: as read_samples() gives them. bytes: of one message. offset: what the subscriber's clock is ahead of the
+    publishers', in nanoseconds; uncertainty: of that. Raises UserError for records that contradict each other.
     """
     counted = samples[(samples[:, 2] >= window.first) & (samples[:, 2] < window.end)]
     arrivals, callbacks = (counted[counted[:, 0] == kind] for kind in (ARRIVAL, CALLBACK))
     published = cell.publishers * (window.end - window.first)
     arrived, delivered = len(arrivals), len(callbacks)
+    if delivered > arrived:
+        raise UserError(f"{delivered - arrived} messages got a callback whose arrival was not seen; measure again")
     latency = (callbacks[:, 4] - callbacks[:, 3] - offset) / 1e6
     known = {(row[1], row[2]): row[4] for row in arrivals.tolist()}
     waits = [(row[4] - known[row[1], row[2]]) / 1e6 for row in callbacks.tolist() if (row[1], row[2]) in known]
@@ -100,7 +112,8 @@ def compute_result(
     return NetworkResult(
         repetition=repetition, publishers=cell.publishers, fields=cell.fields, rate=cell.rate, variant=cell.variant,
         bytes=bytes, offered_mbit=round(8e-6 * bytes * cell.rate * cell.publishers, 3), published=published,
-        arrived=arrived, delivered=delivered, late=late, dropped_percent=share(published - delivered),
+        arrived=arrived, delivered=delivered, achieved_rate=round(report.rate, 3),
+        late_percent=round(report.late_percent, 3), dropped_percent=share(published - delivered),
         dropped_publisher_percent=share(published - arrived), dropped_subscriber_percent=share(arrived - delivered),
         latency_mean_ms=_shorten(latency.mean() if delivered else None), latency_p50_ms=_shorten(p50),
         latency_p95_ms=_shorten(p95), latency_p99_ms=_shorten(p99),
@@ -146,8 +159,8 @@ def compute_interval(values: Sequence[float], least: float | None = None, most: 
 
 
 class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
-    """A cell over its repetitions. latency: by the names of LATENCIES, in milliseconds; empty where nothing came. The
-    other three are percent of the messages published."""
+    """A cell over its repetitions. latency: by the names of LATENCIES, in milliseconds; empty where nothing came.
+    dropped and its two parts are percent of the messages published. achieved_rate: as in NetworkResult."""
 
     cell: NetworkCell
     repetitions: int
@@ -157,7 +170,7 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     dropped: Interval
     dropped_publisher: Interval
     dropped_subscriber: Interval
-    late_percent: float
+    achieved_rate: Interval
 
 
 def summarize(results: Iterable[NetworkResult]) -> list[CellSummary]:
@@ -178,8 +191,7 @@ def _summarize_cell(cell: NetworkCell, rows: list[NetworkResult]) -> CellSummary
         name: compute_interval([getattr(row, f"{name}_percent") for row in rows], 0, 100)
         for name in ("dropped", "dropped_publisher", "dropped_subscriber")
     }
-    late = 100 * sum(row.late for row in rows) / max(1, sum(row.published for row in rows))
     return CellSummary(
         cell=cell, repetitions=len(rows), bytes=rows[0].bytes, offered_mbit=rows[0].offered_mbit, latency=latency,
-        late_percent=round(late, 2), **drops,
+        achieved_rate=compute_interval([row.achieved_rate for row in rows]), **drops,
     )  # fmt: skip

@@ -25,6 +25,7 @@ from . import ros1
 from .bench import Bench, LocalPublishers, Messages
 from .clocks import ClockOffset, take_trips
 from .contents import make_synthetic_messages
+from .intervals import PublishReport
 from .namespaces import Site
 from .plan import NODES, SYNTHETIC, Conditions, NetworkCell, NetworkPlan, check_number, check_plan
 from .results import ResultsFile
@@ -158,7 +159,7 @@ class _Session:
             self._publishers.stop()
             self._publishers.start(self._check_cell(question.cell), _check_topic(question.topic))
         elif question.do == "publish":
-            return {"late": self._publishers.publish()}
+            return self._publishers.publish()._asdict()
         elif question.do == "stop":
             self._publishers.stop()
         else:
@@ -251,9 +252,10 @@ class RemotePublishers:
         """Starts the publishers of a cell. Raises UserError."""
         self._ask(Question("start", cell=cell, topic=topic))
 
-    def publish(self) -> int:
-        """Has them publish. Returns how many messages were late. Raises UserError."""
-        return int(self._ask(Question("publish"), _LONGEST)["late"])
+    def publish(self) -> PublishReport:
+        """Has them publish. Raises UserError."""
+        answer = self._ask(Question("publish"), _LONGEST)
+        return PublishReport(float(answer["rate"]), float(answer["late_percent"]))
 
     def stop(self) -> None:
         """Ends them."""
@@ -279,7 +281,7 @@ def run_subscriber(
     ros, missing = ros1.find_ros1(plan.conditions.nodes)
     if ros is None:
         raise UserError("the measurement needs\n  " + "\n  ".join(missing))
-    status, _, where = ros1.check_master(master).getParam("/rosimpact", PARAMETER)  # pyright: ignore[reportAssignmentType]
+    status, _, where = ros1.check_master(master).getParam("/rosimpact", PARAMETER)
     if status != 1 or not isinstance(where, str):
         raise UserError(f"--master {master}: no publishing side is there; start `rosimpact measure publisher` first")
     file = ResultsFile(output, make_header(plan.conditions, TWO_CLOCKS))

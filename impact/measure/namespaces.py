@@ -170,5 +170,3 @@ def _shape(name: str, device: str, link: int) -> None:
             f"the link cannot be limited to {format_link(link)}: {error}; load the kernel module sch_tbf, or give "
             "--link none"
         ) from None
-
-

@@ -33,9 +33,9 @@ class Conditions(msgspec.Struct, frozen=True, kw_only=True):
 
     nodes: roscpp, rospy or dds. network: namespaces, loopback or machines. link: bits per second, 0 without shaping.
     queue: length of the queues of publisher and subscriber. seconds: measured in each cell; warm_up: before it.
-    callback_ms: how long each callback of the subscriber takes. message: `package/Type`, or `synthetic`. kept: fields of
-    a real message that the pruned one has; keep: how many a synthetic one has. contents: SHA-256 of what real messages
-    are filled with, and of their definitions.
+    callback_ms: how long each callback of the subscriber takes. message: `package/Type`, or `synthetic`. kept: fields
+    of a real message that the pruned one has; keep: how many a synthetic one has. contents: SHA-256 of what real
+    messages are filled with, and of their definitions.
     """
 
     nodes: str = "roscpp"
@@ -154,5 +154,3 @@ def check_plan(plan: NetworkPlan) -> None:
             )
         if max(plan.fields) * conditions.field_bytes > _LARGEST:
             raise UserError(f"--fields, --field-bytes: a message of more than {_LARGEST:,} bytes; give smaller ones")
-    if conditions.callback_ms and conditions.nodes == "dds" and conditions.callback_ms < 0:
-        raise UserError("--callback-ms: has to be positive")

@@ -13,7 +13,7 @@ import xmlrpc.client
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ...edges.console import UserError
 from ...edges.files import read_file, write_file
@@ -54,8 +54,8 @@ class Ros1(NamedTuple):
         """What its programs are given: no setup.bash, and no ROS_DISTRO, with which catkin's files look elsewhere."""
         made = {
             **make_clean_environment(), "ROS_MASTER_URI": uri, "ROS_IP": address, "ROS_LOG_DIR": str(logs),
-            "ROS_ROOT": f"{self.prefix}/share/ros", "ROS_PACKAGE_PATH": f"{self.prefix}/share", "ROS_ETC_DIR": "/etc/ros",
-            "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "1", "OMP_NUM_THREADS": "1",
+            "ROS_ROOT": f"{self.prefix}/share/ros", "ROS_PACKAGE_PATH": f"{self.prefix}/share",
+            "ROS_ETC_DIR": "/etc/ros", "ROS_PYTHON_VERSION": "3", "ROS_VERSION": "1",
         }  # fmt: skip
         if self.prefix != Path("/usr"):
             made |= {
@@ -80,7 +80,7 @@ def _list_prefixes() -> list[Path]:
     """Where ROS 1 may be; the last one is that of Debian's packages."""
     opened = Path("/opt/ros")
     own = sorted(opened.iterdir()) if opened.is_dir() else []
-    return [*(each for each in own if (each / "lib/roscpp").exists() or (each / "bin/rosmaster").exists()), Path("/usr")]
+    return [*(each for each in own if (each / "bin/rosmaster").exists()), Path("/usr")]
 
 
 def prepare_nodes(ros: Ros1, nodes: str, schemas: Sequence[WireSchema]) -> list[Path]:
@@ -186,9 +186,7 @@ def open_master(ros: Ros1, site: Site, port: int, logs: Path) -> Iterator[str]:
         master.stop()
 
 
-_ASK = (
-    "import sys, xmlrpc.client as x; sys.exit(x.ServerProxy(sys.argv[1]).getPid('/rosimpact')[0] != 1)"
-)
+_ASK = "import sys, xmlrpc.client as x; sys.exit(x.ServerProxy(sys.argv[1]).getPid('/rosimpact')[0] != 1)"
 
 
 def _wait_for_master(site: Site, uri: str, master: Child) -> None:
@@ -203,7 +201,7 @@ def _wait_for_master(site: Site, uri: str, master: Child) -> None:
             time.sleep(0.2)
 
 
-def check_master(uri: str) -> xmlrpc.client.ServerProxy:
+def check_master(uri: str) -> Any:
     """The master at an address. Raises UserError where none answers."""
     try:
         master = xmlrpc.client.ServerProxy(uri)
@@ -211,5 +209,3 @@ def check_master(uri: str) -> xmlrpc.client.ServerProxy:
         return master
     except (OSError, xmlrpc.client.Error, ValueError) as error:
         raise UserError(f"--master {uri}: no ROS master answers ({error}); start one with `roscore` there") from None
-
-

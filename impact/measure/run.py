@@ -17,7 +17,7 @@ from ...edges.version import __version__
 from . import namespaces, ros1
 from .bench import Bench, LocalPublishers, LocalSubscriber, Messages, count_messages
 from .clocks import ClockOffset
-from .intervals import NetworkResult, compute_result
+from .intervals import NetworkResult, PublishReport, compute_result
 from .plan import FULL, PRUNED, SYNTHETIC, Conditions, NetworkCell, NetworkPlan
 from .results import ResultsFile, RunHeader
 
@@ -34,7 +34,7 @@ class Publishers(Protocol):
 
     def start(self, cell: NetworkCell, topic: str) -> None: ...
 
-    def publish(self) -> int: ...
+    def publish(self) -> PublishReport: ...
 
     def stop(self) -> None: ...
 
@@ -147,7 +147,7 @@ def _try_cell(
     subscriber = LocalSubscriber(bench, cell, topic)
     try:
         publishers.start(cell, topic)
-        late = publishers.publish()
+        report = publishers.publish()
         samples = subscriber.finish()
     finally:
         publishers.stop()
@@ -155,7 +155,7 @@ def _try_cell(
     _, window = count_messages(bench.conditions, cell.rate)
     size = bench.messages[cell.fields, cell.variant].bytes
     return compute_result(
-        samples, cell, repetition, window, bytes=size, late=late, offset=offset.nanoseconds,
+        samples, cell, repetition, window, report, bytes=size, offset=offset.nanoseconds,
         uncertainty=offset.uncertainty,
     )  # fmt: skip
 

@@ -15,6 +15,9 @@ _COLUMNS = (
     "dropped %", "publisher's queue", "subscriber's",
 )  # fmt: skip
 
+_KEPT_UP = 0.98
+"""The share of a rate below which it is said that publishers did not reach it."""
+
 
 def render_text(header: RunHeader, summaries: Sequence[CellSummary]) -> str:
     """The table of cells, and under which conditions they hold."""
@@ -55,14 +58,15 @@ def _describe_conditions(header: RunHeader, summaries: Iterable[CellSummary]) ->
             "loopback": "loopback, no limit", "machines": "two machines"}[conditions.network]  # fmt: skip
     repeated = sorted({each.repetitions for each in summaries})
     times = f"{repeated[0]} to {repeated[-1]}" if len(repeated) > 1 else str(*repeated or (0,))
-    late = max((each.late_percent for each in summaries), default=0)
     lines = [
         f"{conditions.nodes}, {link}, queues of {conditions.queue}, {conditions.seconds:g} s after "
         f"{conditions.warm_up:g} s of warm-up, repetitions: {times}; ± is the 95 % interval of Student's t over them",
         f"clock: {header.clock}",
     ]
-    if late >= 1:
-        lines.append(f"publishers could not keep up everywhere: up to {late:.0f} % of the messages of a cell were late")
+    lines += [
+        f"{each.cell.describe()}: published at {each.achieved_rate.mean:.1f} Hz, more the publisher could not"
+        for each in summaries if each.achieved_rate.mean < _KEPT_UP * each.cell.rate
+    ]  # fmt: skip
     return lines
 
 

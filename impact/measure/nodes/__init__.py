@@ -1,4 +1,4 @@
-"""The nodes that are run: publishers and subscribers of roscpp, rospy and DDS, which speak one protocol with the runner.
+"""The nodes that are run: publishers and subscribers of roscpp, rospy and DDS, with one protocol for the runner.
 
 A node prints lines that begin with `measure:`. A publisher prints `ready` once a subscriber is connected, waits for
 `start TIME` on its standard input, publishes on schedule and prints its report as JSON. A subscriber prints `ready`,

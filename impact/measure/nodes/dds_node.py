@@ -28,8 +28,9 @@ def main(arguments: list[str]) -> None:
     """Runs a node until the runner ends it."""
     loop = NodeLoop(arguments)
     schema = msgspec.json.decode(read_file(loop.options["schema"], _SCHEMA), type=WireSchema)
-    core, types = (importlib.import_module(f"cyclonedds.{name}") for name in ("core", "idl.types"))
-    domain, topics = (importlib.import_module(f"cyclonedds.{name}") for name in ("domain", "topic"))
+    core, types, domain, topics, util = (
+        importlib.import_module(f"cyclonedds.{name}") for name in ("core", "idl.types", "domain", "topic", "util")
+    )
     structs = _make_structs(schema, importlib.import_module("cyclonedds.idl"), types)
     participant = domain.DomainParticipant(loop.get_number("domain"))
     topic = topics.Topic(participant, loop.options["topic"].strip("/").replace("/", "_"), structs[ROOT])
@@ -37,7 +38,7 @@ def main(arguments: list[str]) -> None:
 
     def make_qos(length: int) -> Any:
         return core.Qos(
-            policy.Reliability.Reliable(core.duration(seconds=_BLOCKED)), policy.Durability.Volatile,
+            policy.Reliability.Reliable(util.duration(seconds=_BLOCKED)), policy.Durability.Volatile,
             policy.History.KeepLast(length),
         )  # fmt: skip
 
@@ -53,19 +54,19 @@ def main(arguments: list[str]) -> None:
         )
     else:
         reader = importlib.import_module("cyclonedds.sub").DataReader(participant, topic, make_qos(_HISTORY))
-        _subscribe(loop, reader, queue, core)
+        _subscribe(loop, participant, reader, queue, core, util)
 
 
-def _subscribe(loop: NodeLoop, reader: Any, length: int, core: Any) -> None:
+def _subscribe(loop: NodeLoop, participant: Any, reader: Any, length: int, core: Any, util: Any) -> None:
     waiting: deque[Any] = deque(maxlen=length)
     some = threading.Semaphore(0)
 
     def take_samples() -> None:
         condition = core.ReadCondition(reader, core.ViewState.Any | core.InstanceState.Any | core.SampleState.NotRead)
-        waits = core.WaitSet(reader.participant)
+        waits = core.WaitSet(participant)
         waits.attach(condition)
         while True:
-            waits.wait(core.duration(milliseconds=100))
+            waits.wait(util.duration(milliseconds=100))
             for sample in reader.take(N=_HISTORY):
                 if hasattr(sample, "number"):  # and no note that a writer is gone
                     loop.note_arrival(sample.publisher, sample.number, sample.sent)
@@ -89,8 +90,8 @@ def _make_structs(schema: WireSchema, idl: Any, types: Any) -> dict[str, Any]:
     """The messages as classes of cyclonedds, the sample included."""
     made: dict[str, Any] = {}
     moments = {
-        name: idl.make_idl_struct(f"Moment_{name}", f"rosimpact_measure.Moment_{name}", {"sec": first, "nanosec": second})
-        for name, first, second in (("time", types.uint32, types.uint32), ("duration", types.int32, types.int32))
+        name: idl.make_idl_struct(f"Moment_{name}", f"rosimpact_measure.Moment_{name}", {"sec": kind, "nanosec": kind})
+        for name, kind in (("time", types.uint32), ("duration", types.int32))
     }
 
     def find_type(name: str) -> Any:

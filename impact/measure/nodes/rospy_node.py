@@ -50,7 +50,7 @@ def _make_sample(sample, data, loop):
 
 def _tap_arrivals(loop):
     """Notes each message that is read from a connection, before rospy drops what is too much for the queue."""
-    module = importlib.import_module("rospy.msg")
+    module = importlib.import_module("rospy.impl.tcpros_base")
     original = module.deserialize_messages
 
     def deserialize(buffer, *further, **named):
@@ -66,7 +66,7 @@ def _tap_arrivals(loop):
         del data
         return original(buffer, *further, **named)
 
-    module.deserialize_messages = deserialize
+    vars(module)["deserialize_messages"] = deserialize
 
 
 if __name__ == "__main__":
