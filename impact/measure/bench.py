@@ -32,8 +32,8 @@ CLOCKS = {"monotonic": time.CLOCK_MONOTONIC, "realtime": time.CLOCK_REALTIME}
 
 
 class PreparedMessage(NamedTuple):
-    """A message as a cell sends it. contents: what it is filled with, in turn. bytes: of it on the wire, on average, with
-    the sample's head."""
+    """A message as a cell sends it. contents: what it is filled with, in turn. bytes: on the wire, on average, with the
+    sample's head."""
 
     schema: WireSchema
     contents: Sequence[bytes]

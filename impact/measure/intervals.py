@@ -186,7 +186,7 @@ def _summarize_cell(cell: NetworkCell, rows: list[NetworkResult]) -> CellSummary
     for name in LATENCIES:
         values = [value for row in rows if (value := getattr(row, f"latency_{name}_ms")) is not None]
         if values:
-            latency[name] = compute_interval(values)
+            latency[name] = compute_interval(values, 0)
     drops: Mapping[str, Interval] = {
         name: compute_interval([getattr(row, f"{name}_percent") for row in rows], 0, 100)
         for name in ("dropped", "dropped_publisher", "dropped_subscriber")

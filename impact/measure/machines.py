@@ -13,7 +13,6 @@ import socket
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
@@ -26,7 +25,7 @@ from .bench import Bench, LocalPublishers, Messages
 from .clocks import ClockOffset, take_trips
 from .contents import make_synthetic_messages
 from .intervals import PublishReport
-from .namespaces import Site
+from .namespaces import Site, open_work_folder
 from .plan import NODES, SYNTHETIC, Conditions, NetworkCell, NetworkPlan, check_number, check_plan
 from .results import ResultsFile
 from .run import Progress, list_left, make_header, measure_cell
@@ -80,7 +79,7 @@ def serve_publishers(
     if ros is None:
         raise UserError("the measurement needs\n  " + "\n  ".join(missing))
     with contextlib.ExitStack() as opened:
-        place = Path(opened.enter_context(TemporaryDirectory(prefix="rosimpact-measure-")))
+        place = opened.enter_context(open_work_folder())
         (place / "logs").mkdir()
         address = address or find_address(urlsplit(master).hostname or _DOCUMENTATION if master else _DOCUMENTATION)
         uri = master or f"http://{address}:{port}"
@@ -286,10 +285,10 @@ def run_subscriber(
         raise UserError(f"--master {master}: no publishing side is there; start `rosimpact measure publisher` first")
     file = ResultsFile(output, make_header(plan.conditions, TWO_CLOCKS))
     left = list_left(plan, file, progress)
-    with TemporaryDirectory(prefix="rosimpact-measure-") as folder:
+    with open_work_folder() as folder:
         progress("preparing nodes on both machines")
         address = address or find_address(urlsplit(master).hostname or "")
-        bench = Bench(plan.conditions, messages, Site((), address), Path(folder), clock="realtime", master=master)
+        bench = Bench(plan.conditions, messages, Site((), address), folder, clock="realtime", master=master)
         publishers = RemotePublishers(where, bench.read_clock)
         try:
             publishers.greet(plan)

@@ -1,9 +1,9 @@
 """Where the two sides of the experiment are: three network namespaces with shaped links between them, or one machine's
 loopback.
 
-A namespace is called rosimpact-PROCESS-START-ROLE, by the process that made it and the time that one started. Whoever
-comes next so knows which were left behind by a run that was killed, and removes them with all that still runs in them.
-Cables lie between namespaces and end with them.
+A namespace is called rosimpact-PROCESS-START-ROLE, by the process that made it and the time that one started, and so is
+the folder for temporary files. Whoever comes next so knows which were left behind by a run that was killed, and removes
+them with all that still runs in them. Cables lie between namespaces and end with them.
 """
 
 from __future__ import annotations
@@ -11,9 +11,12 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import shutil
 import signal
 import sys
+import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 from typing import NamedTuple
 
 from ...edges.console import UserError
@@ -22,7 +25,8 @@ from .children import find_program, hold_signals, run_program
 from .plan import format_link
 
 PREFIX = "rosimpact-"
-_NAME = re.compile(rf"{PREFIX}(\d+)-(\d+)-(publisher|router|subscriber)")
+_NAME = re.compile(rf"{PREFIX}(\d+)-(\d+)-(?:publisher|router|subscriber)")
+_WORK = re.compile(rf"{PREFIX}(\d+)-(\d+)-work-\w+")
 _ROLES = ("publisher", "router", "subscriber")
 _FOLDERS = ("/run/netns", "/var/run/netns")
 _CAPABILITIES = {"CAP_NET_ADMIN": 12, "CAP_SYS_ADMIN": 21}
@@ -69,10 +73,16 @@ def _list_lacking_capabilities() -> list[str]:
 
 
 def remove_leftovers() -> list[str]:
-    """Removes the namespaces of runs that are no more, with the processes in them. Returns their names."""
-    names = [name for name in list_namespaces() if not _is_alive(name)]
+    """Removes the namespaces and temporary folders of runs that are no more, with the processes in them. Returns their
+    names."""
+    names = [name for name in list_namespaces() if not _is_alive(_NAME, name)]
     for name in names:
         _remove_namespace(name)
+    folders = [path for path in Path(tempfile.gettempdir()).glob(f"{PREFIX}*") if _WORK.fullmatch(path.name)]
+    for folder in folders:
+        if not _is_alive(_WORK, folder.name) and folder.lstat().st_uid == os.geteuid():
+            shutil.rmtree(folder, ignore_errors=True)
+            names.append(folder.name)
     return names
 
 
@@ -85,8 +95,19 @@ def list_namespaces() -> list[str]:
     return sorted(found)
 
 
-def _is_alive(name: str) -> bool:
-    match = _NAME.fullmatch(name)
+@contextlib.contextmanager
+def open_work_folder() -> Iterator[Path]:
+    """A folder for temporary files, which is removed however it ends."""
+    with tempfile.TemporaryDirectory(prefix=f"{_make_owner()}-work-", ignore_cleanup_errors=True) as folder:
+        yield Path(folder)
+
+
+def _make_owner() -> str:
+    return f"{PREFIX}{os.getpid()}-{_read_start(os.getpid())}"
+
+
+def _is_alive(pattern: re.Pattern[str], name: str) -> bool:
+    match = pattern.fullmatch(name)
     return match is not None and _read_start(int(match[1])) == match[2]
 
 
@@ -114,7 +135,7 @@ def _remove_namespace(name: str) -> None:
 def open_namespaces(link: int) -> Iterator[Sites]:
     """Both sides in namespaces of their own, with a router between them and links of so many bits per second, 0 for no
     limit. They are removed however it ends. Raises UserError where they cannot be made."""
-    names = {role: f"{PREFIX}{os.getpid()}-{_read_start(os.getpid())}-{role}" for role in _ROLES}
+    names = {role: f"{_make_owner()}-{role}" for role in _ROLES}
     try:
         for name in names.values():
             _run_ip("netns", "add", name)

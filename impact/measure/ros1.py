@@ -12,7 +12,6 @@ import time
 import xmlrpc.client
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from ...edges.console import UserError
@@ -21,7 +20,7 @@ from ...edges.processes import count_cores
 from ..cache import cache_folder
 from .children import Child, find_program, make_clean_environment, run_program
 from .messages import PACKAGE, WireSchema
-from .namespaces import Site
+from .namespaces import Site, open_work_folder
 
 NODES = Path(__file__).with_name("nodes")
 PYTHON = "/usr/bin/python3"
@@ -91,8 +90,8 @@ def prepare_nodes(ros: Ros1, nodes: str, schemas: Sequence[WireSchema]) -> list[
         folder: schema for folder, schema in zip(folders, schemas, strict=True) if not (folder / "complete").exists()
     }
     if absent:
-        with TemporaryDirectory(prefix="rosimpact-measure-") as work:
-            (_build_programs if nodes == "roscpp" else _make_modules)(ros, absent, Path(work))
+        with open_work_folder() as work:
+            (_build_programs if nodes == "roscpp" else _make_modules)(ros, absent, work)
     return folders
 
 

@@ -8,7 +8,6 @@ import os
 import platform
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Protocol
 
 from ...edges.console import UserError, format_count
@@ -70,9 +69,8 @@ def run_network(plan: NetworkPlan, messages: Messages, output: Path, progress: P
     if not left:
         return file
     if removed := namespaces.remove_leftovers():
-        progress(f"removed {format_count(len(removed), 'network namespace')} that an earlier run left behind")
-    with TemporaryDirectory(prefix="rosimpact-measure-") as folder, contextlib.ExitStack() as opened:
-        place = Path(folder)
+        progress(f"removed what earlier runs left behind: {', '.join(removed)}")
+    with namespaces.open_work_folder() as place, contextlib.ExitStack() as opened:
         progress("preparing nodes")
         (place / "logs").mkdir()
         sites = _open_sites(plan.conditions, opened)
@@ -87,7 +85,7 @@ def list_left(plan: NetworkPlan, file: ResultsFile, progress: Progress) -> list[
     """What remains to be measured, which is told."""
     runs = list(plan.list_runs())
     left = [(repetition, cell) for repetition, cell in runs if not file.has(cell, repetition)]
-    done = f", {len(runs) - len(left)} are in {file.path} already" if len(left) < len(runs) else ""
+    done = f", {len(runs) - len(left)} of {len(runs)} are in {file.path} already" if len(left) < len(runs) else ""
     minutes = plan.estimate_seconds(len(left)) / 60
     progress(f"{format_count(len(left), 'run')} of a cell to measure, about {minutes:.1f} minutes{done}")
     return left
