@@ -42,6 +42,7 @@ def _group(name: str, help: str) -> typer.Typer:
 
 env_app = _group("env", "Machines: capture this machine as a target, compare two machines.")
 surface_app = _group("surface", "What versions of packages offer, and what changed between them.")
+msg_app = _group("msg", "Message definitions: write lighter ones.")
 data_app = _group("data", "The shipped distro data: show its date, rebuild it, update it.")
 app.add_typer(corpus_app, name="corpus")
 set_suggester(suggest_label)
@@ -395,6 +396,27 @@ def surface_build(
     quiet: _Quiet = False,
 ) -> None:
     """Write what the released versions of packages offer to a file. A stopped run continues the next time."""
+
+
+@_add_command(msg_app, "light")
+def msg_light(
+    file: Path = _make_argument("The definition, a .msg file.", default=...),
+    folders: list[Path] = _make_argument(
+        "Folders with the definitions of nested messages: a workspace, or the share folder of an installation. "
+        "Default: the folder around the package of FILE, and the sourced environment."
+    ),
+    keep: list[str] = _make_option(
+        "Fields to keep, such as header.stamp,pose.pose.position; of an array of messages, points.x keeps x of each "
+        "element. May be repeated or comma-separated.",
+        default=...,
+    ),
+    name: str = _make_option("Name of the lighter message; default: that of FILE with `Light` behind it.", default=""),
+    format: str = _make_option("text (the files themselves) or json.", "--format", "-f", default="text"),
+    output: Path | None = _make_option(
+        "Write a file for each definition to this folder; with json, the report to this file.", "--output", "-o"
+    ),
+) -> None:
+    """Write a lighter message definition that has only some of the fields; nested messages become lighter ones too."""
 
 
 @_add_command(data_app, "status")
