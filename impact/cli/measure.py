@@ -61,7 +61,7 @@ def measure_publisher(
         validate_choice("--nodes", nodes, ("roscpp", "rospy"))
         known = None
         if message:
-            messages = _make_messages(path, message, keep, length, bag)
+            messages = _make_messages(path, nodes, message, keep, length, bag)
             known = Given(message.replace("/msg/", "/"), messages, compute_digest(messages))
         serve_publishers(nodes, master, address, port, known, _make_progress(quiet))
         return 0
@@ -152,17 +152,21 @@ def _add_messages(plan: NetworkPlan, given: dict[str, Any]) -> tuple[NetworkPlan
         return plan, make_synthetic_messages(plan)
     if given["fields"]:
         raise UserError("--fields: is the size of synthetic messages; leave out --fields or --message")
-    messages = _make_messages(given["path"], given["message"], given["keep"], given["length"], given["bag"])
+    wanted = (given[name] for name in ("path", "nodes", "message", "keep", "length", "bag"))
+    messages = _make_messages(*wanted)
     kept = _split(given["keep"])
     conditions = add_contents(plan.conditions, given["message"], kept, messages)
     return msgspec.structs.replace(plan, conditions=conditions, fields=()), messages
 
 
-def _make_messages(path: Path, message: str, keep: str, lengths: Sequence[str], bag: Path | None) -> Messages:
-    from ..analysis.session import open_tree
+def _make_messages(
+    path: Path, nodes: str, message: str, keep: str, lengths: Sequence[str], bag: Path | None
+) -> Messages:  # fmt: skip
     from ..measure.contents import make_real_messages
 
-    found, notes = make_real_messages(message, _split(keep), open_tree(path, ""), _parse_lengths(lengths), bag)
+    found, notes = make_real_messages(
+        message, _split(keep), path, _parse_lengths(lengths), bag, 2 if nodes == "dds" else 1
+    )
     for note in notes:
         say(f"rosimpact: {message}: {note}")
     return found

@@ -20,7 +20,7 @@ from ...edges.files import write_file
 from . import ros1
 from .children import Child
 from .intervals import PublishReport, Window, read_samples
-from .messages import HEAD_BYTES, WireSchema
+from .messages import HEAD_BYTES, SentSchema
 from .namespaces import Site
 from .plan import TAIL, Conditions, NetworkCell
 
@@ -35,7 +35,7 @@ class PreparedMessage(NamedTuple):
     """A message as a cell sends it. contents: what it is filled with, in turn. bytes: on the wire, on average, with the
     sample's head."""
 
-    schema: WireSchema
+    schema: SentSchema
     contents: Sequence[bytes]
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -10,12 +11,13 @@ from pathlib import Path
 import msgspec
 
 from ...edges.console import UserError
-from ..facts import interface, manifest
+from ..analysis.message_files import MessageFolders
+from ..facts import interface
 from ..facts.interface import Interface
+from ..prune.light import lighten
 from ..targets.surface.store import load_shipped
-from ..tree.paths import Tree, TreeError
 from .bench import Messages, PreparedMessage
-from .messages import WireSchema, decode, encode, fill, list_lengths, make_schema, make_synthetic, prune_schema
+from .messages import SentSchema, decode, encode, fill, list_lengths, make_schema, make_synthetic
 from .plan import FULL, PRUNED, Conditions, NetworkPlan
 
 _FROM_BAG = 200
@@ -36,14 +38,15 @@ def make_synthetic_messages(plan: NetworkPlan) -> Messages:
 
 
 def make_real_messages(
-    type_: str, keep: Sequence[str], tree: Tree, lengths: Mapping[str, int], bag: Path | None
-) -> tuple[Messages, list[str]]:
-    """The message `package/Type`, whole and with some fields alone, and notes on how it is filled. tree: the workspace.
-    lengths: of arrays and texts by path. bag: whose messages are sent instead. Raises UserError."""
+    type_: str, keep: Sequence[str], path: Path, lengths: Mapping[str, int], bag: Path | None, ros: int
+) -> tuple[Messages, list[str]]:  # fmt: skip
+    """The message `package/Type`, whole and with some fields alone, and notes on how it is filled. path: the workspace.
+    lengths: of arrays and texts by path. bag: whose messages are sent instead. ros: the generation of the nodes. Raises
+    UserError."""
     if type_.replace("/msg/", "/").count("/") != 1:
         raise UserError(f"--message {type_}: write package/Type")
     type_ = type_.replace("/msg/", "/")
-    definitions = _Definitions(tree)
+    definitions = _Definitions(path, ros)
     schema = make_schema(type_, definitions.find)
     notes: list[str] = []
     if bag is not None:
@@ -51,30 +54,31 @@ def make_real_messages(
         notes.append(f"{len(values)} messages of {', '.join(topics)} are sent in turn")
     else:
         known = list(dict.fromkeys(list_lengths(schema)))
-        if wrong := [path for path in lengths if path not in known]:
+        if wrong := [each for each in lengths if each not in known]:
             can = f"can be given for {', '.join(known)}" if known else "are of no use: nothing in it varies in length"
             raise UserError(f"--length {wrong[0]}: `{type_}` has no such array or text; lengths {can}")
         _check_size(schema, lengths)
-        if empty := [path for path in known if path not in lengths]:
+        if empty := [each for each in known if each not in lengths]:
             notes.append(f"empty, since no --length is given: {', '.join(empty)}")
         values = [encode(schema, fill(schema, lengths))]
     made = {(0, FULL): PreparedMessage(schema, values)}
     if keep:
-        pruned = prune_schema(schema, keep)
+        pruned = make_schema(definitions.prune(type_, keep), definitions.find)
         made[0, PRUNED] = PreparedMessage(pruned, [encode(pruned, decode(schema, value)) for value in values])
     return made, notes
 
 
-def _check_size(schema: WireSchema, lengths: Mapping[str, int]) -> None:
+def _check_size(schema: SentSchema, lengths: Mapping[str, int]) -> None:
     """Raises UserError before a message is made that no machine can hold: lengths of nested arrays multiply."""
 
     def estimate(name: str, above: str) -> int:
         total = 0
         for field in schema.messages[name]:
             path = f"{above}{field.name}"
+            each = path if field.size < 0 else f"{path}[]"
             count = 1 if field.size < 0 else field.size or lengths.get(path, 0)
-            inner = estimate(field.type, f"{path}.") if field.type in schema.messages else 8
-            total += count * (lengths.get(path, 0) if field.type == "string" else inner)
+            inner = estimate(field.type, f"{each}.") if field.type in schema.messages else 8
+            total += count * (4 + lengths.get(each, 0) if field.type == "string" else inner)
         return total
 
     if (size := estimate(schema.name, "")) > _MOST:
@@ -100,53 +104,47 @@ def add_contents(conditions: Conditions, type_: str, keep: Sequence[str], messag
 
 
 class _Definitions:
-    """Definitions of messages: the workspace's, else those of the newest release that is stored, of ROS 1 where the
-    workspace's packages are built by catkin."""
+    """Definitions of messages: those of a workspace or the sourced environment, else those of the newest stored release.
+    ros: the generation of ROS whose releases come first."""
 
-    def __init__(self, tree: Tree):
-        self._tree = tree
-        try:
-            paths = [entry.path for entry in tree.list_entries()]
-        except TreeError as error:
-            raise UserError(str(error)) from None
-        self._manifests = {path.rpartition("/")[0] for path in paths if path.rpartition("/")[2] == "package.xml"}
-        self._files = [path for path in paths if path.endswith(".msg")]
-        self._names = {folder: self._read_name(folder) for folder in self._manifests}
-        self.ros = 1 if any(tool == "catkin" for _, tool in self._names.values()) else 2
+    def __init__(self, path: Path, ros: int):
+        self._folders, self._ros = MessageFolders((path,), os.environ), ros
+        self.added: dict[str, bytes] = {}
 
-    def _read_name(self, folder: str) -> tuple[str, str]:
-        try:
-            found = manifest.extract(self._tree.read(f"{folder}/package.xml" if folder else "package.xml"))
-        except OSError:
-            return "", ""
-        catkin = any(each.name == "catkin" for each in found.dependencies)
-        return found.name, "catkin" if catkin else ""
+    def read(self, type_: str) -> bytes | None:
+        """The text of a definition by `package/Name`; None where it is not known. Raises UserError."""
+        text = self.added.get(type_) or self._folders.find(type_)
+        if text is not None:
+            return text
+        package, _, name = type_.partition("/")
+        generations = (self._ros, 3 - self._ros)
+        return next((text for ros in generations if (text := _read_released(package, name, ros))), None)
 
     def find(self, type_: str) -> Interface | None:
-        """A definition by `package/Name`."""
-        package, _, name = type_.partition("/")
-        for path in self._files:
-            if path.rpartition("/")[2] == f"{name}.msg" and self._find_package(path) == package:
-                return interface.extract(self._tree.read(path), "msg")
-        generations = (self.ros, 3 - self.ros)
-        return next((found for ros in generations if (found := _find_released(package, name, ros))), None)
+        """The facts of a definition."""
+        text = self.read(type_)
+        return None if text is None else interface.extract(text, "msg")
 
-    def _find_package(self, path: str) -> str:
-        folder = path.rpartition("/")[0]
-        while folder and folder not in self._manifests:
-            folder = folder.rpartition("/")[0]
-        return self._names.get(folder, ("", ""))[0]
+    def prune(self, type_: str, keep: Sequence[str]) -> str:
+        """Makes the lighter form of a message, and gives its name. Raises UserError."""
+        made = lighten(self.read, type_, keep)
+        package = type_.partition("/")[0]
+        self.added |= {f"{package}/{name}": light.text for name, light in made.items()}
+        return f"{package}/{next(iter(made))}"
 
 
 @cache
-def _find_released(package: str, name: str, ros: int) -> Interface | None:
+def _read_released(package: str, name: str, ros: int) -> bytes | None:
     history = load_shipped().find_history(package, ros)
     if history is None or not history.versions:
         return None
-    return history.load_interfaces(history.versions[-1]).get(f"msg/{name}")
+    found = history.load_interfaces(history.versions[-1]).get(f"msg/{name}")
+    if found is None:
+        return None
+    return "".join(f"{each.type}{each.array} {each.name}\n" for each in found.sections[0].fields).encode()
 
 
-def _read_bag(bag: Path, type_: str, schema: WireSchema) -> tuple[list[bytes], list[str]]:
+def _read_bag(bag: Path, type_: str, schema: SentSchema) -> tuple[list[bytes], list[str]]:
     """The first messages of a type in a bag, as ROS 1 has them on the wire, and their topics. Raises UserError."""
     try:
         from rosbags.highlevel import AnyReader  # pyright: ignore[reportMissingImports]
@@ -175,7 +173,7 @@ def _read_bag(bag: Path, type_: str, schema: WireSchema) -> tuple[list[bytes], l
     return found, list(topics)
 
 
-def _check_contents(found: Iterable[bytes], bag: Path, type_: str, schema: WireSchema) -> None:
+def _check_contents(found: Iterable[bytes], bag: Path, type_: str, schema: SentSchema) -> None:
     for number, data in enumerate(found, 1):
         try:
             decode(schema, data)

@@ -35,7 +35,7 @@ _TEXT_BYTES = 4
 _DEPTH = 20
 
 
-class WireField(msgspec.Struct, frozen=True, array_like=True):
+class SentField(msgspec.Struct, frozen=True, array_like=True):
     """A field of a message. type: a primitive one of ROS 1, or the name of another message of the schema. size: -1 for
     one value, 0 for an array of any length, else the length of the array."""
 
@@ -44,13 +44,13 @@ class WireField(msgspec.Struct, frozen=True, array_like=True):
     size: int = -1
 
 
-class WireSchema(msgspec.Struct, frozen=True):
+class SentSchema(msgspec.Struct, frozen=True):
     """Messages by name; the one that is measured is called `name`."""
 
     name: str
-    messages: dict[str, tuple[WireField, ...]]
+    messages: dict[str, tuple[SentField, ...]]
 
-    def list_fields(self, name: str = "") -> tuple[WireField, ...]:
+    def list_fields(self, name: str = "") -> tuple[SentField, ...]:
         """The fields of a message, of the measured one by default."""
         return self.messages[name or self.name]
 
@@ -61,22 +61,22 @@ class WireSchema(msgspec.Struct, frozen=True):
         return texts
 
 
-def _render_fields(fields: Iterable[WireField]) -> str:
+def _render_fields(fields: Iterable[SentField]) -> str:
     brackets = {-1: "", 0: "[]"}
     return "".join(f"{each.type}{brackets.get(each.size, f'[{each.size}]')} {each.name}\n" for each in fields)
 
 
-def make_synthetic(fields: int) -> WireSchema:
+def make_synthetic(fields: int) -> SentSchema:
     """A message of so many strings."""
-    return WireSchema("Blob", {"Blob": tuple(WireField(f"field_{number:03}", "string") for number in range(fields))})
+    return SentSchema("Blob", {"Blob": tuple(SentField(f"field_{number:03}", "string") for number in range(fields))})
 
 
-def make_schema(type_: str, find: Callable[[str], Interface | None]) -> WireSchema:
+def make_schema(type_: str, find: Callable[[str], Interface | None]) -> SentSchema:
     """The schema of a message `package/Name`. find: the definition of such a name, None when it is not known. Raises
     UserError."""
-    messages: dict[str, tuple[WireField, ...]] = {}
+    messages: dict[str, tuple[SentField, ...]] = {}
     _add_message(type_, find, messages, (), type_)
-    return WireSchema(_flatten_name(type_), messages)
+    return SentSchema(_flatten_name(type_), messages)
 
 
 def _add_message(
@@ -88,7 +88,7 @@ def _add_message(
     if flat in messages:
         return
     if type_ in ("builtin_interfaces/Time", "builtin_interfaces/Duration"):
-        seconds = WireField("sec", "int32"), WireField("nanosec", "uint32")
+        seconds = SentField("sec", "int32"), SentField("nanosec", "uint32")
         messages[flat] = seconds
         return
     found = find(type_)
@@ -109,7 +109,7 @@ def _add_message(
             nested = make_full_name(plain, type_.partition("/")[0])
             _add_message(nested, find, messages, (*line, type_), asked)
             plain = _flatten_name(nested)
-        fields.append(WireField(field.name, plain, _parse_size(field.array)))
+        fields.append(SentField(field.name, plain, _parse_size(field.array)))
     messages[flat] = tuple(fields)
 
 
@@ -124,56 +124,7 @@ def _parse_size(array: str) -> int:
     return int(inside) if inside.isdigit() else 0
 
 
-def prune_schema(schema: WireSchema, keep: Iterable[str]) -> WireSchema:
-    """The message with these fields alone, in their old order. keep: names, or paths such as `pose.position`. Raises
-    UserError for one that is not there."""
-    wanted: dict[str, set[str]] = {}
-    for path in keep:
-        head, _, rest = path.partition(".")
-        wanted.setdefault(head, set()).add(rest)
-    messages = dict(schema.messages)
-    name = _prune_message(schema, schema.name, wanted, messages, "")
-    used = set(_list_used(messages, name))
-    return WireSchema(name, {each: fields for each, fields in messages.items() if each in used})
-
-
-def _prune_message(
-    schema: WireSchema, name: str, wanted: Mapping[str, set[str]], messages: dict[str, Any], above: str
-) -> str:
-    """Adds the pruned form of a message under a new name, which is returned."""
-    known = [field.name for field in schema.messages.get(name, ())]
-    missing = [each for each in wanted if each not in known]
-    if missing:
-        where = above.rstrip(".") or name.replace("__", "/")
-        there = ", ".join(known) if known else "none"
-        raise UserError(f"--keep: `{where}` has no field `{missing[0]}`; its fields are {there}")
-    fields = []
-    for field in schema.messages[name]:
-        if field.name not in wanted:
-            continue
-        inner = wanted[field.name]
-        if "" not in inner:
-            deeper: dict[str, set[str]] = {}
-            for path in inner:
-                head, _, rest = path.partition(".")
-                deeper.setdefault(head, set()).add(rest)
-            field = WireField(
-                field.name, _prune_message(schema, field.type, deeper, messages, f"{above}{field.name}."), field.size
-            )
-        fields.append(field)
-    pruned = f"{name}__pruned{len(messages)}"
-    messages[pruned] = tuple(fields)
-    return pruned
-
-
-def _list_used(messages: Mapping[str, tuple[WireField, ...]], name: str) -> Iterator[str]:
-    yield name
-    for field in messages[name]:
-        if field.type in messages:
-            yield from _list_used(messages, field.type)
-
-
-def encode(schema: WireSchema, value: Any, name: str = "") -> bytes:
+def encode(schema: SentSchema, value: Any, name: str = "") -> bytes:
     """The bytes of a message. value: a mapping, or an object with the fields as attributes; fields that a mapping lacks
     are zero or empty."""
     parts: list[bytes] = []
@@ -181,7 +132,7 @@ def encode(schema: WireSchema, value: Any, name: str = "") -> bytes:
     return b"".join(parts)
 
 
-def _encode_fields(schema: WireSchema, name: str, value: Any, parts: list[bytes]) -> None:
+def _encode_fields(schema: SentSchema, name: str, value: Any, parts: list[bytes]) -> None:
     for field in schema.messages[name]:
         inner = value.get(field.name) if isinstance(value, Mapping) else getattr(value, field.name, None)
         if field.size < 0:
@@ -196,7 +147,7 @@ def _encode_fields(schema: WireSchema, name: str, value: Any, parts: list[bytes]
         _encode_values(schema, field.type, values, parts)
 
 
-def _encode_values(schema: WireSchema, type_: str, values: Any, parts: list[bytes]) -> None:
+def _encode_values(schema: SentSchema, type_: str, values: Any, parts: list[bytes]) -> None:
     if type_ in _CODES:
         code = f"<{_CODES[type_]}" if _CODES[type_] != "?" else "?"
         if not isinstance(values, np.ndarray):
@@ -214,7 +165,7 @@ def _encode_values(schema: WireSchema, type_: str, values: Any, parts: list[byte
             _encode_fields(schema, type_, {} if value is None else value, parts)
 
 
-def decode(schema: WireSchema, data: bytes, name: str = "") -> dict[str, Any]:
+def decode(schema: SentSchema, data: bytes, name: str = "") -> dict[str, Any]:
     """The fields of a message from its bytes: numbers, texts as bytes, times as their bytes, arrays of numbers as numpy
     arrays, others as lists. Raises ValueError where the bytes are not those of such a message."""
     found, end = _decode_fields(schema, name or schema.name, data, 0)
@@ -223,7 +174,7 @@ def decode(schema: WireSchema, data: bytes, name: str = "") -> dict[str, Any]:
     return found
 
 
-def _decode_fields(schema: WireSchema, name: str, data: bytes, at: int) -> tuple[dict[str, Any], int]:
+def _decode_fields(schema: SentSchema, name: str, data: bytes, at: int) -> tuple[dict[str, Any], int]:
     found: dict[str, Any] = {}
     for field in schema.messages[name]:
         count = 1 if field.size < 0 else field.size
@@ -240,7 +191,7 @@ def _decode_count(data: bytes, at: int) -> tuple[int, int]:
     return struct.unpack_from("<I", data, at)[0], at + 4
 
 
-def _decode_values(schema: WireSchema, type_: str, count: int, data: bytes, at: int) -> tuple[Any, int]:
+def _decode_values(schema: SentSchema, type_: str, count: int, data: bytes, at: int) -> tuple[Any, int]:
     if type_ in _CODES:
         code = np.dtype(_CODES[type_]).newbyteorder("<")
         if at + count * code.itemsize > len(data):
@@ -268,31 +219,38 @@ class _Moment(msgspec.Struct, frozen=True):
     nanosec: int
 
 
-def fill(schema: WireSchema, lengths: Mapping[str, int] | int, name: str = "", above: str = "") -> dict[str, Any]:
-    """A value of a message: numbers are zero, texts and arrays have the lengths that are given by path (`ranges`,
-    `header.frame_id`), or one for all texts; others are empty. Paths within arrays hold for each of their items."""
+def fill(schema: SentSchema, lengths: Mapping[str, int] | int, name: str = "", above: str = "") -> dict[str, Any]:
+    """A value of a message: numbers are zero, texts and arrays have the lengths that are given by path, or one for all
+    texts; others are empty. Paths are those of list_lengths()."""
     found: dict[str, Any] = {}
     for field in schema.messages[name or schema.name]:
         path = f"{above}{field.name}"
-        length = lengths if isinstance(lengths, int) else lengths.get(path, 0)
+        each = path if field.size < 0 else f"{path}[]"
+        count = _get_length(lengths, path) if field.size == 0 else field.size
         if field.type in schema.messages:
-            inner = fill(schema, lengths, field.type, f"{path}.")
-            found[field.name] = inner if field.size < 0 else [inner] * (field.size or length)
+            inner = fill(schema, lengths, field.type, f"{each}.")
+            found[field.name] = inner if field.size < 0 else [inner] * count
         elif field.type == "string":
-            text = b"x" * length
-            found[field.name] = text if field.size < 0 else [text if field.size else b""] * (field.size or length)
-        elif field.size == 0 and field.type in _CODES:
-            found[field.name] = np.zeros(length, dtype=_CODES[field.type])
+            text = b"x" * (lengths if isinstance(lengths, int) else lengths.get(each, 0))
+            found[field.name] = text if field.size < 0 else [text] * count
         elif field.size == 0:
-            found[field.name] = [None] * length
+            found[field.name] = np.zeros(count, _CODES[field.type]) if field.type in _CODES else [None] * count
     return found
 
 
-def list_lengths(schema: WireSchema, name: str = "", above: str = "") -> Iterator[str]:
-    """The paths to which a length can be given: texts, and arrays of any length."""
+def _get_length(lengths: Mapping[str, int] | int, path: str) -> int:
+    return 0 if isinstance(lengths, int) else lengths.get(path, 0)
+
+
+def list_lengths(schema: SentSchema, name: str = "", above: str = "") -> Iterator[str]:
+    """The paths to which a length can be given: texts, and arrays of any length. `points[].name` is the text in each
+    element of an array, `names[]` each text of one."""
     for field in schema.messages[name or schema.name]:
         path = f"{above}{field.name}"
-        if field.size == 0 or field.type == "string":
+        each = path if field.size < 0 else f"{path}[]"
+        if field.size == 0:
             yield path
+        if field.type == "string":
+            yield each
         if field.type in schema.messages:
-            yield from list_lengths(schema, field.type, f"{path}.")
+            yield from list_lengths(schema, field.type, f"{each}.")

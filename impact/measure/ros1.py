@@ -19,7 +19,7 @@ from ...edges.files import read_file, write_file
 from ...edges.processes import count_cores
 from ..cache import cache_folder
 from .children import Child, find_program, make_clean_environment, run_program
-from .messages import PACKAGE, WireSchema
+from .messages import PACKAGE, SentSchema
 from .namespaces import Site, open_work_folder
 
 NODES = Path(__file__).with_name("nodes")
@@ -82,7 +82,7 @@ def _list_prefixes() -> list[Path]:
     return [*(each for each in own if (each / "bin/rosmaster").exists()), Path("/usr")]
 
 
-def prepare_nodes(ros: Ros1, nodes: str, schemas: Sequence[WireSchema]) -> list[Path]:
+def prepare_nodes(ros: Ros1, nodes: str, schemas: Sequence[SentSchema]) -> list[Path]:
     """A folder for each of the messages with its node: `node`, a program, or the package that rospy imports. Those that
     were made before are taken from the cache. Raises UserError, with the end of what the compiler said."""
     folders = [cache_folder() / "measure" / f"{nodes}-{_compute_key(ros, nodes, schema)}" for schema in schemas]
@@ -95,7 +95,7 @@ def prepare_nodes(ros: Ros1, nodes: str, schemas: Sequence[WireSchema]) -> list[
     return folders
 
 
-def _compute_key(ros: Ros1, nodes: str, schema: WireSchema) -> str:
+def _compute_key(ros: Ros1, nodes: str, schema: SentSchema) -> str:
     """Of all that a node is made of."""
     parts = [str(ros.prefix), sys.platform, *map("\n".join, sorted(schema.render_definitions().items()))]
     if nodes == "roscpp":
@@ -104,7 +104,7 @@ def _compute_key(ros: Ros1, nodes: str, schema: WireSchema) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
 
 
-def _build_programs(ros: Ros1, absent: Mapping[Path, WireSchema], work: Path) -> None:
+def _build_programs(ros: Ros1, absent: Mapping[Path, SentSchema], work: Path) -> None:
     environment = ros.make_environment()
     for name in ("node.cpp", "CMakeLists.txt"):
         write_file(work / name, read_file(NODES / name, _SOURCE))
@@ -117,7 +117,7 @@ def _build_programs(ros: Ros1, absent: Mapping[Path, WireSchema], work: Path) ->
         _keep(folder, {"node": build / folder.name})
 
 
-def _make_modules(ros: Ros1, absent: Mapping[Path, WireSchema], work: Path) -> None:
+def _make_modules(ros: Ros1, absent: Mapping[Path, SentSchema], work: Path) -> None:
     for folder, schema in absent.items():
         package = work / folder.name / PACKAGE
         _generate(ros, "genpy/genmsg_py.py", schema, package / "msg", work / "messages")
@@ -129,7 +129,7 @@ def _make_modules(ros: Ros1, absent: Mapping[Path, WireSchema], work: Path) -> N
         _keep(folder, {f"{PACKAGE}/{path.relative_to(package)}": path for path in package.rglob("*.py")})
 
 
-def _generate(ros: Ros1, generator: str, schema: WireSchema, output: Path, messages: Path) -> None:
+def _generate(ros: Ros1, generator: str, schema: SentSchema, output: Path, messages: Path) -> None:
     """Has ROS's own generator write the code of all messages of a schema to a folder."""
     messages = messages / output.parent.name
     texts = schema.render_definitions()

@@ -15,7 +15,7 @@ from typing import Any
 import msgspec
 
 from ....edges.files import read_file
-from ..messages import ROOT, WireSchema, decode
+from ..messages import ROOT, SentSchema, decode
 from .node_loop import NodeLoop, read_contents
 
 _SCHEMA = 1 << 24
@@ -27,7 +27,7 @@ _NAMES = {"bool": bool, "string": str}
 def main(arguments: list[str]) -> None:
     """Runs a node until the runner ends it."""
     loop = NodeLoop(arguments)
-    schema = msgspec.json.decode(read_file(loop.options["schema"], _SCHEMA), type=WireSchema)
+    schema = msgspec.json.decode(read_file(loop.options["schema"], _SCHEMA), type=SentSchema)
     core, types, domain, topics, util = (
         importlib.import_module(f"cyclonedds.{name}") for name in ("core", "idl.types", "domain", "topic", "util")
     )
@@ -86,7 +86,7 @@ def _subscribe(loop: NodeLoop, participant: Any, reader: Any, length: int, core:
     loop.finish()
 
 
-def _make_structs(schema: WireSchema, idl: Any, types: Any) -> dict[str, Any]:
+def _make_structs(schema: SentSchema, idl: Any, types: Any) -> dict[str, Any]:
     """The messages as classes of cyclonedds, the sample included."""
     made: dict[str, Any] = {}
     moments = {
@@ -115,7 +115,7 @@ def _make_structs(schema: WireSchema, idl: Any, types: Any) -> dict[str, Any]:
     return {**made, **moments, ROOT: idl.make_idl_struct(ROOT, f"rosimpact_measure.{ROOT}", head)}
 
 
-def _make_value(schema: WireSchema, name: str, value: dict[str, Any], structs: dict[str, Any], types: Any) -> Any:
+def _make_value(schema: SentSchema, name: str, value: dict[str, Any], structs: dict[str, Any], types: Any) -> Any:
     """A message that was decoded, as cyclonedds sends it."""
 
     def convert(type_: str, each: Any) -> Any:
