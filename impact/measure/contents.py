@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
@@ -104,7 +106,7 @@ def add_contents(conditions: Conditions, type_: str, keep: Sequence[str], messag
 
 
 class _Definitions:
-    """Definitions of messages: those of a workspace or the sourced environment, else those of the newest stored release.
+    """Definitions of messages: of a workspace or the sourced environment, else of the newest release that is stored.
     ros: the generation of ROS whose releases come first."""
 
     def __init__(self, path: Path, ros: int):
@@ -160,25 +162,26 @@ def _read_bag(bag: Path, type_: str, schema: SentSchema) -> tuple[list[bytes], l
             chosen = [each for each in reader.connections if each.msgtype in (type_, f"{package}/msg/{name}")]
             for connection, _, data in reader.messages(connections=chosen) if chosen else ():
                 topics[connection.topic] = None
-                if reader.is2:
-                    data = encode(schema, reader.deserialize(data, connection.msgtype))
-                found.append(bytes(data))
+                value = reader.deserialize(data, connection.msgtype)
+                _check_fields(schema, value, bag, type_)
+                found.append(encode(schema, value))
                 if len(found) >= _FROM_BAG or sum(map(len, found)) > _BYTES_FROM_BAG:
                     break
+    except UserError:
+        raise
     except Exception as error:  # whatever a damaged bag makes rosbags raise
         raise UserError(f"--bag {bag}: cannot be read: {' '.join(str(error).split())[:200]}") from None
     if not found:
         raise UserError(f"--bag {bag}: holds no message of the type {type_}; give another bag, or --length")
-    _check_contents(found, bag, type_, schema)
     return found, list(topics)
 
 
-def _check_contents(found: Iterable[bytes], bag: Path, type_: str, schema: SentSchema) -> None:
-    for number, data in enumerate(found, 1):
-        try:
-            decode(schema, data)
-        except (ValueError, OverflowError, MemoryError):
-            raise UserError(
-                f"--bag {bag}: message {number} of {type_} does not have the fields that the workspace defines; give a "
-                "bag that was recorded with this definition"
-            ) from None
+def _check_fields(schema: SentSchema, value: Any, bag: Path, type_: str) -> None:
+    """Raises UserError where a message was recorded with another definition."""
+    recorded = {field.name for field in dataclasses.fields(value)}
+    defined = {field.name for field in schema.list_fields()}
+    if different := sorted((recorded ^ defined) - {"seq"}):
+        raise UserError(
+            f"--bag {bag}: {type_} was recorded with another definition, `{different[0]}` is in one of them alone; "
+            "give a bag that was recorded with the definition of the workspace"
+        )

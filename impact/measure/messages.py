@@ -126,7 +126,7 @@ def _parse_size(array: str) -> int:
 
 def encode(schema: SentSchema, value: Any, name: str = "") -> bytes:
     """The bytes of a message. value: a mapping, or an object with the fields as attributes; fields that a mapping lacks
-    are zero or empty."""
+    are zero or empty. Raises AttributeError for one that an object lacks."""
     parts: list[bytes] = []
     _encode_fields(schema, name or schema.name, value, parts)
     return b"".join(parts)
@@ -134,7 +134,7 @@ def encode(schema: SentSchema, value: Any, name: str = "") -> bytes:
 
 def _encode_fields(schema: SentSchema, name: str, value: Any, parts: list[bytes]) -> None:
     for field in schema.messages[name]:
-        inner = value.get(field.name) if isinstance(value, Mapping) else getattr(value, field.name, None)
+        inner = value.get(field.name) if isinstance(value, Mapping) else _get_attribute(value, field.name)
         if field.size < 0:
             _encode_values(schema, field.type, (inner,), parts)
             continue
@@ -145,6 +145,11 @@ def _encode_fields(schema: SentSchema, name: str, value: Any, parts: list[bytes]
         elif count != field.size:
             values = [*values, *[None] * (field.size - count)][: field.size]
         _encode_values(schema, field.type, values, parts)
+
+
+def _get_attribute(value: Any, name: str) -> Any:
+    # Headers of ROS 1 have a number that those of ROS 2 have not.
+    return getattr(value, name, 0) if name == "seq" else getattr(value, name)
 
 
 def _encode_values(schema: SentSchema, type_: str, values: Any, parts: list[bytes]) -> None:
