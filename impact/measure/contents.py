@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
@@ -162,9 +160,8 @@ def _read_bag(bag: Path, type_: str, schema: SentSchema) -> tuple[list[bytes], l
             chosen = [each for each in reader.connections if each.msgtype in (type_, f"{package}/msg/{name}")]
             for connection, _, data in reader.messages(connections=chosen) if chosen else ():
                 topics[connection.topic] = None
-                value = reader.deserialize(data, connection.msgtype)
-                _check_fields(schema, value, bag, type_)
-                found.append(encode(schema, value))
+                _check_fields(schema, reader.typestore.fielddefs[connection.msgtype][1], bag, type_)
+                found.append(encode(schema, reader.deserialize(data, connection.msgtype)))
                 if len(found) >= _FROM_BAG or sum(map(len, found)) > _BYTES_FROM_BAG:
                     break
     except UserError:
@@ -176,9 +173,9 @@ def _read_bag(bag: Path, type_: str, schema: SentSchema) -> tuple[list[bytes], l
     return found, list(topics)
 
 
-def _check_fields(schema: SentSchema, value: Any, bag: Path, type_: str) -> None:
-    """Raises UserError where a message was recorded with another definition."""
-    recorded = {field.name for field in dataclasses.fields(value)}
+def _check_fields(schema: SentSchema, fields: Iterable[tuple[str, object]], bag: Path, type_: str) -> None:
+    """Raises UserError where a message was recorded with another definition, whose fields are given."""
+    recorded = {name for name, _ in fields}
     defined = {field.name for field in schema.list_fields()}
     if different := sorted((recorded ^ defined) - {"seq"}):
         raise UserError(
