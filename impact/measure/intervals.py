@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -30,7 +31,8 @@ class NetworkResult(msgspec.Struct, frozen=True, kw_only=True):
     published. achieved_rate: at which the slowest publisher published. late_percent: of all that was published, how
     much was more than a period behind schedule. latency: from the call that publishes to the callback, in
     milliseconds; none where nothing was delivered. waited_ms: how much of it, on the average, a message spent in the
-    subscriber's queue. clock_offset_ms, clock_uncertainty_ms: of two machines.
+    subscriber's queue. load: the machine's load average of a minute, behind the cell. clock_offset_ms,
+    clock_uncertainty_ms: of two machines.
     """
 
     repetition: int
@@ -54,6 +56,7 @@ class NetworkResult(msgspec.Struct, frozen=True, kw_only=True):
     latency_p99_ms: float | None
     latency_max_ms: float | None
     waited_ms: float | None
+    load: float = 0
     clock_offset_ms: float = 0
     clock_uncertainty_ms: float = 0
 
@@ -118,7 +121,8 @@ def compute_result(
         latency_mean_ms=_shorten(latency.mean() if delivered else None), latency_p50_ms=_shorten(p50),
         latency_p95_ms=_shorten(p95), latency_p99_ms=_shorten(p99),
         latency_max_ms=_shorten(latency.max() if delivered else None),
-        waited_ms=_shorten(sum(waits) / len(waits) if waits else None), clock_offset_ms=round(offset / 1e6, 4),
+        waited_ms=_shorten(sum(waits) / len(waits) if waits else None), load=round(os.getloadavg()[0], 2),
+        clock_offset_ms=round(offset / 1e6, 4),
         clock_uncertainty_ms=round(uncertainty / 1e6, 4),
     )  # fmt: skip
 
@@ -160,7 +164,8 @@ def compute_interval(values: Sequence[float], least: float | None = None, most: 
 
 class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     """A cell over its repetitions. latency: by the names of LATENCIES, in milliseconds; empty where nothing came.
-    dropped and its two parts are percent of the messages published. achieved_rate: as in NetworkResult."""
+    dropped and its two parts are percent of the messages published. achieved_rate: as in NetworkResult.
+    load: the highest of them."""
 
     cell: NetworkCell
     repetitions: int
@@ -171,6 +176,7 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     dropped_publisher: Interval
     dropped_subscriber: Interval
     achieved_rate: Interval
+    load: float
 
 
 def summarize(results: Iterable[NetworkResult]) -> list[CellSummary]:
@@ -193,5 +199,5 @@ def _summarize_cell(cell: NetworkCell, rows: list[NetworkResult]) -> CellSummary
     }
     return CellSummary(
         cell=cell, repetitions=len(rows), bytes=rows[0].bytes, offered_mbit=rows[0].offered_mbit, latency=latency,
-        achieved_rate=compute_interval([row.achieved_rate for row in rows]), **drops,
+        achieved_rate=compute_interval([row.achieved_rate for row in rows]), load=max(row.load for row in rows), **drops,
     )  # fmt: skip

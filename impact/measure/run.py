@@ -45,7 +45,9 @@ def check_needs(conditions: Conditions) -> None:
         from importlib.util import find_spec
 
         if find_spec("cyclonedds") is None:
-            missing.append("cyclonedds: pip install 'rosimpact[measure]'")
+            missing.append(
+                "cyclonedds: pip install cyclonedds (there are wheels for x86-64 Linux, Python 3.10 to 3.13)"
+            )
     else:
         missing += ros1.find_ros1(conditions.nodes)[1]
     if missing:

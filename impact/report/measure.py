@@ -63,6 +63,9 @@ def _describe_conditions(header: RunHeader, summaries: Iterable[CellSummary]) ->
         f"{conditions.warm_up:g} s of warm-up, repetitions: {times}; ± is the 95 % interval of Student's t over them",
         f"clock: {header.clock}",
     ]
+    load, cores = max((each.load for each in summaries), default=0), header.machine.get("cores", "0")
+    if load > float(cores) > 0:
+        lines.append(f"other work ran beside it: the load average reached {load:.0f} on {cores} cores")
     lines += [
         f"{each.cell.describe()}: published at {each.achieved_rate.mean:.1f} Hz, more the publisher could not"
         for each in summaries if each.achieved_rate.mean < _KEPT_UP * each.cell.rate
