@@ -56,13 +56,13 @@ def measure_publisher(
 
     def serve() -> int:
         from ..measure.contents import compute_digest
-        from ..measure.machines import Given, serve_publishers
+        from ..measure.machines import ServedMessage, serve_publishers
 
         validate_choice("--nodes", nodes, ("roscpp", "rospy"))
         known = None
         if message:
             messages = _make_messages(path, nodes, message, keep, length, bag)
-            known = Given(message.replace("/msg/", "/"), messages, compute_digest(messages))
+            known = ServedMessage(message.replace("/msg/", "/"), messages, compute_digest(messages))
         serve_publishers(nodes, master, address, port, known, _make_progress(quiet))
         return 0
 

@@ -21,7 +21,7 @@ from . import ros1
 from .children import Child
 from .intervals import PublishReport, Window, read_samples
 from .messages import HEAD_BYTES, SentSchema
-from .namespaces import Site
+from .namespaces import NetworkSite
 from .plan import TAIL, Conditions, NetworkCell
 
 _CONNECT = 40.0
@@ -54,7 +54,7 @@ class Bench:
     """
 
     def __init__(
-        self, conditions: Conditions, messages: Messages, site: Site, folder: Path, *, clock: str = "monotonic",
+        self, conditions: Conditions, messages: Messages, site: NetworkSite, folder: Path, *, clock: str = "monotonic",
         master: str = "", peers: Sequence[str] = (), address: str = "", domain: int = 0,
     ):  # fmt: skip
         self.conditions, self.messages, self.site, self.folder = conditions, messages, site, folder

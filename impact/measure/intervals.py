@@ -131,35 +131,35 @@ def _shorten(value: float | None) -> float | None:
     return None if value is None else round(float(value), 4)
 
 
-class Interval(msgspec.Struct, frozen=True):
+class MeanInterval(msgspec.Struct, frozen=True):
     """A mean over repetitions with its interval; low and high are none for less than two."""
 
     mean: float
     low: float | None = None
     high: float | None = None
 
-    def overlaps(self, other: Interval) -> bool:
+    def matches(self, other: MeanInterval) -> bool:
         """Whether both may be the same; False where one has no interval."""
         if self.low is None or self.high is None or other.low is None or other.high is None:
             return False
         return self.low <= other.high and other.low <= self.high
 
 
-def compute_interval(values: Sequence[float], least: float | None = None, most: float | None = None) -> Interval:
+def compute_interval(values: Sequence[float], least: float | None = None, most: float | None = None) -> MeanInterval:
     """The mean of repetitions and the interval of Student's t around it, within bounds that the quantity has. Raises
     ValueError without values."""
     if not values:
         raise ValueError("no values")
     mean = math.fsum(values) / len(values)
     if len(values) < 2:
-        return Interval(mean)
+        return MeanInterval(mean)
     from scipy.stats import t  # a tenth of a second
 
     deviation = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / (len(values) - 1))
     half = float(t.ppf(0.5 + CONFIDENCE / 2, len(values) - 1)) * deviation / math.sqrt(len(values))
     low = mean - half if least is None else max(least, mean - half)
     high = mean + half if most is None else min(most, mean + half)
-    return Interval(mean, low, high)
+    return MeanInterval(mean, low, high)
 
 
 class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
@@ -171,11 +171,11 @@ class CellSummary(msgspec.Struct, frozen=True, kw_only=True):
     repetitions: int
     bytes: int
     offered_mbit: float
-    latency: dict[str, Interval]
-    dropped: Interval
-    dropped_publisher: Interval
-    dropped_subscriber: Interval
-    achieved_rate: Interval
+    latency: dict[str, MeanInterval]
+    dropped: MeanInterval
+    dropped_publisher: MeanInterval
+    dropped_subscriber: MeanInterval
+    achieved_rate: MeanInterval
     load: float
 
 
@@ -193,11 +193,12 @@ def _summarize_cell(cell: NetworkCell, rows: list[NetworkResult]) -> CellSummary
         values = [value for row in rows if (value := getattr(row, f"latency_{name}_ms")) is not None]
         if values:
             latency[name] = compute_interval(values, 0)
-    drops: Mapping[str, Interval] = {
+    drops: Mapping[str, MeanInterval] = {
         name: compute_interval([getattr(row, f"{name}_percent") for row in rows], 0, 100)
         for name in ("dropped", "dropped_publisher", "dropped_subscriber")
     }
     return CellSummary(
         cell=cell, repetitions=len(rows), bytes=rows[0].bytes, offered_mbit=rows[0].offered_mbit, latency=latency,
-        achieved_rate=compute_interval([row.achieved_rate for row in rows]), load=max(row.load for row in rows), **drops,
+        achieved_rate=compute_interval([row.achieved_rate for row in rows]), load=max(row.load for row in rows),
+        **drops,
     )  # fmt: skip

@@ -25,7 +25,7 @@ from .bench import Bench, LocalPublishers, Messages
 from .clocks import ClockOffset, take_trips
 from .contents import make_synthetic_messages
 from .intervals import PublishReport
-from .namespaces import Site, open_work_folder
+from .namespaces import NetworkSite, open_work_folder
 from .plan import NODES, SYNTHETIC, Conditions, NetworkCell, NetworkPlan, check_number, check_plan
 from .results import ResultsFile
 from .run import Progress, list_left, make_header, measure_cell
@@ -52,7 +52,7 @@ class Question(msgspec.Struct, frozen=True):
     topic: str = ""
 
 
-class Given(NamedTuple):
+class ServedMessage(NamedTuple):
     """The real message that this side was given: its name, the fields that are kept, messages and their digest."""
 
     message: str
@@ -71,7 +71,7 @@ def find_address(towards: str = _DOCUMENTATION) -> str:
 
 
 def serve_publishers(
-    nodes: str, master: str, address: str, port: int, given: Given | None, progress: Progress
+    nodes: str, master: str, address: str, port: int, given: ServedMessage | None, progress: Progress
 ) -> None:  # fmt: skip
     """Serves subscribers until it is interrupted. master: empty to use the one on this machine's port, or to start one.
     given: the real message, none for synthetic ones. Raises UserError."""
@@ -83,9 +83,9 @@ def serve_publishers(
         (place / "logs").mkdir()
         address = address or find_address(urlsplit(master).hostname or _DOCUMENTATION if master else _DOCUMENTATION)
         uri = master or f"http://{address}:{port}"
-        if not master and not _answers(uri):
-            opened.enter_context(ros1.open_master(ros, Site((), address), port, place / "logs"))
-        server = opened.enter_context(_listen(address))
+        if not master and not _has_master(uri):
+            opened.enter_context(ros1.open_master(ros, NetworkSite((), address), port, place / "logs"))
+        server = opened.enter_context(_open_server(address))
         known = ros1.check_master(uri)
         where = f"{address}:{server.getsockname()[1]}"
         known.setParam("/rosimpact", PARAMETER, where)
@@ -99,7 +99,7 @@ def serve_publishers(
                 progress(f"{peer[0]} is done")
 
 
-def _answers(uri: str) -> bool:
+def _has_master(uri: str) -> bool:
     try:
         ros1.check_master(uri)
     except UserError:
@@ -107,7 +107,7 @@ def _answers(uri: str) -> bool:
     return True
 
 
-def _listen(address: str) -> socket.socket:
+def _open_server(address: str) -> socket.socket:
     try:
         return socket.create_server((address, 0))
     except OSError as error:
@@ -122,7 +122,9 @@ def _forget(uri: str) -> None:
 class _Session:
     """One subscriber that is connected."""
 
-    def __init__(self, connection: socket.socket, nodes: str, uri: str, address: str, place: Path, given: Given | None):
+    def __init__(
+        self, connection: socket.socket, nodes: str, uri: str, address: str, place: Path, given: ServedMessage | None
+    ):
         connection.settimeout(_LONGEST)
         self._connection, self._nodes, self._uri, self._address = connection, nodes, uri, address
         self._place, self._given = place, given
@@ -183,7 +185,7 @@ class _Session:
             messages = make_synthetic_messages(plan)
         folder = Path(tempfile.mkdtemp(dir=self._place))
         self._bench = Bench(
-            conditions, messages, Site((), self._address), folder, clock="realtime", master=self._uri,
+            conditions, messages, NetworkSite((), self._address), folder, clock="realtime", master=self._uri,
             address=self._address,
         )  # fmt: skip
         self._publishers = LocalPublishers(self._bench)
@@ -234,7 +236,7 @@ class RemotePublishers:
         self._lines.close()
         self._connection.close()
 
-    def greet(self, plan: NetworkPlan) -> None:
+    def prepare(self, plan: NetworkPlan) -> None:
         """Has the other side prepare its nodes, which may mean to compile them. Raises UserError."""
         self._ask(Question("hello", plan.conditions, plan.fields), 1_800)
 
@@ -288,10 +290,10 @@ def run_subscriber(
     with open_work_folder() as folder:
         progress("preparing nodes on both machines")
         address = address or find_address(urlsplit(master).hostname or "")
-        bench = Bench(plan.conditions, messages, Site((), address), folder, clock="realtime", master=master)
+        bench = Bench(plan.conditions, messages, NetworkSite((), address), folder, clock="realtime", master=master)
         publishers = RemotePublishers(where, bench.read_clock)
         try:
-            publishers.greet(plan)
+            publishers.prepare(plan)
             for number, (repetition, cell) in enumerate(left, 1):
                 progress(f"[{number}/{len(left)}] {cell.describe()}, repetition {repetition + 1}")
                 file.add(measure_cell(publishers, bench, cell, repetition, progress, publishers.read_offset))

@@ -36,21 +36,21 @@ _BURST, _BURST_SECONDS = 4_096, 50e-6
 _WAITING_MS = 50
 
 
-class Site(NamedTuple):
+class NetworkSite(NamedTuple):
     """One side: what a command begins with to be run there, and its address as the other side sees it."""
 
     prefix: tuple[str, ...]
     address: str
 
 
-class Sites(NamedTuple):
+class NetworkSites(NamedTuple):
     """Both sides. The master runs at the subscriber's."""
 
-    publisher: Site
-    subscriber: Site
+    publisher: NetworkSite
+    subscriber: NetworkSite
 
 
-LOOPBACK = Sites(Site((), "127.0.0.1"), Site((), "127.0.0.1"))
+LOOPBACK = NetworkSites(NetworkSite((), "127.0.0.1"), NetworkSite((), "127.0.0.1"))
 
 
 def find_missing() -> list[str]:
@@ -132,7 +132,7 @@ def _remove_namespace(name: str) -> None:
 
 
 @contextlib.contextmanager
-def open_namespaces(link: int) -> Iterator[Sites]:
+def open_namespaces(link: int) -> Iterator[NetworkSites]:
     """Both sides in namespaces of their own, with a router between them and links of so many bits per second, 0 for no
     limit. They are removed however it ends. Raises UserError where they cannot be made."""
     names = {role: f"{_make_owner()}-{role}" for role in _ROLES}
@@ -146,10 +146,10 @@ def open_namespaces(link: int) -> Iterator[Sites]:
         ])  # fmt: skip
         if link:
             for place, role in enumerate(("publisher", "subscriber"), 1):
-                _shape(names[role], "eth0", link)
-                _shape(names["router"], f"eth{place}", link)
-        yield Sites(*(
-            Site((find_program("ip"), "netns", "exec", names[role]), f"10.77.{place}.2")
+                _limit_link(names[role], "eth0", link)
+                _limit_link(names["router"], f"eth{place}", link)
+        yield NetworkSites(*(
+            NetworkSite((find_program("ip"), "netns", "exec", names[role]), f"10.77.{place}.2")
             for place, role in enumerate(("publisher", "subscriber"), 1)
         ))  # fmt: skip
     finally:
@@ -179,7 +179,7 @@ def _run_ip(*words: str) -> None:
         ) from None
 
 
-def _shape(name: str, device: str, link: int) -> None:
+def _limit_link(name: str, device: str, link: int) -> None:
     burst = max(_BURST, int(link / 8 * _BURST_SECONDS))
     try:
         run_program([

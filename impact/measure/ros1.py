@@ -20,7 +20,7 @@ from ...edges.processes import count_cores
 from ..cache import cache_folder
 from .children import Child, find_program, make_clean_environment, run_program
 from .messages import PACKAGE, SentSchema
-from .namespaces import Site, open_work_folder
+from .namespaces import NetworkSite, open_work_folder
 
 NODES = Path(__file__).with_name("nodes")
 PYTHON = "/usr/bin/python3"
@@ -172,7 +172,7 @@ def find_free_port() -> int:
 
 
 @contextlib.contextmanager
-def open_master(ros: Ros1, site: Site, port: int, logs: Path) -> Iterator[str]:
+def open_master(ros: Ros1, site: NetworkSite, port: int, logs: Path) -> Iterator[str]:
     """The address of a master that runs at a site until the end. Raises UserError where it does not come up."""
     uri = f"http://{site.address}:{port}"
     environment = ros.make_environment(uri, site.address, logs)
@@ -188,7 +188,7 @@ def open_master(ros: Ros1, site: Site, port: int, logs: Path) -> Iterator[str]:
 _ASK = "import sys, xmlrpc.client as x; sys.exit(x.ServerProxy(sys.argv[1]).getPid('/rosimpact')[0] != 1)"
 
 
-def _wait_for_master(site: Site, uri: str, master: Child) -> None:
+def _wait_for_master(site: NetworkSite, uri: str, master: Child) -> None:
     until = time.monotonic() + 30
     while True:
         try:

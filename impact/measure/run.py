@@ -93,14 +93,18 @@ def list_left(plan: NetworkPlan, file: ResultsFile, progress: Progress) -> list[
     return left
 
 
-def _open_sites(conditions: Conditions, opened: contextlib.ExitStack) -> namespaces.Sites:
+def _open_sites(conditions: Conditions, opened: contextlib.ExitStack) -> namespaces.NetworkSites:
     if conditions.network == "loopback":
         return namespaces.LOOPBACK
     return opened.enter_context(namespaces.open_namespaces(conditions.link))
 
 
 def _open_benches(
-    conditions: Conditions, messages: Messages, sites: namespaces.Sites, place: Path, opened: contextlib.ExitStack
+    conditions: Conditions,
+    messages: Messages,
+    sites: namespaces.NetworkSites,
+    place: Path,
+    opened: contextlib.ExitStack,
 ) -> tuple[Bench, Bench]:
     """Both sides, with a master where they need one."""
     master = ""
@@ -127,7 +131,7 @@ def measure_cell(
     clock is ahead of that of the publishers. Raises UserError."""
     for attempt in range(1, _TRIES + 1):
         try:
-            return _try_cell(publishers, bench, cell, repetition, read_offset, attempt)
+            return _run_cell(publishers, bench, cell, repetition, read_offset, attempt)
         except UserError as error:
             if attempt == _TRIES:
                 raise UserError(
@@ -137,7 +141,7 @@ def measure_cell(
     raise AssertionError
 
 
-def _try_cell(
+def _run_cell(
     publishers: Publishers, bench: Bench, cell: NetworkCell, repetition: int,
     read_offset: Callable[[], ClockOffset], attempt: int,
 ) -> NetworkResult:  # fmt: skip

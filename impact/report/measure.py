@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
-from ..measure.intervals import CellSummary, Interval
+from ..measure.intervals import CellSummary, MeanInterval
 from ..measure.plan import SYNTHETIC, format_link
 from ..measure.results import RunHeader
 
@@ -42,7 +42,7 @@ def _render_row(header: RunHeader, summary: CellSummary) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def _format_interval(value: Interval | None, digits: int) -> str:
+def _format_interval(value: MeanInterval | None, digits: int) -> str:
     """`8.41 ±0.02`, by the larger side of the interval; `-` where nothing was delivered."""
     if value is None:
         return "-"

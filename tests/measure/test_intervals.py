@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from rosimpact.edges.console import UserError
 from rosimpact.impact.measure.clocks import RoundTrip, estimate_offset, take_trips
 from rosimpact.impact.measure.intervals import (
-    Interval,
+    MeanInterval,
     PublishReport,
     Window,
     compute_interval,
@@ -68,7 +68,7 @@ def test_nothing_arrived():
     found = compute(records(), Window(0, 10))
     assert (found.dropped_percent, found.dropped_publisher_percent, found.latency_mean_ms) == (100, 100, None)
     (summary,) = summarize([found])
-    assert (summary.latency, summary.dropped) == ({}, Interval(100))
+    assert (summary.latency, summary.dropped) == ({}, MeanInterval(100))
 
 
 def test_the_offset_of_another_clock_is_taken_off():
@@ -94,8 +94,8 @@ def test_student_by_hand():
     found = compute_interval([1, 2, 3])
     assert found.mean == 2
     assert found.high is not None and found.high - 2 == pytest.approx(4.30265 / math.sqrt(3), abs=1e-4)
-    assert compute_interval([1, 2, 3], 0, 4) == Interval(2, 0, 4)
-    assert compute_interval([5]) == Interval(5)
+    assert compute_interval([1, 2, 3], 0, 4) == MeanInterval(2, 0, 4)
+    assert compute_interval([5]) == MeanInterval(5)
     with pytest.raises(ValueError, match="no values"):
         compute_interval([])
 
@@ -110,13 +110,13 @@ def test_an_interval_holds_its_mean(values):
 @pytest.mark.parametrize(
     ("one", "other", "same"),
     [
-        (Interval(1, 0, 2), Interval(3, 2, 4), True),
-        (Interval(1, 0, 2), Interval(4, 3, 5), False),
-        (Interval(1), Interval(1, 0, 2), False),
+        (MeanInterval(1, 0, 2), MeanInterval(3, 2, 4), True),
+        (MeanInterval(1, 0, 2), MeanInterval(4, 3, 5), False),
+        (MeanInterval(1), MeanInterval(1, 0, 2), False),
     ],
 )
 def test_intervals_that_overlap(one, other, same):
-    assert (one.overlaps(other), other.overlaps(one)) == (same, same)
+    assert (one.matches(other), other.matches(one)) == (same, same)
 
 
 def test_the_shortest_way_tells_the_offset():

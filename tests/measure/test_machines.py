@@ -105,7 +105,7 @@ def test_what_is_refused_afterwards(asked, more, said):
 
 
 def test_both_sides_need_the_same_message(asked):
-    given = machines.Given("own_msgs/A", {}, "digest")
+    given = machines.ServedMessage("own_msgs/A", {}, "digest")
     conditions = {"message": "own_msgs/A", "contents": "another"}
     (answer,), _ = asked({"do": "hello", "conditions": conditions}, given=given)
     assert "the same workspace" in answer["error"]

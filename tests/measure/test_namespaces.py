@@ -117,7 +117,7 @@ def test_a_folder_for_temporary_files_goes_with_its_run(tmp_path, monkeypatch):
     gone = tmp_path / "rosimpact-1-0-work-abc"
     (gone / "logs").mkdir(parents=True)
     (tmp_path / "rosimpact-report").mkdir()
-    monkeypatch.setattr(namespaces, "list_namespaces", lambda: [])
+    monkeypatch.setattr(namespaces, "list_namespaces", list)
     assert remove_leftovers() == [gone.name]
     assert [path.name for path in tmp_path.iterdir()] == ["rosimpact-report"]
 

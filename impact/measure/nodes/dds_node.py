@@ -54,10 +54,10 @@ def main(arguments: list[str]) -> None:
         )
     else:
         reader = importlib.import_module("cyclonedds.sub").DataReader(participant, topic, make_qos(_HISTORY))
-        _subscribe(loop, participant, reader, queue, core, util)
+        _run_subscriber(loop, participant, reader, queue, core, util)
 
 
-def _subscribe(loop: NodeLoop, participant: Any, reader: Any, length: int, core: Any, util: Any) -> None:
+def _run_subscriber(loop: NodeLoop, participant: Any, reader: Any, length: int, core: Any, util: Any) -> None:
     waiting: deque[Any] = deque(maxlen=length)
     some = threading.Semaphore(0)
 

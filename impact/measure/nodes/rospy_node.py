@@ -32,7 +32,7 @@ def main(arguments):
 
         loop.publish(lambda: publisher.get_num_connections() > 0, send)
     else:
-        _tap_arrivals(loop)
+        _note_arrivals(loop)
         rospy.init_node("measure", anonymous=True, disable_signals=True, disable_rosout=True)
         rospy.Subscriber(
             topic, sample, lambda message: loop.note_callback(message.publisher, message.number, message.sent),
@@ -48,12 +48,12 @@ def _make_sample(sample, data, loop):
     return message
 
 
-def _tap_arrivals(loop):
+def _note_arrivals(loop):
     """Notes each message that is read from a connection, before rospy drops what is too much for the queue."""
     module = importlib.import_module("rospy.impl.tcpros_base")
     original = module.deserialize_messages
 
-    def deserialize(buffer, *further, **named):
+    def read_messages(buffer, *further, **named):
         data, at = buffer.getbuffer(), 0
         end = buffer.tell()
         while at + 4 <= end:
@@ -66,7 +66,7 @@ def _tap_arrivals(loop):
         del data
         return original(buffer, *further, **named)
 
-    vars(module)["deserialize_messages"] = deserialize
+    vars(module)["deserialize_messages"] = read_messages
 
 
 if __name__ == "__main__":
