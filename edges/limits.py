@@ -50,6 +50,7 @@ class Limits:
     object: int = 16 * MB
     report: int = 512 * MB
     row: int = 512 * MB
+    bag: int = 2 * GB  # of memory that reading a recording may need beyond what the process has
     entries: int = 2_000_000  # files and folders of one tree
     depth: int = 200  # folders, or nested nodes of a document
     nodes: int = 200_000  # of one YAML document, aliases expanded
@@ -59,7 +60,7 @@ class Limits:
 
 
 # What decides whether something is read at all, and not what is found in it.
-_OF_THE_RUN = frozenset(("baseline", "capture", "listing", "index", "row", "entries", "seconds", "memory"))
+_OF_THE_RUN = frozenset(("baseline", "bag", "capture", "listing", "index", "row", "entries", "seconds", "memory"))
 
 _UNITS = {"": 1, "k": KB, "kb": KB, "m": MB, "mb": MB, "g": GB, "gb": GB}
 

@@ -355,17 +355,39 @@ def _be_silent() -> None:
 def _limit_memory() -> None:
     import resource
 
+    _allow_further(get_limits().memory)
+    with contextlib.suppress(OSError, ValueError):
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+@contextlib.contextmanager
+def limit_memory(size: int) -> Iterator[None]:
+    """Lets this process need so many bytes more than it has, where the system can tell; a MemoryError, or what a
+    library makes of it, comes of more."""
+    import resource
+
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    if before[0] < 0:
+        _allow_further(size)
+    try:
+        yield
+    finally:
+        with contextlib.suppress(OSError, ValueError):
+            resource.setrlimit(resource.RLIMIT_AS, before)
+
+
+def _allow_further(size: int) -> None:
+    import resource
+
     try:
         with open("/proc/self/statm", "rb") as file:
-            size = int(file.read(200).split()[0]) * os.sysconf("SC_PAGESIZE")
+            has = int(file.read(200).split()[0]) * os.sysconf("SC_PAGESIZE")
     except (OSError, ValueError):
         return
     _, most = resource.getrlimit(resource.RLIMIT_AS)
-    wanted = size + get_limits().memory
+    wanted = has + size
     with contextlib.suppress(OSError, ValueError):
         resource.setrlimit(resource.RLIMIT_AS, (wanted if most < 0 else min(wanted, most), most))
-    with contextlib.suppress(OSError, ValueError):
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def _send(descriptor: int, thing: Any) -> None:

@@ -36,7 +36,8 @@ class SystemSetting(NamedTuple):
 
 class Config(NamedTuple):
     """What a rosimpact.toml says. path is None when there is none. trusted: the user named the file, and so it may name
-    files outside of the workspace whose content is shown. talks: targets whose nodes talk to each other."""
+    files outside of the workspace whose content is shown. talks: targets whose nodes talk to each other. closed_topics:
+    topics that nobody outside of the workspace subscribes to."""
 
     path: Path | None = None
     targets: dict[str, dict[str, Any]] = {}  # noqa: RUF012
@@ -54,10 +55,11 @@ class Config(NamedTuple):
     installed: tuple[str, ...] = ()
     talks: tuple[str, ...] = ()
     systems: dict[str, SystemSetting] = {}  # noqa: RUF012
+    closed_topics: tuple[str, ...] = ()
     trusted: bool = False
 
 
-_TABLES = {"targets", "workspace", "check", "paths", "system", "systems"}
+_TABLES = {"fields", "targets", "workspace", "check", "paths", "system", "systems"}
 _FAIL_ON = ("error", "warning", "note", "never")
 
 
@@ -124,6 +126,8 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
     _check_keys(path, "workspace", workspace, {"underlays", "repos", "rosdep_sources", "index", "private", "installed"})
     _check_keys(path, "check", check, {"targets", "select", "ignore", "severity", "fail_on"})
     _check_keys(path, "system", system, {"talks"})
+    fields = _read_table(path, tables, "fields")
+    _check_keys(path, "fields", fields, {"closed"})
     fail_on = _parse_string(path, check, "fail_on")
     if fail_on not in ("", *_FAIL_ON):
         raise ConfigError(
@@ -146,6 +150,7 @@ def parse(data: bytes, path: Path, *, trusted: bool = False) -> Config:
         installed=_read_list(path, workspace, "installed"),
         talks=_read_list(path, system, "talks"),
         systems={name: _read_system(path, name, entry) for name, entry in _read_table(path, tables, "systems").items()},
+        closed_topics=_read_list(path, fields, "closed"),
         trusted=trusted,
     )
 

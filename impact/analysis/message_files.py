@@ -78,6 +78,35 @@ class MessageFolders:
         return self._packages[number, folder]
 
 
+class ReleasedMessages:
+    """The messages of released packages: of the sourced environment, else as rosbags has them, where that is there.
+    ros: the generation."""
+
+    def __init__(self, ros: int):
+        self._ros = ros
+        self._folders = MessageFolders((), os.environ)
+        self._known: dict[str, bytes | None] = {}
+
+    def find(self, full_name: str) -> bytes | None:
+        """The text of the message `package/Name`, None where it is not known."""
+        if full_name not in self._known:
+            self._known[full_name] = self._folders.find(full_name) or self._write(full_name)
+        return self._known[full_name]
+
+    def _write(self, full_name: str) -> bytes | None:
+        try:
+            from rosbags.typesys import Stores, get_typestore  # pyright: ignore[reportMissingImports]
+        except ImportError:
+            return None
+        store = get_typestore(Stores.ROS1_NOETIC if self._ros == 1 else Stores.LATEST)
+        package, _, name = full_name.partition("/")
+        key = f"{package}/msg/{name}"
+        if key not in store.fielddefs:
+            return None
+        text = store.generate_msgdef(key, ros_version=self._ros)[0]
+        return text.partition("=" * 80)[0].encode()
+
+
 def _read_safely(tree: Tree, path: str) -> bytes:
     try:
         return tree.read(path, get_limits().interface)

@@ -321,6 +321,69 @@ def logic(
 
 
 @_add_command(app)
+def fields(
+    path: Path | None = _make_argument(
+        "Workspace; default: the current folder. With --bag, its message definitions are used where the bag has none.",
+        show_default=False,
+    ),
+    bag: Path | None = _make_option(
+        "Read this recording: a .bag file of ROS 1; a folder, .mcap or .db3 file of ROS 2. Needs `rosimpact[bags]`."
+    ),
+    topic: list[str] = _make_option("Only this topic; `*` matches any text. May be repeated or comma-separated."),
+    limit: int | None = _make_option("With --bag: only so many messages, the first ones.", min=1),
+    assume_closed: list[str] = _make_option(
+        "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
+    ),
+    rev: _Revision = "",
+    config: _Config = None,
+    follow_links: _FollowLinks = False,
+    format: str = _make_option("text or json.", "--format", "-f", default="text"),
+    output: _Output = None,
+    all: bool = _make_option("Name every field with its place, and every reason.", "--all", default=False),
+    jobs: _Jobs = None,
+    quiet: _Quiet = False,
+) -> None:
+    """Show which fields of each topic its subscribers read and its publishers set, by reading the sources; with --bag,
+    the size and rate of the messages of a recording instead, and what each field takes of it."""
+
+
+@_add_command(app)
+def prune(
+    path: _Workspace = Path("."),
+    topic: list[str] = _make_option("Only this topic. May be repeated."),
+    assume_closed: list[str] = _make_option(
+        "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
+    ),
+    apply: bool = _make_option("Write the changes to the workspace.", "--apply", default=False),
+    out: Path | None = _make_option("Write a changed copy of the workspace to this folder."),
+    undo: bool = _make_option("Take back what --apply wrote.", "--undo", default=False),
+    verify: bool = _make_option(
+        "Build the workspace as it is and pruned, and with --run compare what both do (ROS 1 with catkin).",
+        "--verify",
+        default=False,
+    ),
+    run: list[str] = _make_option(
+        "With --verify: start this, 'PACKAGE/PROGRAM ARGUMENTS' or a command of the shell such as 'rosbag play a.bag' "
+        "or 'roslaunch a.launch'. May be repeated."
+    ),
+    seconds: float = _make_option("With --verify: how long both run.", default=10.0, min=1.0),
+    keep_builds: Path | None = _make_option("With --verify: a folder for both versions.", "--keep-builds"),
+    length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
+    config: _Config = None,
+    follow_links: _FollowLinks = False,
+    format: str = _make_option("One of text, json, patch.", "--format", "-f", default="text"),
+    output: _Output = None,
+    all: bool = _make_option("Name every field that is dropped.", "--all", default=False),
+    jobs: _Jobs = None,
+    quiet: _Quiet = False,
+) -> None:
+    """Give topics lighter messages, without the fields that nobody reads: show the plan, or write it.
+
+    Exit status: 0 done, 1 with --verify where both versions differ, 2 the tool failed.
+    """
+
+
+@_add_command(app)
 def explain(
     rule: str | None = _make_argument("Name of a rule, group or family; default: list all rules."),
 ) -> None:

@@ -42,6 +42,8 @@ _READ_BY: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ("", "", ("script", "flow_script")),
     ("cpp.flow", "FlowFile", ("flow_cpp",)),
     ("python.flow", "FlowFile", ("flow_python",)),
+    ("cpp.field_uses", "FieldFile", ("fields_cpp",)),
+    ("python.field_uses", "FieldFile", ("fields_python",)),
     ("launch.flow", "LaunchFile", ("flow_launch_xml", "flow_launch_yaml", "flow_launch_python")),
     ("launch.parameter_files", "ParameterFile", ("flow_parameters",)),
     ("nodl", "NodlFile", ("flow_nodl",)),

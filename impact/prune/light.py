@@ -46,20 +46,21 @@ class _Written(NamedTuple):
 
 def lighten(
     find_definition: FindDefinition, origin: str, keep: Iterable[str], name: str = "",
-    taken: Mapping[str, bytes] | None = None,
+    taken: Mapping[str, bytes] | None = None, package: str = "",
 ) -> dict[str, LightDefinition]:  # fmt: skip
     """The lighter definition of a message by its new name, followed by those of the messages nested in it that are kept
-    in part. All belong into the package of the message.
+    in part. All belong into the package of the message, or another.
 
     origin: `package/Name`. keep: paths of fields, such as `pose.position.x`; of an array of messages, `points.x` (or
     `points[].x`) keeps x of each element. name: of the lighter message, `NameLight` by default. taken: texts of the
-    package's other messages by their names: none is replaced by something else.
+    package's other messages by their names: none is replaced by something else. package: that they belong into.
 
     Fields stay in order. Constants, comments and blank lines stay as they are written, but for the comment right above
     a field that is dropped and that behind it. Only the type of a field that gets another one is written anew.
     Raises LightenError.
     """
-    package, _, old_name = origin.rpartition("/")
+    home, _, old_name = origin.rpartition("/")
+    package = package or home
     if name and not _NAME.fullmatch(name):
         raise LightenError(f"--name {escape(name)}: is no name of a message; write one such as {old_name}Light")
     kept = _parse_paths(keep)
@@ -68,7 +69,8 @@ def lighten(
     maker = _Maker(find_definition, package, name or f"{old_name}Light", taken or {})
     lines, fields, dropped = maker.rewrite(origin, maker.reduce(origin, kept, ""), package)
     own = LightDefinition(origin, lines, fields, dropped)
-    if maker.taken.get(maker.name.lower()) not in (None, own.text) and maker.name != old_name:
+    replaced = home == package and maker.name == old_name
+    if maker.taken.get(maker.name.lower()) not in (None, own.text) and not replaced:
         raise LightenError(f"{maker.name}: there is another message of this name; choose one with --name")
     return {maker.name: own, **maker.made}
 

@@ -295,6 +295,10 @@ class FlowCode:
         seen = self._seen_files.list_seen(source.path) if found else ()
         return [alias for path, alias in found if path in seen]
 
+    def includes(self, path: str, other: str) -> bool:
+        """Whether a file in C++ includes another, or is it."""
+        return other in self._seen_files.list_seen(path)
+
     @cached_property
     def _seen_files(self) -> SeenFiles:
         return SeenFiles(self.sources)

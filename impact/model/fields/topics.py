@@ -1,0 +1,255 @@
+"""The fields of every topic of a workspace: the graph joined with what callbacks read and publishers set."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+
+import msgspec
+
+from ....edges.groups import group_pairs
+from ....edges.memory import cache_in_derived
+from ...facts.extract import ExtractedFacts, extract_all
+from ...facts.field_uses import FieldFile
+from ...facts.store import Store, recall
+from ..flow.code import Fn, Variable
+from ..flow.definitions import describe_interfaces
+from ..flow.endpoints import Site, Statement
+from ..flow.graph import Endpoint, Graph, Publish
+from ..flow.join import Join
+from ..flow.workspace import get_facts, get_flow, list_code
+from ..workspace import Workspace
+from .places import Uses
+from .reading import Escape, FieldReader, ReadAt, Reading, select_parameters
+from .report import EscapedField, FieldAt, FieldReport, PublisherFields, SubscriberFields, TopicFields
+from .shapes import Path, Shapes, show
+from .writing import Writing, find_writes
+
+_KINDS = {"cpp": "fields_cpp", "python": "fields_python"}
+_UNSURE = frozenset(("unresolved", "partly"))
+
+
+def report_fields(workspace: Workspace, graph: Graph, store: Store | None, jobs: int | None = None) -> FieldReport:
+    """The fields of all topics of a workspace. graph: of its code, or of what launch files start. store: remembers the
+    report by the content that it was made from."""
+    flow = get_flow(workspace)
+    key = flow.key + _make_graph_key(graph)
+
+    def make() -> FieldReport:
+        return TopicReader(workspace, flow.code, graph, extract_uses(workspace, jobs)).report()
+
+    return recall(store, "fields", key, FieldReport, make)
+
+
+@cache_in_derived
+def list_topic_fields(workspace: Workspace) -> tuple[TopicFields, ...]:
+    """The fields of all topics of a workspace as launch files start it, which is worked out once."""
+    return report_fields(workspace, get_flow(workspace).system, workspace.extraction.store, 1).topics
+
+
+def list_unset_fields(workspace: Workspace, topic: TopicFields) -> Iterator[tuple[str, FieldAt]]:
+    """The fields that a subscriber of a topic reads and no publisher sets, each with the place that reads it; nothing
+    where somebody else may set them."""
+    flow = get_flow(workspace)
+    ends = [one for one in flow.system.endpoints if one.role == "publisher"]
+    own = [one for one in ends if one.topic == topic.topic]
+    unsure = any(one.how in _UNSURE or one.implied for one in own) or any(
+        one.type in (topic.type, "") and one.how in _UNSURE and _may_be(one.topic, topic.topic) for one in ends
+    )
+    lost = any(
+        one.what.startswith(("publisher", "publish", "started node")) for one in flow.system.coverage.unresolved
+    )
+    if not topic.publishers or unsure or lost or any(one.unknown for one in topic.publishers):
+        return
+    stated = {(one.path, one.line) for one in topic.publishers}
+    if len(stated) < len({(one.path, one.line) for one in own}):
+        return  # a publisher whose statements are not known
+    done = [each.field for one in topic.publishers for each in one.sets]
+    for read in sorted({each for one in topic.subscribers for each in one.reads}, key=_get_place):
+        above = any(read.field == field or read.field.startswith((f"{field}.", f"{field}[]")) for field in done)
+        below = any(field.startswith((f"{read.field}.", f"{read.field}[]")) for field in done)
+        if not above and not below and read.field.rpartition(".")[2] != "seq":
+            done.append(read.field)
+            yield read.field, read
+
+
+def _get_place(one: FieldAt) -> tuple[str, int, str]:
+    return one.path, one.line, one.field
+
+
+def _make_graph_key(graph: Graph) -> bytes:
+    return hashlib.sha1(msgspec.msgpack.encode((graph.endpoints, graph.publishes, graph.nodes))).digest()
+
+
+def extract_uses(workspace: Workspace, jobs: int | None = None) -> dict[str, FieldFile]:
+    """The field facts of a workspace's code, by path."""
+    main, second = workspace.extraction, get_facts(workspace)
+    kinds: dict[str, str] = {}
+    for path in list_code(workspace):
+        facts = second.get_facts(path).facts
+        if facts is not None:
+            kinds[path] = _KINDS[facts.language]
+    found: ExtractedFacts = extract_all(main.tree, main.store, jobs=jobs, kind_of=kinds.get)
+    found.preload(kinds)
+    files = {path: found.get_facts(path).facts for path in kinds if path in found.kinds}
+    return {path: file for path, file in files.items() if file is not None}
+
+
+class TopicReader:
+    """Reads the topics of a graph. files: field facts by path."""
+
+    def __init__(self, workspace: Workspace, join: Join, graph: Graph, files: dict[str, FieldFile]):
+        self.join, self.graph = join, graph
+        types = {one.type for one in graph.endpoints if "/" in one.type}
+        shapes = Shapes(describe_interfaces(workspace, sorted(("topic", type_) for type_ in types)))
+        self.shapes = shapes
+        self.reader = FieldReader(join.code, join.calls, Uses(join.code, files), shapes)
+        self._readings: dict[tuple[tuple[str, ...], str], Reading] = {}
+        for one in graph.endpoints:
+            for fn in self.list_callbacks(one) if one.role == "subscriber" and one.type else ():
+                names = select_parameters(fn, one.type, join.code)
+                self.reader.uses.messages.update(Variable("local", fn.place, name) for name in names)
+
+    def report(self) -> FieldReport:
+        """All topics that the code itself sends or reads, sorted by name."""
+        subscribers, publishers = self._group("subscriber"), self._group("publisher")
+        found: list[TopicFields] = []
+        unknown: list[tuple[str, str]] = []
+        for topic, type_ in sorted({*subscribers, *publishers}):
+            key = topic, type_
+            if all(one.implied for one in (*subscribers.get(key, ()), *publishers.get(key, ()))):
+                continue
+            if not self.shapes.is_known(type_):
+                unknown.append(key)
+                continue
+            found.append(self._make_topic(topic, type_, subscribers.get(key, []), publishers.get(key, [])))
+        return FieldReport(tuple(found), tuple(unknown))
+
+    def _group(self, role: str) -> dict[tuple[str, str], list[Endpoint]]:
+        rows = (one for one in self.graph.endpoints if one.role == role and one.topic and "/" in one.type)
+        return group_pairs(((one.topic, one.type), one) for one in rows)
+
+    def _make_topic(
+        self, topic: str, type_: str, subscribers: Sequence[Endpoint], publishers: Sequence[Endpoint]
+    ) -> TopicFields:
+        leaves = self.shapes.list_leaves(type_)
+        rows = [self._make_subscriber(one, type_, leaves) for one in subscribers]
+        sent = [self._make_publisher(one, type_) for one in self._publishes.get((topic, type_), ())]
+        why = tuple(dict.fromkeys(self._list_open(topic, type_, rows)))
+        unread: tuple[str, ...] = ()
+        if not why and rows:
+            unread = tuple(leaf for leaf in map(show, leaves) if all(leaf in one.unread for one in rows))
+        return TopicFields(topic, type_, tuple(map(show, leaves)), tuple(rows), tuple(sent), unread, why)
+
+    def _list_open(self, topic: str, type_: str, rows: Sequence[SubscriberFields]) -> Iterator[str]:
+        """Why somebody who is not seen may read a topic."""
+        if not rows:
+            yield "nobody here subscribes to it, so somebody elsewhere may"
+        for one in self.graph.endpoints:
+            if one.role != "subscriber" or one.type not in (type_, "", "*"):
+                continue
+            if one.type == "*" and one.topic in (topic, ""):
+                yield f"{one.path}:{one.line} subscribes to any type"
+            elif one.how in _UNSURE and one.topic != topic and _may_be(one.topic, topic):
+                yield f"the name that {one.path}:{one.line} subscribes to is not certain"
+        for lost in self.graph.coverage.unresolved:
+            if lost.what in ("subscriber name", "subscriber topic", "subscriber type"):
+                yield f"the name or type that {lost.path}:{lost.line} subscribes to is not known"
+            elif lost.what == "started node":
+                yield f"{lost.path}:{lost.line} starts `{lost.written or 'a node'}`, whose code is not here"
+
+    @cached_property
+    def sites(self) -> dict[tuple[str, int], list[Site]]:
+        """Where the code makes endpoints, by path and line."""
+        return group_pairs(
+            ((site.use.fn.source.path, site.use.call.line), site) for site in self.join.sites.endpoints
+        )
+
+    def list_callbacks(self, endpoint: Endpoint) -> list[Fn]:
+        """The bodies that a subscriber calls."""
+        sites = self.sites.get((endpoint.path, endpoint.line), ())
+        found = [fn for site in sites if site.role == endpoint.role for fn in site.callbacks]
+        return list(dict.fromkeys(found))
+
+    def _make_subscriber(self, endpoint: Endpoint, type_: str, leaves: Sequence[Path]) -> SubscriberFields:
+        callbacks = self.list_callbacks(endpoint)
+        reading = self.read(callbacks, endpoint, type_)
+        escaped = [escape.field for escape in reading.escapes]
+        escaped += list(reading.sizes)
+        read = reading.reads
+        unread = [
+            leaf
+            for leaf in leaves
+            if leaf not in read and not any(leaf[: len(path)] == path for path in escaped)
+        ]
+        name = callbacks[0].name if callbacks else ""
+        return SubscriberFields(
+            endpoint.node, endpoint.path, endpoint.line, name, _list_places(reading.reads), tuple(map(show, unread)),
+            tuple(EscapedField(show(one.field), one.why, one.path, one.line) for one in reading.escapes),
+            _list_places(reading.sizes),
+        )  # fmt: skip
+
+    def read(self, callbacks: Sequence[Fn], endpoint: Endpoint, type_: str) -> Reading:
+        """What callbacks read of a message `package/Name`. endpoint: the subscriber that calls them."""
+        if not callbacks:
+            why = endpoint.reason or ("the framework reads it" if endpoint.implied else "its callback is not known")
+            return Reading({}, {}, (Escape((), why, endpoint.path, endpoint.line),))
+        key = tuple(fn.place for fn in callbacks), type_
+        known = self._readings.get(key)
+        if known is None:
+            known = self._readings[key] = self._merge(
+                [self._read_callback(fn, type_) for fn in callbacks]
+            )
+        return known
+
+    def _read_callback(self, fn: Fn, type_: str) -> Reading:
+        names = select_parameters(fn, type_, self.join.code)
+        if names:
+            return self.reader.read_parameter(fn, names, type_)
+        if not fn.facts.parameters or all(not one.name for one in fn.facts.parameters):
+            return Reading({}, {}, ())
+        why = "none of the callback's parameters is seen to be it"
+        return Reading({}, {}, (Escape((), why, fn.source.path, fn.facts.line),))
+
+    def _merge(self, readings: Sequence[Reading]) -> Reading:
+        if len(readings) == 1:
+            return readings[0]
+        reads = {path: place for one in reversed(readings) for path, place in one.reads.items()}
+        sizes = {path: place for one in reversed(readings) for path, place in one.sizes.items()}
+        escapes = tuple(dict.fromkeys(escape for one in readings for escape in one.escapes))
+        return Reading(reads, sizes, escapes, frozenset().union(*(one.holders for one in readings)))
+
+    # Publishers
+
+    @cached_property
+    def _publishes(self) -> dict[tuple[str, str], list[Publish]]:
+        return group_pairs(((one.topic, one.type), one) for one in self.graph.publishes if one.topic)
+
+    @cached_property
+    def _statements(self) -> dict[tuple[str, int], Statement]:
+        return {(one.use.fn.source.path, one.use.call.line): one for one in self.join.sites.statements}
+
+    def _make_publisher(self, publish: Publish, type_: str) -> PublisherFields:
+        statement = self._statements.get((publish.path, publish.line))
+        writing = Writing({}, "its statement is not known")
+        if statement is not None and not publish.through:
+            use = statement.use
+            arguments = use.call.arguments
+            writing = find_writes(self.reader, arguments[0] if arguments else None, use.fn, use.call.line, type_)
+        return PublisherFields(publish.node, publish.path, publish.line, _list_places(writing.sets), writing.unknown)
+
+
+def _list_places(found: dict[Path, ReadAt]) -> tuple[FieldAt, ...]:
+    return tuple(FieldAt(show(path), place.path, place.line) for path, place in sorted(found.items()))
+
+
+def _may_be(pattern: str, topic: str) -> bool:
+    """Whether a name that is known in part, with brackets for what is not, may be a topic."""
+    if not pattern:
+        return True
+    pieces = re.split(r"<[^<>]*>", pattern)
+    return re.fullmatch(".*".join(map(re.escape, pieces)), topic) is not None
+
+

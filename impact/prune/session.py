@@ -1,0 +1,182 @@
+"""Pruning from a path: the plan, its diff, and writing it, to the workspace or to a copy, or back again."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from ...edges.console import UserError, escape
+from ...edges.documents import DocumentError, load_json
+from ...edges.files import write_file
+from ..analysis.fields import close
+from ..analysis.fix import make_unified_diff
+from ..analysis.message_files import ReleasedMessages
+from ..analysis.session import load_settings, open_tree
+from ..facts.store import Store
+from ..model.fields.report import FieldReport
+from ..model.fields.topics import TopicReader, extract_uses
+from ..model.flow.workspace import get_flow, link_for_flow, make_graph
+from ..tree.paths import Tree
+from .planner import Planner, PrunePlan
+
+JOURNAL = ".rosimpact-prune"
+"""The folder in a workspace that keeps what --undo brings back."""
+_RECORD = "record.json"
+
+
+class Prepared(NamedTuple):
+    """A plan with the bytes of the files that it changes, as they are now."""
+
+    plan: PrunePlan
+    originals: dict[str, bytes]
+
+
+class _Change(msgspec.Struct, frozen=True):
+    """A file that was changed or created. digest: of what was written; saved: the file that holds what was there,
+    empty for a new one."""
+
+    path: str
+    digest: str
+    saved: str = ""
+
+
+def prepare(
+    path: Path, *, topics: Sequence[str] = (), closed: Sequence[str] = (), config: Path | None = None,
+    length: int = 10, jobs: int | None = None, progress: Callable[[int, int], None] | None = None,
+    follow_links: bool = False,
+) -> Prepared:  # fmt: skip
+    """What pruning the workspace at a path would change. topics: these alone; closed: as for collect_fields(). Raises
+    UserError with a text for the user."""
+    tree = open_tree(path, "", follow_links=follow_links)
+    settings = load_settings(path, tree, config, follow_links=follow_links)
+    known = frozenset((*closed, *settings.closed_topics))
+    with Store() as store:
+        workspace = link_for_flow(tree, store, jobs, progress)
+        graph = make_graph(workspace, store, jobs=jobs or 1)
+        reader = TopicReader(workspace, get_flow(workspace).code, graph, extract_uses(workspace, jobs))
+        report = reader.report()
+        names = {one.topic for one in report.topics} | {topic for topic, _ in report.unknown}
+        for name in (*topics, *closed):
+            if name not in names:
+                raise UserError(f"{escape(name)}: no such topic; `rosimpact fields` lists those there are")
+        rows = tuple(close(one) if one.topic in known else one for one in report.topics)
+        installed = ReleasedMessages(workspace.ros)
+        planner = Planner(
+            workspace, reader, FieldReport(rows, report.unknown), known, lambda each: _read(tree, each), length,
+            installed.find,
+        )  # fmt: skip
+        plan = planner.plan(topics)
+    return Prepared(plan, {each: _read(tree, each) or b"" for each in plan.changed})
+
+
+def _read(tree: Tree, path: str) -> bytes | None:
+    try:
+        return tree.read(path)
+    except OSError:
+        return None
+
+
+def make_diff(prepared: Prepared) -> str:
+    """All changes as a patch."""
+    changed = [make_unified_diff(path, prepared.originals[path], data) for path, data in prepared.plan.changed.items()]
+    created = [_show_new(path, data) for path, data in prepared.plan.created.items()]
+    return "".join((*changed, *created))
+
+
+def _show_new(path: str, data: bytes) -> str:
+    lines = data.decode("utf-8", "surrogateescape").splitlines(keepends=True)
+    body = "".join(f"+{line}" if line.endswith("\n") else f"+{line}\n\\ No newline at end of file\n" for line in lines)
+    head = f"diff --git a/{path} b/{path}\nnew file mode 100644\n--- /dev/null\n+++ b/{path}\n"
+    return f"{head}@@ -0,0 +1,{len(lines)} @@\n{body}"
+
+
+def apply_plan(root: Path, prepared: Prepared) -> None:
+    """Writes the changes to the workspace, all or none; what was there is kept for undo(). Raises UserError."""
+    journal = root / JOURNAL
+    if journal.exists():
+        raise UserError(f"{journal}: an earlier pruning is kept here; take it back with --undo, or remove the folder")
+    for path in prepared.plan.created:
+        if (root / path).exists():
+            raise UserError(f"{root / path}: is there already; move it away")
+    journal.mkdir()
+    rows: list[_Change] = []
+    for number, (path, data) in enumerate(prepared.plan.changed.items()):
+        saved = f"{number}.bytes"
+        (journal / saved).write_bytes(prepared.originals[path])
+        rows.append(_Change(path, _digest(data), saved))
+    rows += [_Change(path, _digest(data)) for path, data in prepared.plan.created.items()]
+    (journal / _RECORD).write_bytes(msgspec.json.encode(rows))
+    try:
+        for path, data in prepared.plan.created.items():
+            (root / path).parent.mkdir(parents=True, exist_ok=True)
+            write_file(os.fspath(root / path), data)
+        for path, data in prepared.plan.changed.items():
+            write_file(os.path.join(root, path), data, beneath=root, instead_of=prepared.originals[path])
+    except OSError as error:
+        _restore(root, rows, force=True)
+        why = f"{error.filename or root}: cannot be written: {error.strerror or error}; nothing is changed"
+        raise UserError(why) from None
+
+
+def undo(root: Path) -> list[str]:
+    """Takes the last pruning of a workspace back; gives the paths. Files that were changed since are left alone, and
+    then nothing is done. Raises UserError."""
+    journal = root / JOURNAL
+    try:
+        data = (journal / _RECORD).read_bytes()
+    except OSError:
+        raise UserError(f"{root}: nothing was pruned here, or {JOURNAL} is gone; use your version control") from None
+    try:
+        load_json(data.decode())
+        rows = msgspec.json.decode(data, type=list[_Change])
+    except (DocumentError, UnicodeDecodeError, msgspec.MsgspecError) as error:
+        raise UserError(f"{journal / _RECORD}: cannot be read: {error}; use your version control") from None
+    for row in rows:
+        if ".." in Path(row.path).parts or Path(row.path).is_absolute() or "/" in row.saved:
+            raise UserError(f"{journal / _RECORD}: names a file outside of the workspace; use your version control")
+        at = root / row.path
+        if not at.is_file() or _digest(at.read_bytes()) != row.digest:
+            raise UserError(f"{at}: was changed since; take that back first, or use your version control")
+    _restore(root, rows, force=False)
+    return [row.path for row in rows]
+
+
+def _restore(root: Path, rows: Sequence[_Change], force: bool) -> None:
+    for row in rows:
+        at = root / row.path
+        if row.saved:
+            write_file(os.fspath(at), (root / JOURNAL / row.saved).read_bytes())
+        elif at.exists():
+            at.unlink()
+            if not any(at.parent.iterdir()):
+                at.parent.rmdir()
+    shutil.rmtree(root / JOURNAL)
+
+
+def write_copy(root: Path, target: Path, prepared: Prepared) -> None:
+    """Writes a copy of a workspace with the changes to a folder that is not there yet, or empty. Raises UserError."""
+    if target.exists() and any(target.iterdir()):
+        raise UserError(f"--out {target}: is not empty; name a new folder")
+    skipped = shutil.ignore_patterns(".git", "build", "devel", "install", "log", JOURNAL)
+    inside = os.path.realpath(target).startswith(os.path.realpath(root) + os.sep)
+    if inside:
+        raise UserError(f"--out {target}: lies in the workspace itself; name a folder elsewhere")
+    try:
+        shutil.copytree(root, target, symlinks=True, ignore=skipped, dirs_exist_ok=True)
+        for path, data in {**prepared.plan.changed, **prepared.plan.created}.items():
+            (target / path).parent.mkdir(parents=True, exist_ok=True)
+            write_file(os.fspath(target / path), data)
+    except (OSError, shutil.Error) as error:
+        raise UserError(f"--out {target}: cannot be written: {error}") from None
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+

@@ -1,0 +1,77 @@
+"""A plan of lighter messages, as text and JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ...edges.console import format_count, format_json
+from ..prune.planner import PrunePlan, TopicPlan
+from ..prune.verify import Verification
+from .columns import LinePart, lay_out
+from .fields import WIDE
+from .schemas import SCHEMA
+from .style import Style
+
+_MOST = 12
+
+
+def render_plan_text(plan: PrunePlan, diff: str, everything: bool = False, style: Style = WIDE) -> str:
+    """The lighter messages, then the topics that keep theirs and why, then the changes. everything: fields that are
+    dropped are all named."""
+    lines: list[str] = []
+    for one in plan.plans:
+        lines += [*_render_topic(one, everything, style), ""]
+    for refusal in plan.refusals:
+        head = [LinePart(refusal.topic, "bold"), LinePart("keeps", "dim"), LinePart(refusal.type)]
+        lines += lay_out([*head, LinePart(refusal.reason)], style, 0, 4)
+    count = format_count(len(plan.plans), "lighter message")
+    files = format_count(len(plan.changed) + len(plan.created), "file")
+    lines += ["", f"{count}; {files} to change or write"] if plan.plans else ["", "no topic can be made lighter"]
+    return "\n".join(lines).lstrip("\n") + "\n" + (f"\n{diff}" if diff else "")
+
+
+def _render_topic(one: TopicPlan, everything: bool, style: Style) -> Iterator[str]:
+    head = [LinePart(", ".join(one.topics), "bold"), LinePart(one.type), LinePart(f"{style.symbols[3]} {one.light}")]
+    yield from lay_out(head, style, 0, 4)
+    shown = one.dropped if everything else one.dropped[:_MOST]
+    more = f" and {len(one.dropped) - len(shown)} more" if len(shown) < len(one.dropped) else ""
+    yield from lay_out([LinePart("without", "dim"), LinePart(", ".join(shown) + more)], style, 2, 6)
+    if one.full_bytes and one.light_bytes:
+        share = 100 * (one.full_bytes - one.light_bytes) / one.full_bytes
+        text = f"{one.full_bytes:,} B become {one.light_bytes:,} B ({share:.0f} % less)"
+        yield from lay_out([LinePart("size", "dim"), LinePart(text)], style, 2, 6)
+    yield from lay_out([LinePart("changes", "dim"), LinePart(", ".join(one.files))], style, 2, 6)
+
+
+def render_plan_json(plan: PrunePlan, version: str) -> str:
+    """The whole plan, without the bytes of files."""
+    document = {
+        "schema": SCHEMA,
+        "tool": {"name": "rosimpact", "version": version},
+        "plans": [one._asdict() for one in plan.plans],
+        "refusals": [one._asdict() for one in plan.refusals],
+        "changed": sorted(plan.changed),
+        "created": sorted(plan.created),
+    }
+    return format_json(document) + "\n"
+
+
+def render_verification(done: Verification, style: Style = WIDE) -> str:
+    """What was compared, topic by topic, and the first differences."""
+    if done.failure:
+        return f"{done.failure}\n"
+    lines: list[str] = []
+    for one in done.topics:
+        counts = f"{one.before} messages before, {one.after} after"
+        sizes = f"{one.bytes_before:,.0f} B a message before, {one.bytes_after:,.0f} B after"
+        verdict = LinePart("differs", "error") if one.difference else LinePart(f"equal {one.how}", "good")
+        head = [LinePart(one.topic, "bold"), LinePart(f"of {one.node}"), verdict, LinePart(counts), LinePart(sizes)]
+        lines += lay_out(head, style, 0, 4)
+        lines += lay_out([LinePart(one.difference)], style, 4, 4) if one.difference else []
+    for text in done.exits:
+        lines += lay_out([LinePart(text, "error")], style, 0, 4)
+    if not done.topics:
+        lines.append("both versions build; with --run, what they do is compared too")
+    else:
+        lines += ["", "both versions do the same" if done.is_equal else "the versions differ"]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,278 @@
+"""Which fields of a message callbacks read: in C++ and Python, through all that a message may be handed on to."""
+
+from textwrap import indent
+
+import pytest
+from rosimpact.impact.analysis.session import open_tree
+from rosimpact.impact.facts.store import Store
+from rosimpact.impact.model.fields.report import FieldReport, SubscriberFields
+from rosimpact.impact.model.fields.topics import report_fields
+from rosimpact.impact.model.flow.workspace import link_for_flow, make_graph
+
+STATUS = """std_msgs/Header header
+geometry_msgs/Pose pose
+int32 level
+string name
+float32[] ranges
+geometry_msgs/Point[] points
+"""
+MANIFEST = """<package format="2"><name>robot</name><version>1.0.0</version><description>d</description>
+<maintainer email="a@b.org">m</maintainer><license>BSD</license>
+<buildtool_depend>catkin</buildtool_depend><depend>roscpp</depend><depend>rospy</depend></package>
+"""
+CMAKE = """cmake_minimum_required(VERSION 3.5)
+project(robot)
+find_package(catkin REQUIRED COMPONENTS roscpp message_generation)
+add_message_files(FILES Status.msg)
+generate_messages()
+catkin_package()
+add_executable(watch src/watch.cpp)
+"""
+SOURCE = """#include <ros/ros.h>
+#include <robot/Status.h>
+{before}
+class Watch {{
+ public:
+  Watch() {{ sub_ = nh_.subscribe("status", 1, &Watch::onStatus, this); }}
+  void onStatus(const robot::Status::ConstPtr& msg) {{
+{body}
+  }}
+{members}
+  ros::NodeHandle nh_;
+  ros::Subscriber sub_;
+  ros::Publisher pub_;
+}};
+{after}
+int main(int argc, char** argv) {{ ros::init(argc, argv, "watch"); Watch watch; ros::spin(); }}
+"""
+SCRIPT = """#!/usr/bin/env python3
+import copy
+import numpy as np
+import rospy
+from robot.msg import Status
+{before}
+class Keeper:
+    def add(self, status):
+        self.name = status.name
+
+class Watch:
+    def __init__(self):
+        self.last = None
+        self.all = []
+        self.keeper = Keeper()
+        self.sub = rospy.Subscriber("status", Status, self.on_status)
+
+    def on_status(self, msg):
+{body}
+
+{members}
+if __name__ == "__main__":
+    rospy.init_node("watch")
+    Watch()
+    rospy.spin()
+"""
+
+
+def report(root, files: dict[str, str]) -> FieldReport:
+    for name, text in {"package.xml": MANIFEST, "CMakeLists.txt": CMAKE, "msg/Status.msg": STATUS, **files}.items():
+        path = root / "robot" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    tree = open_tree(root, "")
+    with Store() as store:
+        workspace = link_for_flow(tree, store)
+        return report_fields(workspace, make_graph(workspace, store, code_alone=True), store, jobs=1)
+
+
+def read_cpp(root, body: str, members: str = "", before: str = "", after: str = "") -> SubscriberFields:
+    code = SOURCE.format(body=indent(body, "    "), members=members, before=before, after=after)
+    return find_subscriber(report(root, {"src/watch.cpp": code}))
+
+
+def read_python(root, body: str, members: str = "", before: str = "") -> SubscriberFields:
+    code = SCRIPT.format(body=indent(body, "        "), members=indent(members, "    "), before=before)
+    return find_subscriber(report(root, {"scripts/watch.py": code}))
+
+
+def find_subscriber(found: FieldReport) -> SubscriberFields:
+    (topic,) = [one for one in found.topics if one.topic == "/status"]
+    (subscriber,) = topic.subscribers
+    return subscriber
+
+
+def tell(subscriber: SubscriberFields) -> tuple[set[str], set[str]]:
+    """The fields that are read, and those that escape; `*` for the whole message."""
+    return {one.field for one in subscriber.reads}, {one.field or "*" for one in subscriber.escapes}
+
+
+# What stands in the callback, besides it in the class, before and behind the class; what is read, what escapes.
+CPP = {
+    "a member": ("int x = msg->level;", "", "", "", "level", ""),
+    "nothing": ("(void)msg;", "", "", "", "", ""),
+    "a path": ("double x = 2 * msg->pose.position.x;", "", "", "", "pose.position.x", ""),
+    "dereferenced": ("double x = (*msg).pose.position.x;", "", "", "", "pose.position.x", ""),
+    "a log": ('ROS_INFO("%d %s", msg->level, msg->name.c_str());', "", "", "", "level name", ""),
+    "a stream": ("ROS_INFO_STREAM(msg->name << msg->level);", "", "", "", "level name", ""),
+    "a test of the pointer": ("if (!msg || msg == nullptr) return;", "", "", "", "", ""),
+    "a condition": ("if (msg->level > 3 && msg->name.empty()) { return; }", "", "", "", "level name", ""),
+    "a switch": ("switch (msg->level) { case 1: break; }", "", "", "", "level", ""),
+    "an index": ("double x = table_[msg->level];", "double table_[9];", "", "", "level", ""),
+    "elements": ("for (size_t i = 0; i < msg->ranges.size(); ++i) sum_ += msg->ranges[i];", "double sum_;", "", "",
+                 "ranges", ""),
+    "elements of a message": ("for (const auto& p : msg->points) sum_ += p.x;", "double sum_;", "", "",
+                              "points[].x", ""),
+    "an iterator": ("for (auto it = msg->points.begin(); it != msg->points.end(); ++it) sum_ += it->y;",
+                    "double sum_;", "", "", "points[].y", ""),
+    "a reference": ("const auto& pose = msg->pose; double x = pose.orientation.w;", "", "", "",
+                    "pose.orientation.w", ""),
+    "a copy": ("geometry_msgs::Pose pose = msg->pose; double x = pose.orientation.w;", "", "", "",
+               "pose.orientation.w", ""),
+    "a copy by parentheses": ("robot::Status copy(*msg); double x = copy.level;", "", "", "", "level", ""),
+    "a pointer to a part": ("const geometry_msgs::Pose* p = &msg->pose; double x = p->position.z;", "", "", "",
+                            "pose.position.z", ""),
+    "a helper": ("help(*msg);", "void help(const robot::Status& s) { x_ = s.level; } int x_;", "", "", "level", ""),
+    "a free helper behind it": ("help(msg);", "", "void help(const robot::StatusConstPtr& s);",
+                                "void help(const robot::StatusConstPtr& s) { ROS_INFO(\"%s\", s->name.c_str()); }",
+                                "name", ""),
+    "a part given": ("double x = norm(msg->pose.position);", "",
+                     "double norm(const geometry_msgs::Point& p) { return p.x * p.x + p.y * p.y; }", "",
+                     "pose.position.x pose.position.y", ""),
+    "a template": ("show(*msg);", "", "template <class T> void show(const T& t) { int x = t.level; }", "",
+                   "level", ""),
+    "kept": ("last_ = msg;", "robot::Status::ConstPtr last_; void tick() { int x = last_->level; }", "", "",
+             "level", ""),
+    "kept as a copy": ("last_ = *msg;", "robot::Status last_; double f() { return last_.pose.position.x; }", "", "",
+                       "pose.position.x", ""),
+    "kept by another class": ("state.last = msg;", "", "struct State { robot::StatusConstPtr last; }; State state;",
+                              "int look(State& s) { return s.last->level; }", "level", ""),
+    "kept in a list": ("list_.push_back(*msg);",
+                       "std::vector<robot::Status> list_; int f() { return list_.back().level + list_.size(); }",
+                       "", "", "level", ""),
+    "a global": ("last = *msg;", "", "robot::Status last;", "int f() { return last.level; }", "level", ""),
+    "a getter": ("last_ = msg;",
+                 "robot::StatusConstPtr last_; robot::StatusConstPtr get() { return last_; }"
+                 " int f() { return get()->level; }", "", "", "level", ""),
+    "a lambda": ("auto f = [&]() { return msg->level; }; f();", "", "", "", "level", ""),
+    "a lambda with a name of its own": ("auto f = [m = msg]() { return m->level; }; f();", "", "", "", "level", ""),
+    "the same name captured": ("auto f = [msg = msg]() { return msg->level; }; f();", "", "", "", "level", ""),
+    "a shared copy": ("auto copy = boost::make_shared<robot::Status>(*msg); int x = copy->level;", "", "", "",
+                      "level", ""),
+    "published": ("pub_.publish(msg);", "", "", "", "", "*"),
+    "handed away": ("elsewhere(*msg);", "", "", "", "", "*"),
+    "a part handed away": ("elsewhere(msg->pose);", "", "", "", "", "pose"),
+    "put into another message": ("out_.pose = msg->pose;", "nav_msgs::Odometry out_;", "", "", "", "pose"),
+    "put below another message": ("robot::Big big; big.inner.status = *msg;", "", "", "", "", "*"),
+    "printed": ("ROS_INFO_STREAM(*msg);", "", "", "", "", "*"),
+    "printed by a stream": ("std::cout << *msg;", "", "", "", "", "*"),
+    "compared": ("if (*msg == old_) return;", "robot::Status old_;", "", "", "", "*"),
+    "taken apart": ("auto [a, b] = split(*msg);", "", "", "", "", "*"),
+    "in a macro": ("GRAB;", "int x_;", "#define GRAB x_ = msg->level", "", "", "*"),
+    "given back by a lambda": ("auto f = [msg]() { return msg; };", "", "", "", "", "*"),
+    "a choice": ("const auto& p = flag_ ? msg->pose : other_; double x = p.position.x;",
+                 "bool flag_; geometry_msgs::Pose other_;", "", "", "pose.position.x", ""),
+    "assigned only": ("robot::Status copy = *msg; copy.level = 3;", "", "", "", "", ""),
+    "changed in place": ("robot::Status copy = *msg; copy.level += 3;", "", "", "", "level", ""),
+    "a member of a base class that is not here": ("last_ = msg; look();", "", "", "", "", "*"),
+    "the size alone": ("size_t n = msg->points.size();", "", "", "", "", ""),
+    "a copy of an array of messages": ("std::vector<geometry_msgs::Point> ps = msg->points; x_ = ps[0].x;",
+                                       "double x_;", "", "", "points[].x", ""),
+    "a swap": ("robot::Status s = *msg; std::swap(s, other_); x_ = other_.level;",
+               "robot::Status other_; int x_;", "", "", "", "*"),
+    "a class made of it": ("Keeper keeper(*msg);", "",
+                           "struct Keeper { Keeper(const robot::Status& s) : level(s.level) {} int level; };", "",
+                           "level", ""),
+    "through a reference": ("put(last_, *msg);", "robot::Status last_;",
+                            "void put(robot::Status& to, const robot::Status& s) { to = s; }", "", "", "*"),
+    "through a pointer": ("robot::Status* p = &last_; *p = *msg; x_ = last_.level;", "robot::Status last_; int x_;", "",
+                          "", "level", ""),
+    "through another name of a list": ("auto& list = list_; list.push_back(*msg);",
+                                       "std::vector<robot::Status> list_; int f() { return list_[0].level; }", "", "",
+                                       "level", ""),
+    "two to make a list": ("std::vector<robot::Status> v{*msg, *msg}; x_ = v[0].level;", "int x_;", "", "", "", "*"),
+    "a class made of it by =": ("Keeper keeper = *msg;", "",
+                                "struct Keeper { Keeper(const robot::Status& s) : level(s.level) {} int level; };",
+                                "", "", "*"),
+    "a class given back": ("make(*msg);", "",
+                           "struct Keeper { Keeper(const robot::Status& s) : level(s.level) {} int level; };\n"
+                           "Keeper make(const robot::Status& s) { return s; }", "", "", "*"),
+    "a local function": ("auto f = [](const robot::Status& s) { return s.level; }; f(*msg);", "",
+                         "int f(const robot::Status& s) { return 3; }", "", "level", ""),
+    "a container of one's own": ("kept_.add(*msg);", "Kept kept_;",
+                                 "struct Kept { void add(const robot::Status& s) { x = s.level; } int x; };", "",
+                                 "level", ""),
+    "an ordered set": ("set_.insert(*msg);", "std::set<robot::Status, Less> set_;",
+                       "struct Less { bool operator()(const robot::Status& a, const robot::Status& b) const"
+                       " { return a.level < b.level; } };", "", "", "*"),
+    "swapped": ("robot::Status s = *msg; last_.swap(s); x_ = last_.level;", "Swap last_; int x_;",
+                "struct Swap { int level; };", "", "", "*"),
+    "moved": ("auto s = std::move(msg); int x = s->level;", "", "", "", "level", ""),
+    "returned through": ("int x = pass(msg)->level;", "",
+                         "robot::StatusConstPtr pass(const robot::StatusConstPtr& s) { return s; }", "", "level", ""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CPP)
+def test_what_a_callback_in_cpp_reads(name, tmp_path):
+    body, members, before, after, reads, escapes = CPP[name]
+    found = read_cpp(tmp_path, body, members, before, after)
+    assert tell(found) == (set(reads.split()), set(escapes.split()))
+
+
+# What stands in the callback, besides it in the class, and before it.
+PYTHON = {
+    "a member": ("x = msg.level", "", "", "level", ""),
+    "a path": ("x = 2 * msg.pose.position.x", "", "", "pose.position.x", ""),
+    "nothing": ("pass", "", "", "", ""),
+    "a log": ('rospy.loginfo("%s", msg.name)', "", "", "name", ""),
+    "printed": ("print(msg)", "", "", "", "*"),
+    "a format": ('s = f"{msg.name} {msg.level}"', "", "", "level name", ""),
+    "a format of all": ('s = "%s" % msg', "", "", "", "*"),
+    "none": ("if msg is None: return", "", "", "", ""),
+    "elements": ("x = [r * 2 for r in msg.ranges]", "", "", "ranges", ""),
+    "elements of a message": ("x = sum(p.x for p in msg.points)", "", "", "points[].x", ""),
+    "numbered elements": ("for i, p in enumerate(msg.points):\n    x = p.y * i", "", "", "points[].y", ""),
+    "pairs": ("for a, p in zip(msg.ranges, msg.points):\n    x = p.z", "", "", "ranges points[].z", ""),
+    "numpy": ("x = np.array(msg.ranges, dtype=float)", "", "", "ranges", ""),
+    "a slice": ("x = [p.x for p in msg.points[1:]]", "", "", "points[].x", ""),
+    "a name for a part": ("p = msg.pose.position\nx = p.x", "", "", "pose.position.x", ""),
+    "getattr": ('x = getattr(msg, "level")', "", "", "level", ""),
+    "getattr of what is not known": ("x = getattr(msg, self.field)", "", "", "", "*"),
+    "kept": ("self.last = msg", "def tick(self):\n    return self.last.level", "", "level", ""),
+    "a property": ("self._last = msg", "@property\ndef seen(self):\n    return self._last\n"
+                   "def tick(self):\n    return self.seen.level", "", "level", ""),
+    "a helper": ("self.help(msg)", "def help(self, status):\n    return status.level", "", "level", ""),
+    "a function": ("help(msg)", "", "def help(status):\n    return status.name\n", "name", ""),
+    "a keyword": ("help(status=msg)", "", "def help(status):\n    return status.name\n", "", "*"),
+    "a list": ("self.all.append(msg)", "def tick(self):\n    return [m.level for m in self.all]", "", "level", ""),
+    "a list that is passed on": ("fill(self.all, msg)", "", "def fill(every, status):\n    every.append(status)\n",
+                                 "", "*"),
+    "another name of a list": ("every = self.all\nevery.append(msg)",
+                               "def tick(self):\n    return self.all[0].level", "", "level", ""),
+    "what is no list": ("self.keeper.add(msg)", "", "", "name", ""),
+    "what may be a list": ("self.unknown.add(msg)", "", "", "", "*"),
+    "taken from a list": ("self.all.append(msg)", "def tick(self):\n    return self.all.pop(0).level", "", "level", ""),
+    "sorted": ("self.all.append(msg)", "def tick(self):\n    self.all.sort(key=lambda m: m.level)", "", "", "*"),
+    "a property that is set": ("self.kept = msg",
+                               "@property\ndef kept(self):\n    return 1\n"
+                               "@kept.setter\ndef kept(self, status):\n    self.x = status.level", "", "", "*"),
+    "a copy": ("m = copy.deepcopy(msg)\nx = m.level", "", "", "level", ""),
+    "a lambda": ("f = lambda: msg.level", "", "", "level", ""),
+    "a global": ("global last\nlast = msg", "def tick(self):\n    return last.level", "last = None\n", "level", ""),
+    "handed away": ("elsewhere.use(msg)", "", "", "", "*"),
+    "in a tuple": ("self.pair = (msg, 3)", "def tick(self):\n    return self.pair[0].level", "", "level", ""),
+    "in a dictionary": ("self.seen = {1: msg}", "", "", "", "*"),
+    "published": ("self.pub.publish(msg)", "", "", "", "*"),
+    "both names": ("a, b = msg.level, msg.pose\nx = b.position.x", "", "", "level pose.position.x", ""),
+    "or": ("m = msg or self.last\nx = m.level", "", "", "level", ""),
+    "put into another": ("out = Status()\nout.pose = msg.pose", "", "", "", "pose"),
+    "yielded": ("yield msg", "", "", "", "*"),
+    "length": ("n = len(msg.points)", "", "", "", ""),
+    "a method of a part": ("t = msg.header.stamp.to_sec()", "", "", "header.stamp", ""),
+}
+
+
+@pytest.mark.parametrize("name", PYTHON)
+def test_what_a_callback_in_python_reads(name, tmp_path):
+    body, members, before, reads, escapes = PYTHON[name]
+    found = read_python(tmp_path, body, members, before)
+    assert tell(found) == (set(reads.split()), set(escapes.split()))

@@ -1,0 +1,397 @@
+"""What pruning a workspace changes: lighter messages, publishers that fill them, subscribers that take them, builds."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from rosimpact.edges.console import UserError
+from rosimpact.impact.prune.session import JOURNAL, Prepared, apply_plan, make_diff, prepare, undo, write_copy
+
+FLEET = Path(__file__).parents[2] / "examples" / "fleet"
+
+ROS1 = {
+    "msgs/package.xml": """<package format="2"><name>msgs</name><version>1.0.0</version><description>d</description>
+  <maintainer email="a@b.org">m</maintainer><license>BSD</license>
+  <buildtool_depend>catkin</buildtool_depend>
+</package>
+""",
+    "msgs/CMakeLists.txt": """project(msgs)
+find_package(catkin REQUIRED COMPONENTS message_generation)
+add_message_files(FILES State.msg Point.msg)
+generate_messages()
+catkin_package()
+""",
+    "msgs/msg/Point.msg": "float64 x\nfloat64 y\n",
+    "msgs/msg/State.msg": "int32 KEPT = 3\nint32 level # how full\nstring text\nPoint[] points\nPoint at\n",
+    "nodes/package.xml": """<package format="2"><name>nodes</name><version>1.0.0</version><description>d</description>
+  <maintainer email="a@b.org">m</maintainer><license>BSD</license>
+  <buildtool_depend>catkin</buildtool_depend>
+  <depend>msgs</depend>
+  <depend>roscpp</depend>
+</package>
+""",
+    "nodes/CMakeLists.txt": """project(nodes)
+find_package(catkin REQUIRED COMPONENTS roscpp msgs)
+catkin_package()
+add_executable(talk src/talk.cpp)
+add_executable(hear src/hear.cpp)
+""",
+}
+TALK = """#include <ros/ros.h>
+#include <msgs/State.h>
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "talk");
+  ros::NodeHandle nh;
+  ros::Publisher pub = nh.advertise<msgs::State>("state", 1);
+  msgs::State state;
+  while (ros::ok()) {
+    PUBLISH
+  }
+}
+"""
+HEAR = """#include <ros/ros.h>
+#include <msgs/State.h>
+
+BEFORE
+void onState(PARAMETER) {
+  BODY
+}
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "hear");
+  ros::NodeHandle nh;
+  ros::Subscriber sub = nh.subscribe("state", 1, onState);
+  ros::spin();
+}
+"""
+
+
+def write(root: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        path = root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return root
+
+
+def plan_ros1(
+    root: Path, body: str, parameter: str = "const msgs::State::ConstPtr& state", before: str = "",
+    publish: str = "pub.publish(state);", **more: str,
+) -> Prepared:  # fmt: skip
+    hear = HEAR.replace("BODY", body).replace("PARAMETER", parameter).replace("BEFORE", before)
+    files = {**ROS1, "nodes/src/talk.cpp": TALK.replace("PUBLISH", publish), "nodes/src/hear.cpp": hear, **more}
+    return prepare(write(root, files))
+
+
+def added(prepared: Prepared) -> set[str]:
+    """The lines that the change adds, without the white space around them."""
+    lines = make_diff(prepared).split("\n")
+    return {line[1:].strip() for line in lines if line[:1] == "+" and not line.startswith("+++")} - {""}
+
+
+def test_a_topic_gets_a_lighter_message(tmp_path):
+    prepared = plan_ros1(tmp_path, "ROS_INFO(\"%d %f\", state->level, state->at.x);")
+    (plan,) = prepared.plan.plans
+    assert (plan.topics, plan.light, plan.keep) == (("/state",), "msgs/StateLight", ("level", "at.x"))
+    assert plan.dropped == ("text", "points[].x", "points[].y", "at.y")
+    assert prepared.plan.created == {
+        "msgs/msg/StateLight.msg": b"int32 KEPT = 3\nint32 level # how full\nStateLightPoint at\n",
+        "msgs/msg/StateLightPoint.msg": b"float64 x\n",
+    }
+    found = added(prepared)
+    assert "void onState(const msgs::StateLight::ConstPtr& state) {" in found
+    assert 'ros::Publisher pub = nh.advertise<msgs::StateLight>("state", 1);' in found
+    assert "pub.publish(fill_state_light(state));" in found
+    assert {"light.level = full.level;", "light.at.x = full.at.x;", "#include <msgs/StateLight.h>"} <= found
+    assert "add_message_files(FILES State.msg StateLight.msg StateLightPoint.msg Point.msg)" in found
+    assert (plan.full_bytes, plan.light_bytes) == (4 + 14 + 4 + 10 * 16 + 16, 12)
+
+
+# The parameter, the body, what stands before, and lines that the change adds to the subscriber.
+CALLBACKS = {
+    "elements": ("const msgs::State::ConstPtr& state", "for (auto& p : state->points) use(p.x);", "", (
+        "void onState(const msgs::StateLight::ConstPtr& state) {",
+    )),
+    "a reference": ("const msgs::State& state", "use(state.level);", "", (
+        "void onState(const msgs::StateLight& state) {",
+    )),
+    "a typedef of ROS": ("const msgs::StateConstPtr& state", "use(state->level);", "", (
+        "void onState(const msgs::StateLightConstPtr& state) {",
+    )),
+    "a shared pointer": ("const boost::shared_ptr<msgs::State const>& state", "use(state->level);", "", (
+        "void onState(const boost::shared_ptr<msgs::StateLight const>& state) {",
+    )),
+    "a helper": ("const msgs::State& state", "help(state);", "int help(const msgs::State& s) { return s.level; }", (
+        "void onState(const msgs::StateLight& state_light) {",
+        "const msgs::State state = widen_state_light(state_light);", "full.level = light.level;",
+    )),
+    "kept": ("const msgs::State::ConstPtr& state", "last = state;",
+             "msgs::State::ConstPtr last;\nint f() { return last->level; }", (
+        "void onState(const msgs::StateLight::ConstPtr& state_light) {",
+        "const msgs::State::ConstPtr state(new msgs::State(widen_state_light(*state_light)));",
+    )),
+    "a part with its type": ("const msgs::State& state", "msgs::Point p = state.at; use(p.x);", "", (
+        "const msgs::State state = widen_state_light(state_light);",
+    )),
+    "a part by auto": ("const msgs::State& state", "auto p = state.at; use(p.x);", "", (
+        "void onState(const msgs::StateLight& state) {",
+    )),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CALLBACKS)
+def test_callbacks_take_the_lighter_message(name, tmp_path):
+    parameter, body, before, lines = CALLBACKS[name]
+    prepared = plan_ros1(tmp_path, body, parameter, before)
+    assert prepared.plan.refusals == ()
+    assert set(lines) <= added(prepared)
+
+
+# What stands in the subscriber's callback, what is published, more files, and a part of the reason.
+REFUSED = {
+    "published again": ("pub2.publish(state);", {}, "the whole message is handed on: published again"),
+    "everything": ("use(state->level, state->text, state->points[0].x, state->points[0].y, state->at.x, state->at.y);",
+                   {}, "every field is read"),
+    "two arguments": ("use(state->level);", {"publish": "pub.publish(state, 3);"}, "publishes something other than"),
+    "braces": ("use(state->level);", {"publish": "pub.publish({});"}, "publishes a list in braces"),
+    "handed on": ("use(state->level);", {"publish": "pub.publish(state); give(pub);"}, "the publisher of"),
+    "a caller": ("use(state->level);", {"before": "struct A { void f() { onState(nullptr); } };"}, "is called at"),
+    "no listing": ("use(state->level);", {"msgs/CMakeLists.txt": "project(msgs)\n"}, "does not name State.msg"),
+    "an alias": ("use(state->level);", {"before": "using Some = msgs::State;", "parameter": "const Some& state"},
+                 "names the type otherwise"),
+    "any type": ("use(state->level);", {"nodes/src/any.cpp": (
+        '#include <topic_tools/shape_shifter.h>\nvoid any(const topic_tools::ShapeShifter::ConstPtr& m) {}\n'
+        'int main(int argc, char** argv) { ros::init(argc, argv, "any"); ros::NodeHandle nh;\n'
+        '  ros::Subscriber s = nh.subscribe(argv[1], 1, any); ros::spin(); }\n')}, "subscribes to any type"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_pruned_is_told_with_its_reason(name, tmp_path):
+    body, more, reason = REFUSED[name]
+    if name == "any type":
+        more = {**more, "nodes/CMakeLists.txt": ROS1["nodes/CMakeLists.txt"] + "add_executable(any src/any.cpp)\n"}
+    prepared = plan_ros1(tmp_path, body, **more)
+    assert prepared.plan.plans == ()
+    assert prepared.plan.changed == prepared.plan.created == {}
+    (refusal,) = [one for one in prepared.plan.refusals if one.topic == "/state"]
+    assert reason in refusal.reason
+
+
+ROS2_HEAR = """#include <rclcpp/rclcpp.hpp>
+#include <msgs/msg/state.hpp>
+
+class Hear : public rclcpp::Node {
+ public:
+  Hear() : Node("hear") {
+    sub_ = create_subscription<msgs::msg::State>("state", 10, std::bind(&Hear::onState, this, std::placeholders::_1));
+    more_ = create_subscription<msgs::msg::State>(
+      "state", 10, [this](const msgs::msg::State::SharedPtr state) { use(state->level); });
+  }
+ private:
+  void onState(const msgs::msg::State::ConstSharedPtr state) { use(state->at.y); }
+  rclcpp::Subscription<msgs::msg::State>::SharedPtr sub_;
+  rclcpp::Subscription<msgs::msg::State>::SharedPtr more_;
+};
+int main(int argc, char** argv) { rclcpp::init(argc, argv); rclcpp::spin(std::make_shared<Hear>()); }
+"""
+ROS2_TALK = """#include <rclcpp/rclcpp.hpp>
+#include <msgs/msg/state.hpp>
+
+class Talk : public rclcpp::Node {
+ public:
+  Talk() : Node("talk") { pub_ = create_publisher<msgs::msg::State>("state", 10); }
+  void tick() {
+    auto state = std::make_unique<msgs::msg::State>();
+    state->level = 3;
+    pub_->publish(std::move(state));
+  }
+ private:
+  rclcpp::Publisher<msgs::msg::State>::SharedPtr pub_;
+};
+int main(int argc, char** argv) { rclcpp::init(argc, argv); rclcpp::spin(std::make_shared<Talk>()); }
+"""
+MANIFEST2 = """<package format="3"><name>{0}</name><version>1.0.0</version><description>d</description>
+  <maintainer email="a@b.org">m</maintainer><license>BSD</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <depend>{1}</depend>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+"""
+NODES2 = """project(nodes)
+find_package(ament_cmake REQUIRED)
+find_package(rclcpp REQUIRED)
+find_package({0} REQUIRED)
+add_executable(talk src/talk.cpp)
+ament_target_dependencies(talk rclcpp {0})
+add_executable(hear src/hear.cpp)
+target_link_libraries(hear rclcpp::rclcpp ${{{0}_TARGETS}})
+ament_package()
+"""
+ROS2 = {
+    "msgs/package.xml": MANIFEST2.format("msgs", "rosidl_default_generators"),
+    "msgs/CMakeLists.txt": """project(msgs)
+find_package(ament_cmake REQUIRED)
+find_package(rosidl_default_generators REQUIRED)
+rosidl_generate_interfaces(${PROJECT_NAME}
+  "msg/Point.msg"
+  "msg/State.msg"
+)
+ament_package()
+""",
+    "msgs/msg/Point.msg": ROS1["msgs/msg/Point.msg"],
+    "msgs/msg/State.msg": ROS1["msgs/msg/State.msg"],
+    "nodes/package.xml": MANIFEST2.format("nodes", "msgs"),
+    "nodes/CMakeLists.txt": NODES2.format("msgs"),
+    "nodes/src/hear.cpp": ROS2_HEAR,
+    "nodes/src/talk.cpp": ROS2_TALK,
+}
+
+
+def test_ros2(tmp_path):
+    prepared = prepare(write(tmp_path, ROS2))
+    (plan,) = prepared.plan.plans
+    assert plan.keep == ("level", "at.y")
+    assert {
+        'sub_ = create_subscription<msgs::msg::StateLight>("state", 10, std::bind(&Hear::onState, this, '
+        "std::placeholders::_1));",
+        "more_ = create_subscription<msgs::msg::StateLight>(",
+        '"state", 10, [this](const msgs::msg::StateLight::SharedPtr state) { use(state->level); });',
+        "void onState(const msgs::msg::StateLight::ConstSharedPtr state) { use(state->at.y); }",
+        "rclcpp::Subscription<msgs::msg::StateLight>::SharedPtr sub_;",
+        "rclcpp::Publisher<msgs::msg::StateLight>::SharedPtr pub_;",
+        'Talk() : Node("talk") { pub_ = create_publisher<msgs::msg::StateLight>("state", 10); }',
+        "pub_->publish(fill_state_light(std::move(state)));",
+        "inline auto fill_state_light(const Pointer & full) -> decltype(fill_state_light(*full))",
+        "#include <msgs/msg/state_light.hpp>",
+        '"msg/StateLight.msg"',
+        '"msg/StateLightPoint.msg"',
+    } <= added(prepared)
+
+
+def test_a_message_of_a_released_package_gets_a_lighter_one_in_a_new_package(tmp_path):
+    pytest.importorskip("rosbags")
+    files = {name: text for name, text in ROS2.items() if name.startswith("nodes/")}
+    swap = (("msgs::msg::State", "sensor_msgs::msg::BatteryState"), ("msgs/msg/state", "sensor_msgs/msg/battery_state"),
+            ("state->level", "state->voltage"), ("state->at.y", "state->current"))  # fmt: skip
+    for name in ("nodes/src/hear.cpp", "nodes/src/talk.cpp"):
+        for old, new in swap:
+            files[name] = files[name].replace(old, new)
+    files["nodes/package.xml"] = MANIFEST2.format("nodes", "sensor_msgs")
+    files["nodes/CMakeLists.txt"] = NODES2.format("sensor_msgs")
+    prepared = prepare(write(tmp_path / "ws", {f"src/{name}": text for name, text in files.items()}))
+    (plan,) = prepared.plan.plans
+    assert (plan.light, plan.keep) == ("light_msgs/BatteryStateStateLight", ("voltage", "current"))
+    created = prepared.plan.created
+    assert sorted(created) == [
+        f"src/light_msgs/{name}" for name in ("CMakeLists.txt", "msg/BatteryStateStateLight.msg", "package.xml")
+    ]
+    assert b'  "msg/BatteryStateStateLight.msg"\n' in created["src/light_msgs/CMakeLists.txt"]
+    assert {
+        "<depend>light_msgs</depend>", "find_package(light_msgs REQUIRED)",
+        "ament_target_dependencies(talk rclcpp sensor_msgs light_msgs)",
+        "target_link_libraries(hear rclcpp::rclcpp ${sensor_msgs_TARGETS} ${light_msgs_TARGETS})",
+        "#include <light_msgs/msg/battery_state_state_light.hpp>",
+        "rclcpp::Publisher<light_msgs::msg::BatteryStateStateLight>::SharedPtr pub_;",
+    } <= added(prepared)  # fmt: skip
+
+
+PYTHON = {
+    "nodes/CMakeLists.txt": "project(nodes)\nfind_package(catkin REQUIRED)\ncatkin_package()\n",
+    "nodes/scripts/talk.py": """#!/usr/bin/env python3
+import rospy
+from msgs.msg import Point, State
+
+rospy.init_node("talk")
+pub = rospy.Publisher("state", State, queue_size=1)
+while not rospy.is_shutdown():
+    state = State(level=3)
+    state.points.append(Point(1, 2))
+    pub.publish(state)
+""",
+    "nodes/scripts/hear.py": """#!/usr/bin/env python3
+import rospy
+import msgs.msg
+
+
+def on_state(state):
+    rospy.loginfo(sum(p.y for p in state.points))
+
+
+rospy.init_node("hear")
+rospy.Subscriber("state", msgs.msg.State, on_state)
+rospy.spin()
+""",
+}
+
+
+def test_python(tmp_path):
+    files = {name: text for name, text in ROS1.items() if name.startswith("msgs/") or name == "nodes/package.xml"}
+    prepared = prepare(write(tmp_path, {**files, **PYTHON}))
+    (plan,) = prepared.plan.plans
+    assert plan.keep == ("points.y",)
+    assert {
+        "from msgs.msg import StateLight", "from msgs.msg import StateLightPoint",
+        'pub = rospy.Publisher("state", StateLight, queue_size=1)', "pub.publish(fill_state_light(state))",
+        "for each in full.points:", "made = StateLightPoint()", "made.y = each.y", "light.points.append(made)",
+        'rospy.Subscriber("state", StateLight, on_state)',
+    } <= added(prepared)  # fmt: skip
+    for path, data in prepared.plan.changed.items():
+        if path.endswith(".py"):
+            compile(data, path, "exec")
+
+
+def test_topics_with_equal_needs_share_a_message(tmp_path):
+    shutil.copytree(FLEET, tmp_path / "fleet")
+    brain = tmp_path / "fleet/src/fleet_brain/src/brain.cpp"
+    text = brain.read_text()
+    brain.write_text(text.replace("say(describe(report));", "say(report.stops.empty() ? \"none\" : \"some\");"))
+    log = tmp_path / "fleet/src/fleet_log/scripts/track.py"
+    log.write_text(log.read_text().replace(
+        'labels = [stop.place.label for stop in report.stops]\n    said.publish("archive %d %s %s" % '
+        "(report.state, report.driver, labels))", 'said.publish("archive %d" % len(report.stops))'
+    ))  # fmt: skip
+    plans = {topic: plan.light for plan in prepare(tmp_path / "fleet").plan.plans for topic in plan.topics}
+    assert plans["/archive"] == plans["/spare_report"] == "fleet_msgs/ReportArchiveLight"
+    assert plans["/report"] != plans["/archive"]
+
+
+def read_all(root: Path) -> dict[str, bytes]:
+    return {one.relative_to(root).as_posix(): one.read_bytes() for one in root.rglob("*") if one.is_file()}
+
+
+def test_writing_and_taking_back(tmp_path):
+    shutil.copytree(FLEET, tmp_path / "fleet")
+    root = tmp_path / "fleet"
+    before = read_all(root)
+    prepared = prepare(root)
+    assert len(prepared.plan.plans) == 4
+    write_copy(root, tmp_path / "copy", prepared)
+    assert read_all(root) == before
+    apply_plan(root, prepared)
+    after = {path: data for path, data in read_all(root).items() if not path.startswith(JOURNAL)}
+    assert after == read_all(tmp_path / "copy") == {**before, **prepared.plan.changed, **prepared.plan.created}
+    with pytest.raises(UserError, match="an earlier pruning"):
+        apply_plan(root, prepared)
+    assert sorted(undo(root)) == sorted({**prepared.plan.changed, **prepared.plan.created})
+    assert read_all(root) == before
+    with pytest.raises(UserError, match="nothing was pruned here"):
+        undo(root)
+
+
+def test_what_was_changed_since_is_not_taken_back(tmp_path):
+    shutil.copytree(FLEET, tmp_path / "fleet")
+    root = tmp_path / "fleet"
+    apply_plan(root, prepare(root))
+    (root / "src/fleet_msgs/CMakeLists.txt").write_text("mine")
+    now = read_all(root)
+    with pytest.raises(UserError, match=r"CMakeLists\.txt: was changed since"):
+        undo(root)
+    assert read_all(root) == now
+
+
+def test_a_pruned_workspace_has_nothing_more_to_prune(tmp_path):
+    shutil.copytree(FLEET, tmp_path / "fleet")
+    write_copy(tmp_path / "fleet", tmp_path / "copy", prepare(tmp_path / "fleet"))
+    assert prepare(tmp_path / "copy").plan.plans == ()
