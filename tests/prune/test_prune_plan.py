@@ -365,8 +365,8 @@ def test_topics_with_equal_needs_share_a_message(tmp_path):
     brain.write_text(text.replace("say(describe(report));", "say(report.stops.empty() ? \"none\" : \"some\");"))
     log = tmp_path / "fleet/src/fleet_log/scripts/track.py"
     log.write_text(log.read_text().replace(
-        'labels = [stop.place.label for stop in report.stops]\n    said.publish("archive %d %s %s" % '
-        "(report.state, report.driver, labels))", 'said.publish("archive %d" % len(report.stops))'
+        'labels = [stop.place.label for stop in report.stops]\n    '
+        'said.publish(f"archive {report.state} {report.driver} {labels}")', 'said.publish(f"archive {len(report.stops)}")'
     ))  # fmt: skip
     plans = {topic: plan.light for plan in prepare(tmp_path / "fleet").plan.plans for topic in plan.topics}
     assert plans["/archive"] == plans["/spare_report"] == "fleet_msgs/ReportArchiveLight"

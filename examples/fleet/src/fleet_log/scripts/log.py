@@ -17,7 +17,7 @@ class Log:
     def on_report(self, report):
         self.seen.append(report)
         last = self.seen[-1]
-        self.said.publish("log %.1f %s" % (last.battery, last.header.frame_id))
+        self.said.publish(f"log {last.battery:.1f} {last.header.frame_id}")
         if last.battery < 98:
             alarm = Report()
             alarm.driver = "log"
