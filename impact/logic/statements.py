@@ -281,9 +281,10 @@ class _Digester:
         unsaid = trigger.kind in ("start", "unknown")
         unled = trigger.kind == "unknown" or (trigger.kind == "start" and trigger.detail not in ("", "main"))
         gates: list[Gate] = []
-        for guard in guards:
+        for place, guard in enumerate(guards):
             asked, lives = _strip_liveness(guard.text) if guard.kind in _LOOPS else (guard.text, False)
-            if unsaid and guard.kind == "if" and _is_live(guard.text):
+            loops = any(one.kind in _LOOPS for one in guards[:place])
+            if unsaid and loops and guard.kind == "if" and _is_live(guard.text):
                 asked, lives = "", True  # what stands in the loop's condition itself
             if unsaid and (lives or (guard.kind in _LOOPS and trigger.kind == "start")):
                 kind = "loop" if trigger.kind == "start" else "thread"

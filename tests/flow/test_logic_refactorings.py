@@ -345,6 +345,12 @@ LOOP_CASES = [
         [("trigger changed", "loop `rate 20`, was `rate 10`")],
     ),
     (
+        "whether the node is up is asked once, and no loop",
+        "    if ros_ok():\n        step()\n    rospy.spin()",
+        "    step()\n    rospy.spin()",
+        [("widened", "no longer asks for `ros_ok()`")],
+    ),
+    (
         "a pause in one branch beside the rate",
         AT_TEN,
         AT_TEN.replace("        step()", "        if old:\n            rospy.sleep(0.002)\n        step()"),
