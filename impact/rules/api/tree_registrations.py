@@ -72,11 +72,16 @@ _TELLING = 3
 def list_packages_along(view: TargetView, names: frozenset[str]) -> frozenset[str]:
     """The packages that register nodes and come along with the workspace, or with one that a tree of some nodes is
     evidently written for, as far as the target has them."""
-    owners = {name: list_owners(view, name) for name in names}
-    sole = Counter(each[0] for each in owners.values() if len(each) == 1)
+    here = ([one for one in list_owners(view, name) if _registers(view, one, name)] for name in names)
+    sole = Counter(owners[0] for owners in here if len(owners) == 1)
     meant = [owner for owner, count in sole.items() if count >= _TELLING and view.is_available(owner)]
     along = view.brought_to_workspace.union(view.list_transitive(meant)).intersection(list_known_packages(view))
     return frozenset(name for name in along if view.target.find_version(name) is not None)
+
+
+def _registers(view: TargetView, package: str, name: str) -> bool:
+    """Whether a package surely registers a node on the target."""
+    return name in list_registered(view, frozenset((package,)))
 
 
 @cache_in_derived
