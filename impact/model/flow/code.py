@@ -6,7 +6,7 @@ import posixpath
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from typing import Generic, NamedTuple, TypeVar
 
 from ....edges.groups import group_pairs
@@ -136,6 +136,18 @@ class _About(Generic[_Row]):
 def _split_path(path: str) -> tuple[str, ...]:
     """The parts of a path, elements left out."""
     return tuple(part for part in path.replace("[]", "").split(".") if part)
+
+
+def _list_assignments(fn: Fn) -> Iterable[Assignment]:
+    """The assignments of a function in order, with what in C++ is added to the end of a string."""
+    if fn.source.facts.language != "cpp":
+        return fn.facts.assignments
+    added = [
+        Assignment(call.callee.rpartition(".")[0], call.arguments[0], call.line, call.guard, "", "+=")
+        for call in fn.facts.calls
+        if call.callee.endswith(".append") and len(call.arguments) == 1
+    ]
+    return sorted([*fn.facts.assignments, *added], key=attrgetter("line")) if added else fn.facts.assignments
 
 
 @lru_cache(maxsize=100_000)
@@ -566,7 +578,7 @@ class FlowCode:
 
     @cached_property
     def _writes(self) -> _About[tuple[Fn, Assignment]]:
-        return _About((e.target, (fn, e)) for fn in self.functions for e in fn.facts.assignments if e.target)
+        return _About((e.target, (fn, e)) for fn in self.functions for e in _list_assignments(fn) if e.target)
 
     @cached_property
     def _results(self) -> _About[tuple[Fn, FlowCall]]:

@@ -15,6 +15,7 @@ from ....edges.memory import cache_method
 from ....edges.reach import walk
 from ...facts.flow import FlowExpr, FlowFile, Guard
 from ..launch.result import EMPTY, Launched, ShareLine, Started
+from ..launch.text import LaunchText
 from . import nodes as programs_of
 from .calls import FOREIGN, Calls, FrameworkCall
 from .code import CodeFile, FlowCode, Fn, get_tail, list_made
@@ -71,7 +72,8 @@ class Running(NamedTuple):
     """A program with the node it is, and what of the code it reaches. instance: how a launch starts it; values: what
     expressions are worth there; classes: by key. loaded: how the node loads this program, which is a nodelet then.
     objects: of a program that is several nodes the keys of those that this is, as NodeObject has them, None where it is
-    one; others: those of its other nodes alone, where this is the first of them, which has all that no key is about."""
+    one; others: those of its other nodes alone, where this is the first of them, which has all that no key is about.
+    fixed: what a launch does not change of its name, as NodeObject has it."""
 
     program: StartableProgram
     node: Node
@@ -82,6 +84,7 @@ class Running(NamedTuple):
     loaded: Loaded | None = None
     objects: frozenset[str] | None = None
     others: frozenset[str] | None = None
+    fixed: frozenset[str] = frozenset()
 
 
 Owner = Running | Node | None
@@ -250,10 +253,11 @@ class Join:
         own = shared.union(*(one.keys for one in first))
         others = frozenset().union(*(one.keys for one in further)) - own
         values = first[0].values if len(first) == 1 else running.values
-        yield running._replace(objects=own, others=others, values=values)
+        fixed = first[0].fixed if len(first) == 1 else frozenset()
+        yield running._replace(objects=own, others=others, values=values, fixed=fixed)
         for one in further:
             node = structs.replace(running.node, id=f"{running.node.id}{one.name}", name=one.name)
-            yield running._replace(node=node, objects=one.keys - shared, values=one.values)
+            yield running._replace(node=node, objects=one.keys - shared, values=one.values, fixed=one.fixed)
 
     def runs(self, running: Running, keys: frozenset[str]) -> bool:
         """Whether a node runs a use in one of its functions. keys: of the node objects that the use is made on."""
@@ -296,7 +300,10 @@ class Join:
                 own = own or f"<{one.program.executable or get_tail(one.program.plugin)}>"
                 # What a container is told for a component is for the component's own node alone.
                 inner = start.kind == "composable" and part.objects is not None and part.others is None
-                instance = make_instance(launch, own, _strip_given(start) if inner else start, namespace)
+                given = _strip_given(start) if inner else start
+                if part.fixed:
+                    given, namespace = _keep_fixed(given, part.fixed, namespace, start.namespace)
+                instance = make_instance(launch, own, given, namespace)
                 node = structs.replace(
                     part.node, id=instance.name, name=instance.name, started=f"{at[0]}:{at[1]}",
                     uncertain=instance.uncertain,
@@ -371,9 +378,7 @@ class Join:
     ) -> tuple[Node, FrameworkCall | None]:  # fmt: skip
         """The node that a program is, or the first of those, and the use that names it. running: what expressions are
         worth in what it runs."""
-        own = (
-            [use for use in named if get_tail(use.fn.facts.owner) == get_tail(program.plugin)] if program.plugin else []
-        )
+        own = self._select_of_plugin(program.plugin, named) if program.plugin else []
         in_main = [use for use in named if use.fn in program.roots]
         # Of the classes that name nodes, those that are made first where the program begins; helpers' nodes come later.
         made = [get_tail(name.partition("<")[0]) for root in program.roots for name, _, _ in list_made(root, self.code)]
@@ -400,9 +405,10 @@ class Join:
         # What loads a plugin is another program, which gives it a node, or a nodelet its name; who makes the node of a
         # program that makes none is not known either.
         unknown = program.kind in ("plugin", "nodelet") or not (named or self.ros == 2)
-        written = self.calls.find_argument(use, use.row.topic) if use is not None and not name else None
-        if written is not None and written.kind != "text" and not self.calls.is_node(written, use.fn):
-            default = _spell_open(written)  # what the code gives is not known
+        if use is not None and not name:
+            written = self.calls.find_argument(use, use.row.topic)
+            if written is not None and written.kind != "text" and not self.calls.is_node(written, use.fn):
+                default = _spell_open(written)  # what the code gives is not known
         full = "" if unknown else normalise("/" + (name or default).lstrip("/"))
         if use is not None and full:
             full = self.objects.join_namespace(use, full.lstrip("/"), running)
@@ -412,6 +418,15 @@ class Join:
             program.executable, program.plugin, language, program.path, program.line,
         )  # fmt: skip
         return node, use
+
+    def _select_of_plugin(self, plugin: str, named: list[FrameworkCall]) -> list[FrameworkCall]:
+        """The uses that name the nodes of the class of a plugin, its own before those of its bases."""
+        ranks: dict[str, int] = {get_tail(plugin): 0}
+        for cls in self.code.classes.get(get_tail(plugin), ()):
+            for place, base in enumerate(self.code.list_bases(cls)):
+                ranks.setdefault(get_tail(base.name), place)
+        found = [use for use in named if get_tail(use.fn.facts.owner) in ranks]
+        return sorted(found, key=lambda use: ranks[get_tail(use.fn.facts.owner)])
 
     def list_guards(self, fn: Fn, index: int) -> tuple[GuardAt, ...]:
         """The guards at a place of a function, outermost first."""
@@ -812,6 +827,19 @@ class _Count:
 def _strip_given(start: Started) -> Started:
     """A start without what it gives to the node."""
     return start._replace(name=EMPTY, namespace=EMPTY, remaps=(), settings=())
+
+
+def _keep_fixed(
+    start: Started, fixed: frozenset[str], namespace: str, around: LaunchText
+) -> tuple[Started, str]:  # fmt: skip
+    """A start without what the options of the node give it all the same, and its namespace in the code. around: the
+    namespace that the launch gives the program."""
+    if "name" in fixed:
+        start = start._replace(name=EMPTY)
+    if "namespace" in fixed:
+        start = start._replace(namespace=EMPTY)
+        namespace = "/<namespace>" if "below" in fixed and around.value not in (None, "", "/") else namespace
+    return start, namespace
 
 
 def _select_types(site: Site, owner: Owner) -> tuple[str, ...]:

@@ -665,10 +665,12 @@ class FlowValues:
     def _call(self, value: FlowExpr, fn: Fn, line: int, seen: tuple) -> Iterator[FlowValue]:
         last = get_tail(value.text)
         head = value.text.rpartition(".")[0] if "." in value.text else ""
-        if last in _NODE_NAME and not value.parts:
+        # A method of the code may be called the same.
+        own = last in _NODE_NAME | _NODE_NAMESPACE and self.code.list_targets(value.text, fn)
+        if last in _NODE_NAME and not value.parts and not own:
             yield FlowValue(NODE)
             return
-        if last in _NODE_NAMESPACE and not value.parts:
+        if last in _NODE_NAMESPACE and not value.parts and not own:
             yield FlowValue(NAMESPACE)
             return
         if head and (last in _SAME or (last == "get" and value.receiver is not None and not value.parts)):
@@ -700,7 +702,8 @@ class FlowValues:
         while arguments is None and get_tail(callee) in _SAME and (head := callee.rpartition(".")[0]).endswith("()"):
             callee = head.removesuffix("()")
         near = [call for call in fn.facts.calls if call.callee == callee]
-        near.sort(key=lambda call: (abs(call.line - line), call.arguments != arguments))
+        # What stands in an expression is not before it.
+        near.sort(key=lambda call: (call.line < line, abs(call.line - line), call.arguments != arguments))
         if arguments is not None:
             near = [call for call in near if call.arguments == arguments] or near
         for call in near[:1]:
