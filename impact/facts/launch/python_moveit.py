@@ -311,7 +311,7 @@ def _add_debuggable_node(call: LaunchCall) -> Any:
 _MAKERS: dict[str, Callable[[LaunchCall], Any]] = {
     "MoveItConfigsBuilder": _make_builder,
     "generate_demo_launch": _start_demo,
-    "generate_start_spawners_launch": _start_spawners,
+    "generate_spawn_controllers_launch": _start_spawners,
     "generate_static_virtual_joint_tfs_launch": _send_virtual_joints,
     "add_debuggable_node": _add_debuggable_node,
 }
