@@ -315,11 +315,11 @@ def _list_clamped(
         value = text if setting.type in ("str", "string") else parse_ros1_value(text)
         if not isinstance(value, str) or setting.type in ("", "str", "string"):
             refused = next(find_refused(make_given_value(name, path, at.line, value), declared), None)
-            if refused is not None and not (refused.is_type and _converts(refused)):
+            if refused is not None and not (refused.is_type and _is_converted(refused)):
                 yield msgspec.structs.replace(refused, clamped=True)
 
 
-def _converts(refused: RefusedValue) -> bool:
+def _is_converted(refused: RefusedValue) -> bool:
     """Whether ROS 1 makes a number of one type into the other, or the value is no plain one."""
     given, declared = refused.given.type, refused.terms.type
     return {given, declared} <= {"integer", "double"} or refused.given.text[:1] in ("[", "{", "")

@@ -41,12 +41,12 @@ def _asks(start: LaunchedNode, name: str, ros: int) -> bool:
     if start.hidden_parameters or parts[-1] in _COMMON or parts[0] in _COMMON_HEADS:
         return True
     if ros == 1:
-        return any(_reads(known, f"{start.node}/{name}", parts) for known in start.parameters)
+        return any(_is_read_by(known, f"{start.node}/{name}", parts) for known in start.parameters)
     known = {find_last_part(one) for one in start.parameters}
     return any(part in known for part in parts)
 
 
-def _reads(known: str, full: str, parts: list[str]) -> bool:
+def _is_read_by(known: str, full: str, parts: list[str]) -> bool:
     """Whether a node of ROS 1 that reads a parameter gets another one with it: that itself, what is below the one it
     reads, or what may be either, where the namespace is not known."""
     if known.startswith("*/"):
