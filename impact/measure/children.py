@@ -68,7 +68,7 @@ class Child:
     """A process in a session of its own that is spoken with by lines. log: gets its standard error."""
 
     def __init__(self, command: Sequence[str], environment: Mapping[str, str], log: Path):
-        self.name, self._log, self._read = Path(command[-1]).name, log, b""
+        self._log, self._read = log, b""
         with open(log, "wb") as errors:
             self._process = subprocess.Popen(
                 command, env=dict(environment), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors,

@@ -78,6 +78,8 @@ def remove_leftovers() -> list[str]:
     names = [name for name in list_namespaces() if not _is_alive(_NAME, name)]
     for name in names:
         _remove_namespace(name)
+    still = list_namespaces()  # those of root, where this is not
+    names = [name for name in names if name not in still]
     folders = [path for path in Path(tempfile.gettempdir()).glob(f"{PREFIX}*") if _WORK.fullmatch(path.name)]
     for folder in folders:
         if not _is_alive(_WORK, folder.name) and folder.lstat().st_uid == os.geteuid():

@@ -15,6 +15,7 @@ from ...edges.processes import count_cores
 from ...edges.version import __version__
 from . import namespaces, ros1
 from .bench import Bench, LocalPublishers, LocalSubscriber, Messages, count_messages
+from .children import hold_signals
 from .clocks import ClockOffset
 from .intervals import NetworkResult, PublishReport, compute_result
 from .plan import FULL, PRUNED, SYNTHETIC, Conditions, NetworkCell, NetworkPlan
@@ -56,7 +57,8 @@ def check_needs(conditions: Conditions) -> None:
 
 def make_header(conditions: Conditions, clock: str) -> RunHeader:
     """What the file of results begins with."""
-    machine = {"system": f"{platform.system()} {platform.release()}", "machine": platform.machine(),
+    release = ".".join(platform.release().split(".")[:2])
+    machine = {"system": f"{platform.system()} {release}", "machine": platform.machine(),
                "cores": str(count_cores())}  # fmt: skip
     now = datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds")
     return RunHeader(rosimpact=__version__, started=now, conditions=conditions, clock=clock, machine=machine)
@@ -72,7 +74,7 @@ def run_network(plan: NetworkPlan, messages: Messages, output: Path, progress: P
         return file
     if removed := namespaces.remove_leftovers():
         progress(f"removed what earlier runs left behind: {', '.join(removed)}")
-    with namespaces.open_work_folder() as place, contextlib.ExitStack() as opened:
+    with namespaces.open_work_folder() as place, _open_until_closed() as opened:
         progress("preparing nodes")
         (place / "logs").mkdir()
         sites = _open_sites(plan.conditions, opened)
@@ -81,6 +83,17 @@ def run_network(plan: NetworkPlan, messages: Messages, output: Path, progress: P
             progress(f"[{number}/{len(left)}] {cell.describe()}, repetition {repetition + 1}")
             file.add(measure_cell(LocalPublishers(publisher), subscriber, cell, repetition, progress))
     return file
+
+
+@contextlib.contextmanager
+def _open_until_closed() -> Iterator[contextlib.ExitStack]:
+    """What is set up within it is removed at its end, which a second Ctrl-C does not cut short."""
+    opened = contextlib.ExitStack()
+    try:
+        yield opened
+    finally:
+        with hold_signals():
+            opened.close()
 
 
 def list_left(plan: NetworkPlan, file: ResultsFile, progress: Progress) -> list[tuple[int, NetworkCell]]:
@@ -154,8 +167,9 @@ def _run_cell(
         report = publishers.publish()
         samples = subscriber.finish()
     finally:
-        publishers.stop()
-        subscriber.stop()
+        with hold_signals():
+            publishers.stop()
+            subscriber.stop()
     _, window = count_messages(bench.conditions, cell.rate)
     size = bench.messages[cell.fields, cell.variant].bytes
     return compute_result(

@@ -122,6 +122,16 @@ def test_a_folder_for_temporary_files_goes_with_its_run(tmp_path, monkeypatch):
     assert [path.name for path in tmp_path.iterdir()] == ["rosimpact-report"]
 
 
+def test_what_could_not_be_removed_is_not_said_to_be(tmp_path, monkeypatch):
+    def refuse(command):
+        raise UserError("not permitted")
+
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr(namespaces, "run_program", refuse)
+    monkeypatch.setattr(namespaces, "list_namespaces", lambda: ["rosimpact-1-0-router"])
+    assert remove_leftovers() == []
+
+
 # Children
 
 
