@@ -220,7 +220,31 @@ class TopicReader:
             known = self._readings[key] = self._merge(
                 [self._read_callback(fn, type_) for fn in callbacks]
             )
-        return known
+        return known._replace(escapes=(*known.escapes, *self._list_filtered(endpoint, type_)))
+
+    def _list_filtered(self, endpoint: Endpoint, type_: str) -> Iterator[Escape]:
+        """What filters look at before they call back: messages are matched by their stamps, and transforms waited for
+        by stamp and frame.
+
+        Source: the headers of message_filters (message_traits::TimeStamp), of tf2_ros (message_filter.h), and of
+        image_transport (camera_subscriber.cpp, which has a TimeSynchronizer)."""
+        rows = [one.use.row for one in self.sites.get((endpoint.path, endpoint.line), ()) if one.role == endpoint.role]
+        filtered = any(row.framework == "message_filters" for row in rows)
+        if not filtered and not any(row.camera_info for row in rows):
+            return
+        for name in ("stamp", "frame_id") if filtered and self._waits_for_transforms else ("stamp",):
+            field = ("header", name)
+            if self.shapes.list_below(type_, field):
+                yield Escape(field, "a message filter looks at it", endpoint.path, endpoint.line)
+
+    @cached_property
+    def _waits_for_transforms(self) -> bool:
+        """Whether code includes the filters that wait for transforms."""
+        return any(
+            header.endswith(("/message_filter.h", "/message_filter.hpp"))
+            for source in self.join.code.sources
+            for header in source.facts.includes
+        )
 
     def _read_callback(self, fn: Fn, type_: str) -> Reading:
         names = select_parameters(fn, type_, self.join.code)
