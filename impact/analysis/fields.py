@@ -47,7 +47,7 @@ def collect_fields(
     with Store() as store:
         workspace = link_for_flow(tree, store, jobs, progress)
         found = report_fields(workspace, make_graph(workspace, store, jobs=jobs or 1), store, jobs)
-        definitions = Definitions(workspace, tree)
+        definitions = KnownMessages(workspace, tree)
     names = {one.topic for one in found.topics} | {topic for topic, _ in found.unknown}
     for option, asked in (("--topic", topics), ("--assume-closed", closed)):
         for name in asked:
@@ -61,7 +61,7 @@ def collect_fields(
     return FieldAnswer(FieldReport(tuple(chosen), unknown), sizes)
 
 
-class Definitions:
+class KnownMessages:
     """The messages of a workspace and of released packages, as text."""
 
     def __init__(self, workspace: Workspace, tree: Tree):

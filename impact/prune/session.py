@@ -14,7 +14,7 @@ import msgspec
 from ...edges.console import UserError, escape
 from ...edges.documents import DocumentError, load_json
 from ...edges.files import write_file
-from ..analysis.fields import Definitions, close
+from ..analysis.fields import KnownMessages, close
 from ..analysis.fix import make_unified_diff
 from ..analysis.session import load_settings, open_tree
 from ..facts.store import Store
@@ -67,7 +67,7 @@ def prepare(
         rows = tuple(close(one) if one.topic in known else one for one in report.topics)
         planner = Planner(
             workspace, reader, FieldReport(rows, report.unknown), known, lambda each: _read(tree, each), length,
-            Definitions(workspace, tree).find,
+            KnownMessages(workspace, tree).find,
         )  # fmt: skip
         plan = planner.plan(topics)
     return Prepared(plan, {each: _read(tree, each) or b"" for each in plan.changed})

@@ -366,7 +366,8 @@ def test_topics_with_equal_needs_share_a_message(tmp_path):
     log = tmp_path / "fleet/src/fleet_log/scripts/track.py"
     log.write_text(log.read_text().replace(
         'labels = [stop.place.label for stop in report.stops]\n    '
-        'said.publish(f"archive {report.state} {report.driver} {labels}")', 'said.publish(f"archive {len(report.stops)}")'
+        'said.publish(f"archive {report.state} {report.driver} {labels}")',
+        'said.publish(f"archive {len(report.stops)}")',
     ))  # fmt: skip
     plans = {topic: plan.light for plan in prepare(tmp_path / "fleet").plan.plans for topic in plan.topics}
     assert plans["/archive"] == plans["/spare_report"] == "fleet_msgs/ReportArchiveLight"
