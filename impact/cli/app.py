@@ -334,6 +334,7 @@ def fields(
     assume_closed: list[str] = _make_option(
         "Nobody outside of this workspace subscribes to this topic. May be repeated.", "--assume-closed"
     ),
+    length: int = _make_option("Elements of strings and arrays, for the sizes that are shown.", default=10, min=0),
     rev: _Revision = "",
     config: _Config = None,
     follow_links: _FollowLinks = False,

@@ -212,6 +212,7 @@ _NEW_POINTERS = re.compile(r"new(?<!\wnew)\s+[\w:]+\s*(?P<gone>\*+)(?=\s*\[)")
 _DEFAULT_BRACES = re.compile(r"=(?P<blanks>\s*)\{(?P<inner>[^{};]*)\}(?=\s*[,)])")
 _TYPENAME = re.compile(r"(?:=|\breturn)\s*(?P<gone>typename)\b")
 _TEMPLATE = re.compile(r"(?:->|\.)\s*(?P<gone>template)(?=\s+\w+\s*\()")
+_EXTERN_TEMPLATE = re.compile(r"\b(?P<gone>extern)(?=\s+template\s+(?:class|struct)\b)")
 _SIGNATURE = re.compile(r"\b(?:SIGNAL|SLOT)\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)")
 _EACH_LIKE, _EACH_MACRO = (
     re.compile(rf"{word}\w*\s*\((?P<gone>[^()\n]*(?:\([^()\n]*\))?[^()\n]*)\)(?=\s*\{{)")
@@ -229,6 +230,7 @@ _FURTHER = (
     (("{",), _DEFAULT_BRACES, _replace_braces),
     (("typename",), _TYPENAME, _blank_group),
     (("template",), _TEMPLATE, _blank_group),
+    (("extern",), _EXTERN_TEMPLATE, _blank_group),
     (("SIGNAL", "SLOT"), _SIGNATURE, _blank_group),
     (("ach",), _EACH_LIKE, _blank_group),
     (("EACH",), _EACH_MACRO, _blank_group),

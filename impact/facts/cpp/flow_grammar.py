@@ -93,6 +93,9 @@ def find_errors(root: Node, starts: list[int]) -> set[tuple[int, int]]:
         node = waiting.pop()
         # A semicolon after a macro is often missing, and nothing is lost by it.
         if node.kind_id == KIND.ERROR or (node.is_missing and node.kind_id != KIND.semicolon):
+            # `template class A<int>;` declares nothing, and the grammar looks for a name.
+            if node.is_missing and node.parent is not None and node.parent.kind_id == KIND.template_instantiation:
+                continue
             found.add((bisect_right(starts, node.start_byte), bisect_right(starts, node.end_byte)))
         elif node.has_error:
             waiting += node.children

@@ -141,6 +141,8 @@ class _Reader(SourceText):
                 self._add(path, "use", node, "taken apart")
                 return None
             return path, parent
+        if isinstance(parent, ast.keyword):
+            return self._climb_keyword(path, parent, node)
         if isinstance(parent, (ast.Assign, ast.AnnAssign)):
             self._end_assigned(path, parent, node)
         elif isinstance(parent, (ast.Tuple, ast.List)):
@@ -211,6 +213,16 @@ class _Reader(SourceText):
             self._add(path, "added", node, callee, call.args.index(at), len(call.args))  # type: ignore[arg-type]
         elif at in call.args:
             self._add(path, "given", node, callee, call.args.index(at), len(call.args))  # type: ignore[arg-type]
+        else:
+            self._add(path, "use", node, "given")
+        return None
+
+    def _climb_keyword(self, path: str, keyword: ast.keyword, node: ast.AST) -> tuple[str, ast.AST] | None:
+        """`f(name=path)`; `sorted(path, key=f)` and the like take no message so."""
+        call = self.parents.get(keyword)
+        callee = _spell(call.func, self.own) if isinstance(call, ast.Call) else ""
+        if keyword.arg and callee:
+            self._add(path, "given", node, callee, -1, 0, keyword.arg)
         else:
             self._add(path, "use", node, "given")
         return None

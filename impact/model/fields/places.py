@@ -70,9 +70,19 @@ class Uses:
     def list_uses(self, variable: Variable) -> Iterator[UsePlace]:
         """The uses of a variable, and those that may be of it."""
         own = [variable.owner.split(":", 1)[0]] if variable.kind == "local" else []
+        language = self._find_language(variable)
         for place in self.list_named(variable.name, own):
-            if self._is_of(place, variable):
+            if language in ("", place.fn.source.facts.language) and self._is_of(place, variable):
                 yield place
+
+    def _find_language(self, variable: Variable) -> str:
+        """The language of the code that a variable is of, which no other has; empty where that is not known."""
+        if variable.kind == "member":
+            found = {cls.source.facts.language for cls in self.code.list_class_bodies(variable.owner)}
+        else:
+            file = self.files.get(variable.owner.split(":", 1)[0])
+            found = {file.language} if file is not None else set()
+        return found.pop() if len(found) == 1 else ""
 
     def _is_of(self, place: UsePlace, variable: Variable) -> bool:
         parts = split_path(place.use.path)

@@ -13,7 +13,7 @@ from ...facts.field_uses import PathUse
 from ...facts.flow import FlowExpr
 from ..flow.calls import Calls
 from ..flow.code import FlowCode, Fn, Variable, get_tail
-from ..flow.types import find_interface, split_name
+from ..flow.types import Cls, find_interface, split_name
 from .places import UsePlace, Uses, split_path
 from .shapes import Path, Shapes, Spot
 
@@ -82,21 +82,50 @@ class _Walk:
         self.escapes: dict[tuple[Path, str], Escape] = {}
         self.seen: set[Holder] = set()
         self.left: list[Holder] = []
-        self.returned: set[tuple[Fn, Path]] = set()
+        self.results = _Results()
+        # What is no field of what a local variable holds, with that variable: it may hold something else there.
+        self.strange: list[tuple[Variable, UsePlace, Spot]] = []
 
     def run(self, holders: Iterable[Holder]) -> Reading:
         for holder in holders:
             self.hold(holder.variable, holder.base)
-        while self.left:
-            holder = self.left.pop()
+            self.results.open(holder.variable.owner)
+        while self.left or self.results.left:
             if len(self.seen) > _MOST:
                 self.escapes[(), "held by too many variables"] = Escape((), "held by too many variables", "", 0)
                 break
-            self._check_readable(holder)
-            for place in self.uses.list_uses(holder.variable):
-                parts = split_path(place.use.path)[place.at + 1 :]
-                self.judge(place, self.shapes.find(self.type, holder.base, parts))
+            if self.left:
+                self._follow(self.left.pop())
+            else:
+                self._spread(*self.results.left.pop())
+        for variable, place, spot in self.strange:
+            if not self._holds_other(variable, place):
+                self.escape_at(spot, f"`{place.use.path}` is no field that is known", place)
         return Reading(self.reads, self.sizes, tuple(self.escapes.values()), frozenset(self.seen))
+
+    def _follow(self, holder: Holder) -> None:
+        """All uses of a variable that holds a field."""
+        self._check_readable(holder)
+        variable = holder.variable
+        for place in self.uses.list_uses(variable):
+            if variable.kind != "local" or variable.owner != place.fn.place:
+                self.results.open(place.fn.place)
+            self.judge(place, self._find_spot(place, holder.base), variable)
+
+    def _find_spot(self, place: UsePlace, base: Path) -> Spot:
+        return self.shapes.find(self.type, base, split_path(place.use.path)[place.at + 1 :])
+
+    def _holds_other(self, variable: Variable, place: UsePlace) -> bool:
+        """Whether a variable holds a field too of which the path of a use is one: `for p in a`, then `for p in b`."""
+        others = (holder.base for holder in self.seen if holder.variable == variable)
+        return any(self._find_spot(place, base).kind != "none" for base in others)
+
+    def _spread(self, fn: Fn, path: Path) -> None:
+        """What is done with a field that a function gives back, where the message may have come from to it."""
+        for result in self.uses.list_results(fn):
+            if not self.results.take(fn, path, result):
+                continue
+            self.judge(result, self._find_spot(result, path))
 
     def hold(self, variable: Variable, base: Path) -> None:
         """A variable that holds a field of the message."""
@@ -138,13 +167,15 @@ class _Walk:
     def escape_at(self, spot: Spot, why: str, place: UsePlace) -> None:
         self.escape(spot.path, why, place.fn.source.path, place.use.line)
 
-    def judge(self, place: UsePlace, spot: Spot) -> None:
-        """What a use means for what it is a use of."""
+    def judge(self, place: UsePlace, spot: Spot, variable: Variable | None = None) -> None:
+        """What a use means for what it is a use of. variable: whose use it is; None for what a function gives back."""
         use = place.use
         if use.how in ("write", "change") and not (use.how == "write" and use.to not in ("=", "del", "")):
             return
         if spot.kind == "leaf":
             self.note_read(spot.path, place)
+        elif spot.kind == "none" and variable is not None and variable.kind == "local":
+            self.strange.append((variable, place, spot))
         elif spot.kind == "none":
             self.escape_at(spot, f"`{use.path}` is no field that is known", place)
         elif use.how == "size":
@@ -202,14 +233,25 @@ class _Walk:
             self.escape_at(spot, f"put into `{target.rpartition('.')[0]}`", place)
         elif not self._is_declared(variable, fn):
             self.escape_at(spot, f"kept in `{target}`, which is declared elsewhere", place)
-        elif fn.source.facts.language != "cpp" and self._is_method(variable.name):
-            self.escape_at(spot, f"given to `{variable.name}`, which may be a property", place)
+        elif fn.source.facts.language != "cpp" and self._is_property(variable):
+            self.escape_at(spot, f"given to `{variable.name}`, which is a property", place)
         else:
             for one in (variable, *refers):
                 self.hold(one, spot.path)
+            if fn.source.facts.language != "cpp" and variable.kind == "member":
+                self._set_properties(variable.name, spot)
 
-    def _is_method(self, name: str) -> bool:
-        return any(one.facts.owner for one in self.code.by_tail.get(name, ()))
+    def _is_property(self, variable: Variable) -> bool:
+        """Whether a member is made by `property(...)`, of functions that are not looked for."""
+        writes = self.code.list_writes(variable) if variable.kind == "member" else ()
+        return any(each.value.kind == "call" and get_tail(each.value.text) == "property" for _, each in writes)
+
+    def _set_properties(self, name: str, spot: Spot) -> None:
+        """Gives a field to all methods of a name in Python, of which one may set the property."""
+        for one in self.code.by_tail.get(name, ()):
+            if one.facts.owner and one.facts.parameters and one.source.facts.language == "python":
+                self.hold(Variable("local", one.place, one.facts.parameters[0].name), spot.path)
+                self.results.open(one.place)
 
     def _list_referred(self, variable: Variable, fn: Fn, adds: bool) -> tuple[Variable, ...] | None:
         """What else a local variable is a name of: what it refers to, where something is put into it. None where that
@@ -253,13 +295,31 @@ class _Walk:
             plain = self._holds(kind.name, spot) and not re.search(r"\bset\s*<", text)
         else:
             values = [each.value for _, each in self.code.list_writes(variable)]
-            plain = bool(values) and all(_is_fresh(value, False) for value in values)
+            plain = self._is_list(variable, fn, ())
             if variable.kind == "local" and not plain:
                 plain = all(value.kind == "name" or _is_fresh(value, False) for value in values) and bool(values)
         if plain:
             self._put(target, variable, place, spot)
         else:
             self.escape_at(spot, f"given to `{use.to}`", place)
+
+    def _is_list(self, variable: Variable, fn: Fn, seen: tuple[Variable, ...]) -> bool:
+        """Whether a variable of Python is only ever a container made anew, or a copy of such a variable."""
+        if variable in seen:
+            return True
+        writes = self.code.list_writes(variable)
+        return bool(writes) and all(
+            _is_fresh(each.value, False)
+            or (
+                each.value.kind == "call"
+                and get_tail(each.value.text) == "copy"
+                and each.value.text.count(".")
+                and self._is_list(
+                    self.code.identify(each.value.text.rpartition(".")[0], writer), writer, (*seen, variable)
+                )
+            )
+            for writer, each in writes
+        )
 
     def _is_declared(self, variable: Variable, fn: Fn) -> bool:
         """Whether a variable is declared in the code, so that nobody else can read it: a member may be that of a base
@@ -290,7 +350,7 @@ class _Walk:
 
     def _judge_given(self, place: UsePlace, spot: Spot) -> None:
         use, fn = place.use, place.fn
-        if use.type:
+        if use.type and use.place >= 0:
             kind = self.code.resolve_written(use.type, fn.source, fn.scope)
             if use.count == 1 and (not kind.name or self._holds(kind.name, spot)):
                 return  # a copy, which is kept or given on where it stands
@@ -303,14 +363,22 @@ class _Walk:
             what = "printed whole" if last in _PRINTS else f"given to `{last or use.to}`, which is not here"
             self.escape_at(spot, what, place)
             return
-        followed = [self._give(target, use, spot) for target in targets]
+        followed = [self._give(target, use, spot, fn) for target in targets]
+        if fn.source.facts.language == "python" and use.place > 0 and self._find_class_before(use.to, fn):
+            # `Class.method(self, path)`: a method's parameters are told without its object, a static one's are all.
+            followed += [self._give(target, use, spot, fn, use.place - 1) for target in targets]
         if not any(followed):
             self.escape_at(spot, f"given to `{last}`", place)
 
-    def _give(self, target: Fn, use: PathUse, spot: Spot) -> bool:
-        """Follows an argument into a function; False where that does not take it as it is."""
+    def _give(self, target: Fn, use: PathUse, spot: Spot, giver: Fn, place: int | None = None) -> bool:
+        """Follows an argument into a function; False where that does not take it as it is. place: which argument it is,
+        where that is not as the use says."""
         parameters = [one for one in target.facts.parameters if one.name != "*"]
-        parameter = parameters[use.place] if 0 <= use.place < len(parameters) else None
+        at = use.place if place is None else place
+        if at < 0:
+            parameter = next((one for one in parameters if one.name == use.type), None)
+        else:
+            parameter = parameters[at] if at < len(parameters) else None
         if parameter is None or parameter.name.startswith("*"):
             return False
         if not parameter.name:
@@ -319,6 +387,7 @@ class _Walk:
         templated = kind is not None and kind.name in target.facts.types
         if kind is not None and kind.name and not templated and not self._holds(kind.name, spot):
             return False
+        self.results.give(target.place, giver.place)
         self.hold(Variable("local", target.place, parameter.name), spot.path)
         return True
 
@@ -334,8 +403,17 @@ class _Walk:
         found = self.code.list_targets(callee, fn) or self._list_included(callee, fn)
         if found:
             return found
+        cls = self._find_class_before(callee, fn)
+        if cls is not None:
+            return self.code.find_method(cls, get_tail(callee))
         cls = self.code.find_class(callee, fn.source, fn.scope)
         return [one for one in self.code.list_functions(cls) if self.code.is_constructor(one)] if cls else []
+
+    def _find_class_before(self, callee: str, fn: Fn) -> Cls | None:
+        """In Python, the class by whose name a method is called: `Class.method`."""
+        head = callee.rpartition(".")[0]
+        python = fn.source.facts.language == "python"
+        return self.code.find_class(head, fn.source, fn.scope) if python and head and "()" not in head else None
 
     def _list_included(self, callee: str, fn: Fn) -> list[Fn]:
         """Functions of C++ outside of classes that a call names which stand in what its file includes."""
@@ -354,9 +432,8 @@ class _Walk:
     def _judge_returned(self, place: UsePlace, spot: Spot) -> None:
         fn = place.fn
         tail = get_tail(fn.name)
-        if (fn, spot.path) in self.returned:
+        if not self.results.note(fn, spot.path):
             return
-        self.returned.add((fn, spot.path))
         if fn.is_lambda or not tail.isidentifier():
             self.escape_at(spot, "given back by a lambda or an operator", place)
             return
@@ -367,9 +444,56 @@ class _Walk:
         if tail in self.code.handed_on and not fn.facts.owner:
             self.escape_at(spot, f"given back by `{tail}`, which is handed on", place)
             return
-        for result in self.uses.list_results(fn):
-            parts = split_path(result.use.path)[result.at + 1 :]
-            self.judge(result, self.shapes.find(self.type, spot.path, parts))
+        self.results.spread(fn, spot.path)
+
+
+class _Results:
+    """What functions give back, and to whom. A function that has the message from a parameter alone gives it back to
+    those that gave it to it; one that has it from elsewhere, to all that call it: it is open. Functions by place."""
+
+    def __init__(self) -> None:
+        self.left: list[tuple[Fn, Path]] = []
+        self._noted: set[tuple[Fn, Path]] = set()
+        self._spread: dict[str, list[tuple[Fn, Path]]] = {}
+        self._givers: dict[str, set[str]] = {}
+        self._open: set[str] = set()
+        self._taken: set[tuple[str, Path, UsePlace]] = set()
+
+    def note(self, fn: Fn, path: Path) -> bool:
+        """Whether a function's field is new here."""
+        new = (fn, path) not in self._noted
+        self._noted.add((fn, path))
+        return new
+
+    def spread(self, fn: Fn, path: Path) -> None:
+        """A field that a function gives back as it is."""
+        self._spread.setdefault(fn.place, []).append((fn, path))
+        self.left.append((fn, path))
+
+    def open(self, place: str) -> None:
+        """A function that has the message not from a parameter."""
+        if place not in self._open:
+            self._open.add(place)
+            self.left += self._spread.get(place, ())
+
+    def give(self, place: str, giver: str) -> None:
+        """A function that is given the message by another."""
+        givers = self._givers.setdefault(place, set())
+        if giver not in givers:
+            givers.add(giver)
+            self.left += self._spread.get(place, ())
+
+    def take(self, fn: Fn, path: Path, result: UsePlace) -> bool:
+        """Whether a call may give back the message to where it stands, and was not looked at yet."""
+        here = result.fn.place
+        if fn.place in self._open:
+            self.open(here)
+        elif here not in self._givers.get(fn.place, ()):
+            return False
+        key = (fn.place, path, result)
+        new = key not in self._taken
+        self._taken.add(key)
+        return new
 
 
 def _is_fresh(value: FlowExpr, cpp: bool) -> bool:

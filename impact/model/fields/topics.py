@@ -14,7 +14,7 @@ from ....edges.memory import cache_in_derived
 from ...facts.extract import ExtractedFacts, extract_all
 from ...facts.field_uses import FieldFile
 from ...facts.store import Store, recall
-from ..flow.code import Fn, Variable
+from ..flow.code import Fn, Variable, get_tail
 from ..flow.definitions import describe_interfaces
 from ..flow.endpoints import Site, Statement
 from ..flow.graph import Endpoint, Graph, Publish
@@ -28,6 +28,8 @@ from .shapes import Path, Shapes, show
 from .writing import Writing, find_writes
 
 _KINDS = {"cpp": "fields_cpp", "python": "fields_python"}
+# Functions of roscpp, rospy and rclcpp that subscribe for a moment.
+_WAITS = frozenset(("waitForMessage", "wait_for_message"))
 _UNSURE = frozenset(("unresolved", "partly"))
 
 
@@ -154,11 +156,27 @@ class TopicReader:
                 yield f"{one.path}:{one.line} subscribes to any type"
             elif one.how in _UNSURE and one.topic != topic and _may_be(one.topic, topic):
                 yield f"the name that {one.path}:{one.line} subscribes to is not certain"
+        for place, named in self._waits:
+            if not named or get_tail(type_.replace("/", ".")) in named:
+                yield f"{place} waits for a message, which is not followed"
         for lost in self.graph.coverage.unresolved:
             if lost.what in ("subscriber name", "subscriber topic", "subscriber type"):
                 yield f"the name or type that {lost.path}:{lost.line} subscribes to is not known"
             elif lost.what == "started node":
                 yield f"{lost.path}:{lost.line} starts `{lost.written or 'a node'}`, whose code is not here"
+
+    @cached_property
+    def _waits(self) -> list[tuple[str, frozenset[str]]]:
+        """Where the code waits for a single message, with the last names of types that the call names; none where it
+        names none."""
+        found: list[tuple[str, frozenset[str]]] = []
+        for fn, call in self.join.code.list_calls_named(_WAITS):
+            given = [one for one in call.arguments if one.kind == "name"]
+            words = {get_tail(one.text) for one in given}
+            words |= {get_tail(self.join.code.resolve_type(one, fn).name) for one in given}
+            words |= {get_tail(part) for part in re.findall(r"[\w:]+", call.types)}
+            found.append((f"{fn.source.path}:{call.line}", frozenset(word for word in words if word[:1].isupper())))
+        return found
 
     @cached_property
     def sites(self) -> dict[tuple[str, int], list[Site]]:
@@ -202,7 +220,31 @@ class TopicReader:
             known = self._readings[key] = self._merge(
                 [self._read_callback(fn, type_) for fn in callbacks]
             )
-        return known
+        return known._replace(escapes=(*known.escapes, *self._list_filtered(endpoint, type_)))
+
+    def _list_filtered(self, endpoint: Endpoint, type_: str) -> Iterator[Escape]:
+        """What filters look at before they call back: messages are matched by their stamps, and transforms waited for
+        by stamp and frame.
+
+        Source: the headers of message_filters (message_traits::TimeStamp), of tf2_ros (message_filter.h), and of
+        image_transport (camera_subscriber.cpp, which has a TimeSynchronizer)."""
+        rows = [one.use.row for one in self.sites.get((endpoint.path, endpoint.line), ()) if one.role == endpoint.role]
+        filtered = any(row.framework == "message_filters" for row in rows)
+        if not filtered and not any(row.camera_info for row in rows):
+            return
+        for name in ("stamp", "frame_id") if filtered and self._waits_for_transforms else ("stamp",):
+            field = ("header", name)
+            if self.shapes.list_below(type_, field):
+                yield Escape(field, "a message filter looks at it", endpoint.path, endpoint.line)
+
+    @cached_property
+    def _waits_for_transforms(self) -> bool:
+        """Whether code includes the filters that wait for transforms."""
+        return any(
+            header.endswith(("/message_filter.h", "/message_filter.hpp"))
+            for source in self.join.code.sources
+            for header in source.facts.includes
+        )
 
     def _read_callback(self, fn: Fn, type_: str) -> Reading:
         names = select_parameters(fn, type_, self.join.code)

@@ -39,7 +39,6 @@ _BELOW = frozenset(
 @rule(
     scope="flow",
     severity="warning",
-    preview=True,
     texts=Text(
         "the remapping of `{subject}` has no effect: it matches no topic, service or action of {programs}",
         help="remap a name that exists ({names:none is known}), or remove the remapping",

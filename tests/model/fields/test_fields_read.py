@@ -206,6 +206,13 @@ CPP = {
     "swapped": ("robot::Status s = *msg; last_.swap(s); x_ = last_.level;", "Swap last_; int x_;",
                 "struct Swap { int level; };", "", "", "*"),
     "moved": ("auto s = std::move(msg); int x = s->level;", "", "", "", "level", ""),
+    "a template that is made": ("last_ = *msg; x_ = last_.level;", "robot::Status last_; int x_;",
+                                "template <class T> struct Box { T t; };",
+                                "template class Box<int>; extern template struct Box<char>;", "level", ""),
+    "two loops of a name": ("for (const auto& p : msg->points) sum_ += p.x;\n"
+                            "for (const auto& p : list_.back().poses) sum_ += p.position.y;",
+                            "double sum_; std::vector<geometry_msgs::PoseArray> list_;", "", "", "points[].x",
+                            "points[]"),
     "returned through": ("int x = pass(msg)->level;", "",
                          "robot::StatusConstPtr pass(const robot::StatusConstPtr& s) { return s; }", "", "level", ""),
 }  # fmt: skip
@@ -232,6 +239,13 @@ PYTHON = {
     "elements of a message": ("x = sum(p.x for p in msg.points)", "", "", "points[].x", ""),
     "numbered elements": ("for i, p in enumerate(msg.points):\n    x = p.y * i", "", "", "points[].y", ""),
     "pairs": ("for a, p in zip(msg.ranges, msg.points):\n    x = p.z", "", "", "ranges points[].z", ""),
+    "two loops of a name": ("for p in msg.points:\n    x = p.y\nfor p in [msg.pose]:\n    x = p.position.x",
+                            "", "", "points[].y", "pose points[]"),
+    "one name for two fields": ("p = msg.pose\nx = p.orientation.w\nfor p in msg.points:\n    x = p.y",
+                                "", "", "pose.orientation.w points[].y", ""),
+    "a copy of a list": ("self.some.append(msg)", "some = []\nothers = []\n"
+                         "def tick(self):\n    self.others = self.some.copy()\n    self.some = self.others.copy()\n"
+                         "def see(self):\n    return self.others[0].level", "", "level", ""),
     "numpy": ("x = np.array(msg.ranges, dtype=float)", "", "", "ranges", ""),
     "a slice": ("x = [p.x for p in msg.points[1:]]", "", "", "points[].x", ""),
     "a name for a part": ("p = msg.pose.position\nx = p.x", "", "", "pose.position.x", ""),
@@ -242,7 +256,36 @@ PYTHON = {
                    "def tick(self):\n    return self.seen.level", "", "level", ""),
     "a helper": ("self.help(msg)", "def help(self, status):\n    return status.level", "", "level", ""),
     "a function": ("help(msg)", "", "def help(status):\n    return status.name\n", "name", ""),
-    "a keyword": ("help(status=msg)", "", "def help(status):\n    return status.name\n", "", "*"),
+    "a keyword": ("help(status=msg)", "", "def help(status):\n    return status.name\n", "name", ""),
+    "a keyword of a method": ("self.help(status=msg)", "def help(self, *, status=None):\n    return status.name", "",
+                              "name", ""),
+    "a keyword of what is not here": ("elsewhere.use(status=msg)", "", "", "", "*"),
+    "a keyword of many": ("self.help(status=msg)", "def help(self, **every):\n    return every", "", "", "*"),
+    "a static method": ("Tools.help(msg)", "",
+                        "class Tools:\n    @staticmethod\n    def help(status):\n        return status.level\n",
+                        "level", ""),
+    "a static method's second": ("Tools.help(3, msg)", "",
+                                 "class Tools:\n    @staticmethod\n    def help(n, status):\n"
+                                 "        return status.level\n", "level", ""),
+    "a method by its class": ("Base.help(self, msg)", "",
+                              "class Base:\n    def help(self, status):\n        return status.level\n",
+                              "level", ""),
+    "a variable of a method's name": ("name = msg\nx = name.level", "def name(self):\n    return 3", "",
+                                      "level", ""),
+    "given back to its giver alone": ("x = pick(msg).level",
+                                      "def other(self):\n    return pick(self.else_).name",
+                                      "def pick(status):\n    return status\n", "level", ""),
+    "given back through two": ("x = self.twice(msg)", "def twice(self, status):\n    return pick(status)\n"
+                               "def see(self):\n    return self.twice(self.last).name",
+                               "def pick(status):\n    return status\n", "", ""),
+    "given back where it is kept": ("self.last = msg\npick(msg)",
+                                    "def see(self):\n    return pick(self.last).level",
+                                    "def pick(status):\n    return status\n", "level", ""),
+    "given back from what is kept": ("self.last = msg", "def get(self, other):\n    x = other or self.last\n"
+                                     "    return x\ndef see(self):\n    return self.get(3).level", "", "level", ""),
+    "given back to who is given it": ("self.last = msg", "def get(self):\n    return self.last\n"
+                                      "def more(self, n):\n    return self.get()\n"
+                                      "def see(self):\n    return self.more(1).level", "", "level", ""),
     "a list": ("self.all.append(msg)", "def tick(self):\n    return [m.level for m in self.all]", "", "level", ""),
     "a list that is passed on": ("fill(self.all, msg)", "", "def fill(every, status):\n    every.append(status)\n",
                                  "", "*"),
@@ -254,7 +297,11 @@ PYTHON = {
     "sorted": ("self.all.append(msg)", "def tick(self):\n    self.all.sort(key=lambda m: m.level)", "", "", "*"),
     "a property that is set": ("self.kept = msg",
                                "@property\ndef kept(self):\n    return 1\n"
-                               "@kept.setter\ndef kept(self, status):\n    self.x = status.level", "", "", "*"),
+                               "@kept.setter\ndef kept(self, status):\n    self.x = status.level", "", "level", ""),
+    "a property that is made": ("self.kept = msg",
+                                "def get(self):\n    return self._x\n"
+                                "def put(self, status):\n    self._x = status.level\n"
+                                "kept = property(get, put)", "", "", "*"),
     "a copy": ("m = copy.deepcopy(msg)\nx = m.level", "", "", "level", ""),
     "a lambda": ("f = lambda: msg.level", "", "", "level", ""),
     "a global": ("global last\nlast = msg", "def tick(self):\n    return last.level", "last = None\n", "level", ""),
@@ -276,3 +323,62 @@ def test_what_a_callback_in_python_reads(name, tmp_path):
     body, members, before, reads, escapes = PYTHON[name]
     found = read_python(tmp_path, body, members, before)
     assert tell(found) == (set(reads.split()), set(escapes.split()))
+
+
+FILTERS = """#include <message_filters/subscriber.h>
+#include <message_filters/sync_policies/approximate_time.h>
+#include <robot/Status.h>
+{include}
+typedef message_filters::sync_policies::ApproximateTime<robot::Status, robot::Status> Policy;
+class Watch {{
+ public:
+  Watch() : first_(nh_, "status", 1), second_(nh_, "other", 1), sync_(Policy(10), first_, second_) {{
+    sync_.registerCallback(boost::bind(&Watch::onBoth, this, _1, _2));
+  }}
+  void onBoth(const robot::Status::ConstPtr& one, const robot::Status::ConstPtr& two) {{ int x = one->level; }}
+  ros::NodeHandle nh_;
+  message_filters::Subscriber<robot::Status> first_, second_;
+  message_filters::Synchronizer<Policy> sync_;
+}};
+int main(int argc, char** argv) {{ ros::init(argc, argv, "watch"); Watch watch; ros::spin(); }}
+"""
+SYNCHRONIZED = """#!/usr/bin/env python3
+import rospy
+from message_filters import ApproximateTimeSynchronizer, Subscriber
+from robot.msg import Status
+
+def on_both(one, two):
+    print(one.level, two.level)
+
+rospy.init_node("watch")
+both = ApproximateTimeSynchronizer([Subscriber("status", Status), Subscriber("other", Status)], 10, 0.1)
+both.registerCallback(on_both)
+rospy.spin()
+"""
+CAMERA = """#include <image_transport/image_transport.h>
+void onImage(const sensor_msgs::ImageConstPtr& image, const sensor_msgs::CameraInfoConstPtr& info) {
+  int x = image->width + info->height;
+}
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "watch");
+  ros::NodeHandle nh;
+  image_transport::ImageTransport it(nh);
+  auto sub = it.subscribeCamera("status", 1, onImage);
+  ros::spin();
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("path", "code", "reads", "escapes"),
+    [
+        ("src/watch.cpp", FILTERS.format(include=""), {"level"}, {"header.stamp"}),
+        ("src/watch.cpp", FILTERS.format(include="#include <tf2_ros/message_filter.h>"), {"level"},
+         {"header.stamp", "header.frame_id"}),
+        ("scripts/watch.py", SYNCHRONIZED, {"level"}, {"header.stamp"}),
+        ("src/watch.cpp", CAMERA, {"width"}, {"header.stamp"}),
+    ],
+    ids=["a synchronizer", "one that waits for transforms", "a synchronizer in Python", "a camera"],
+)  # fmt: skip
+def test_filters_look_at_the_header(path, code, reads, escapes, tmp_path):
+    assert tell(find_subscriber(report(tmp_path, {path: code}))) == (reads, escapes)
