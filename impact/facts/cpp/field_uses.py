@@ -44,6 +44,24 @@ _ADDS = frozenset(("push_back", "emplace_back", "push", "push_front", "emplace_f
 _RESETS = frozenset(("reset", "assign"))
 _ENDS = frozenset(("begin", "end", "cbegin", "cend", "rbegin", "rend", "crbegin", "crend"))
 _ITERATED = ELEMENTS | _ENDS
+# Algorithms of the standard library that call a function with the elements between two iterators: which parameters of
+# it the elements become. Source: https://en.cppreference.com/w/cpp/algorithm
+_CALLING = {
+    **dict.fromkeys(
+        ("for_each", "any_of", "all_of", "none_of", "find_if", "find_if_not", "count_if", "partition",
+         "stable_partition", "remove_if", "partition_point", "transform"), (0,)
+    ),
+    **dict.fromkeys(
+        ("sort", "stable_sort", "min_element", "max_element", "is_sorted", "unique", "adjacent_find"), (0, 1)
+    ),
+    "accumulate": (1,),
+}  # fmt: skip
+# Those that give an iterator to an element back.
+_FINDING = frozenset(
+    ("find_if", "find_if_not", "partition", "stable_partition", "remove_if", "partition_point", "min_element",
+     "max_element", "unique", "adjacent_find")
+)  # fmt: skip
+_ARGUMENTS = {"accumulate": 4, "transform": 4}
 _NULLS = frozenset(("nullptr", "NULL", "0"))
 _NO_VALUE = frozenset(("this", "nullptr", "NULL", "true", "false"))
 # What stands in these is the name of something; in the others the first part is.
@@ -345,6 +363,8 @@ class _Reader:
             return None
         if callee in THROUGH and count == 1:
             return path, call
+        if callee.startswith("std::") and callee[5:] in _CALLING and self._pass_elements(path, call, place, node):
+            return (path, call) if place == 0 and callee[5:] in _FINDING else None
         if callee.rpartition("::")[2] in ("make_shared", "make_unique", "allocate_shared"):
             found = written.find("<")
             type_ = flatten(written[found + 1 : written.rfind(">")]) if found >= 0 else callee.rpartition("::")[0]
@@ -359,6 +379,36 @@ class _Reader:
             return None
         self._add(path, "given", node, callee, place, count)
         return None
+
+    def _pass_elements(self, path: str, call: Node, place: int, node: Node) -> bool:
+        """Whether an algorithm passes the elements of a path to a lambda; noted with the first of the two iterators.
+        An iterator is a path of elements."""
+        name = strip_template(self.spell(call.children[0])).removeprefix("std::")
+        items = get_items(call.children[-1])
+        if place > 1 or len(items) != _ARGUMENTS.get(name, 3) or items[-1].kind_id != KIND.lambda_expression:
+            return False
+        if not path.endswith(".[]") or not self._are_ends(items[0], items[1]):
+            return False
+        lambda_ = items[-1]
+        line = self.find_line(lambda_)
+        where = f"lambda@{line}:{lambda_.start_byte - self.starts[line - 1] + 1}"
+        declarator = lambda_.child_by_field_name("declarator")
+        listed = declarator.child_by_field_name("parameters") if declarator is not None else None
+        parameters = get_items(listed) if listed is not None else []
+        if len(parameters) <= max(_CALLING[name]):
+            return False
+        for number in _CALLING[name] if place == 0 else ():
+            inner = parameters[number].child_by_field_name("declarator")
+            parameter = self._name_declared(inner) if inner is not None else ""
+            if parameter:
+                self._add(path, "kept", node, parameter, type_=where)
+        return True
+
+    def _are_ends(self, first: Node, last: Node) -> bool:
+        """Whether two expressions are where the same thing begins and ends."""
+        ends = [re.fullmatch(r"(.+?)(?:\.|->)c?r?(begin|end)\(\)", self.spell(one)) for one in (first, last)]
+        names = [(end[1], end[2]) for end in ends if end is not None]
+        return len(names) == 2 and names[0][0] == names[1][0] and (names[0][1], names[1][1]) == ("begin", "end")
 
     def _is_plain(self, function: Node) -> bool:
         """Whether a method is called on a path alone."""

@@ -20,6 +20,9 @@ _ADDS = frozenset(("append", "appendleft", "add", "put", "insert", "put_nowait",
 _CHANGES = frozenset(("append", "extend", "insert", "clear", "reverse", "appendleft"))
 _TAKES = frozenset(("pop", "popleft", "get", "get_nowait", "setdefault"))
 _VIEWS = frozenset(("copy", "values"))
+# What calls a function with each element of what it is given.
+_CHOICES = frozenset(("max", "min"))
+_PASSES = frozenset(("map", "filter"))
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _MOST_STEPS = 200
 _LONGEST = 80
@@ -173,6 +176,8 @@ class _Reader(SourceText):
         if isinstance(outer, ast.Call) and outer.func is parent:
             if parent.attr in _TAKES or parent.attr in _VIEWS:
                 return (path if parent.attr in _VIEWS else f"{path}.[]"), outer
+            if parent.attr == "sort" and self._pass_to_key(path, outer, node):
+                return None
             self._add(path, "change" if parent.attr in _CHANGES else "method", node, parent.attr)
             return None
         if isinstance(parent.ctx, ast.Store) and not isinstance(outer, ast.AugAssign):
@@ -199,6 +204,15 @@ class _Reader(SourceText):
         callee = _spell(call.func, self.own)
         if callee == "getattr" and len(call.args) > 1 and call.args[0] is at and isinstance(call.args[1], ast.Constant):
             return f"{path}.{call.args[1].value}", call
+        if callee == "sorted" and call.keywords and not self._pass_to_key(path, call, node):
+            self._add(path, "use", node, "sorted by a key")
+            return None
+        if callee in _CHOICES and call.args == [at] and self._pass_to_key(path, call, node):
+            return f"{path}.[]", call
+        if callee in _PASSES and at in call.args:
+            place = call.args.index(at) - 1  # type: ignore[arg-type]
+            if self._pass_elements(path, call.args[0], place, node):
+                return None if callee == "map" else (path, call)
         if callee in _THROUGH and at in call.args:
             return (f"{path}.[]" if callee == "next" else path), call
         if callee == "len":
@@ -216,6 +230,21 @@ class _Reader(SourceText):
         else:
             self._add(path, "use", node, "given")
         return None
+
+    def _pass_to_key(self, path: str, call: ast.Call, node: ast.AST) -> bool:
+        """The elements of a path go to the key that a call compares them by; False where that is no lambda. No key
+        compares them by themselves."""
+        keys = [one.value for one in call.keywords if one.arg == "key"]
+        known = all(one.arg in ("key", "reverse", "default") for one in call.keywords)
+        return known and len(keys) == 1 and self._pass_elements(path, keys[0], 0, node)
+
+    def _pass_elements(self, path: str, function: ast.expr, place: int, node: ast.AST) -> bool:
+        """The elements of a path go to a parameter of a lambda; False where there is none such."""
+        if not isinstance(function, ast.Lambda) or not 0 <= place < len(function.args.args):
+            return False
+        name = f"lambda@{function.lineno}:{self.find_column(function.lineno, function.col_offset)}"
+        self._add(f"{path}.[]", "kept", node, function.args.args[place].arg, type_=name)
+        return True
 
     def _climb_keyword(self, path: str, keyword: ast.keyword, node: ast.AST) -> tuple[str, ast.AST] | None:
         """`f(name=path)`; `sorted(path, key=f)` and the like take no message so."""

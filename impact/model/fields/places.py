@@ -105,6 +105,9 @@ class Uses:
         found, _ = self.code.resolve_variable(".".join(head), place.fn)
         if found in self.messages:
             return False
+        is_direct = place.at == 1 and variable.kind == "member" and found.kind == "global"
+        if is_direct and self._is_module(parts[0], place.fn):
+            return False
         before = ".".join(part for part in parts[: place.at] if part != "[]")
         kind = self.code.resolve_name_type(before, place.fn)
         if variable.kind == "global":
@@ -113,6 +116,14 @@ class Uses:
         if cls is None:
             return not kind.name
         return self.code.identify(f"{before}.{variable.name}", place.fn) == variable
+
+    def _is_module(self, name: str, fn: Fn) -> bool:
+        """Whether a name is that of a module of Python: `import os`, `import numpy as np`. No member of one is that of
+        an object."""
+        facts = fn.source.facts
+        return facts.language == "python" and any(
+            alias.name == name and alias.target and "." not in alias.target for alias in facts.aliases
+        )
 
     def is_unread(self, path: str, first: int, last: int) -> bool:
         """Whether some of the lines of a file did not parse."""

@@ -209,6 +209,27 @@ CPP = {
     "a template that is made": ("last_ = *msg; x_ = last_.level;", "robot::Status last_; int x_;",
                                 "template <class T> struct Box { T t; };",
                                 "template class Box<int>; extern template struct Box<char>;", "level", ""),
+    "an algorithm": ("std::for_each(msg->points.begin(), msg->points.end(),"
+                     " [&](const geometry_msgs::Point& p) { sum_ += p.x; });", "double sum_;", "", "", "points[].x", ""),
+    "an algorithm that finds": ("auto it = std::find_if(msg->points.begin(), msg->points.end(),"
+                                " [](const auto& p) { return p.x > 0; }); x_ = it->z;", "double x_;", "", "",
+                                "points[].x points[].z", ""),
+    "an algorithm that compares": ("x_ = std::min_element(msg->points.begin(), msg->points.end(),"
+                                   " [](auto& a, auto& b) { return a.x < b.y; })->z;", "double x_;", "", "",
+                                   "points[].x points[].y points[].z", ""),
+    "a sum": ("x_ = std::accumulate(msg->points.begin(), msg->points.end(), 0.0,"
+              " [](double s, const geometry_msgs::Point& p) { return s + p.y; });", "double x_;", "", "",
+              "points[].y", ""),
+    "an algorithm that transforms": ("std::transform(msg->points.begin(), msg->points.end(), std::back_inserter(xs_),"
+                                     " [](const geometry_msgs::Point& p) { return p.z; });", "std::vector<double> xs_;",
+                                     "", "", "points[].z", ""),
+    "an algorithm that copies": ("std::copy_if(msg->points.begin(), msg->points.end(), std::back_inserter(ps_),"
+                                 " [](const auto& p) { return p.z > 0; });", "std::vector<geometry_msgs::Point> ps_;",
+                                 "", "", "", "points[]"),
+    "an algorithm with a function": ("std::for_each(msg->points.begin(), msg->points.end(), each);", "", "", "",
+                                     "", "points[]"),
+    "an algorithm over a part": ("std::for_each(msg->points.begin(), other_, [](const auto& p) { x_ += p.x; });",
+                                 "", "", "", "", "points[]"),
     "two loops of a name": ("for (const auto& p : msg->points) sum_ += p.x;\n"
                             "for (const auto& p : list_.back().poses) sum_ += p.position.y;",
                             "double sum_; std::vector<geometry_msgs::PoseArray> list_;", "", "", "points[].x",
@@ -286,6 +307,11 @@ PYTHON = {
     "given back to who is given it": ("self.last = msg", "def get(self):\n    return self.last\n"
                                       "def more(self, n):\n    return self.get()\n"
                                       "def see(self):\n    return self.more(1).level", "", "level", ""),
+    "a member of a module's name": ("self.path = msg",
+                                    "def tick(self):\n    return os.path.join('a', str(self.path.level))",
+                                    "import os\n", "level", ""),
+    "a member of an object in a module": ("self.last = msg", "def tick(self):\n    return config.watch.last.level",
+                                          "import config\n", "level", ""),
     "a list": ("self.all.append(msg)", "def tick(self):\n    return [m.level for m in self.all]", "", "level", ""),
     "a list that is passed on": ("fill(self.all, msg)", "", "def fill(every, status):\n    every.append(status)\n",
                                  "", "*"),
@@ -294,7 +320,17 @@ PYTHON = {
     "what is no list": ("self.keeper.add(msg)", "", "", "name", ""),
     "what may be a list": ("self.unknown.add(msg)", "", "", "", "*"),
     "taken from a list": ("self.all.append(msg)", "def tick(self):\n    return self.all.pop(0).level", "", "level", ""),
-    "sorted": ("self.all.append(msg)", "def tick(self):\n    self.all.sort(key=lambda m: m.level)", "", "", "*"),
+    "sorted": ("self.all.append(msg)", "def tick(self):\n    self.all.sort(key=lambda m: m.level)", "", "level", ""),
+    "sorted by themselves": ("self.all.append(msg)", "def tick(self):\n    self.all.sort()", "", "", "*"),
+    "sorted by a key": ("x = sorted(msg.points, key=lambda p: p.z)[0].y", "", "", "points[].y points[].z", ""),
+    "sorted by a function": ("x = sorted(msg.points, key=by)", "", "", "", "points"),
+    "the first": ("x = min(msg.points, key=lambda p: p.z, default=None).x", "", "", "points[].x points[].z", ""),
+    "the first of two": ("x = min(msg.points, self.points, key=lambda p: p.z)", "", "", "", "points"),
+    "mapped": ("x = list(map(lambda p: p.x, msg.points))", "", "", "points[].x", ""),
+    "mapped by two": ("x = list(map(lambda a, p: p.x, self.points, msg.points))", "", "", "points[].x", ""),
+    "mapped to themselves": ("x = list(map(lambda p: p, msg.points))", "", "", "", "points[]"),
+    "filtered": ("for p in filter(lambda p: p.x > 0, msg.points):\n    y = p.y", "", "",
+                 "points[].x points[].y", ""),
     "a property that is set": ("self.kept = msg",
                                "@property\ndef kept(self):\n    return 1\n"
                                "@kept.setter\ndef kept(self, status):\n    self.x = status.level", "", "level", ""),
