@@ -39,6 +39,7 @@ _BELOW = frozenset(
 @rule(
     scope="flow",
     severity="warning",
+    preview=True,
     texts=Text(
         "the remapping of `{subject}` has no effect: it matches no topic, service or action of {programs}",
         help="remap a name that exists ({names:none is known}), or remove the remapping",
