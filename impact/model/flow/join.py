@@ -378,7 +378,7 @@ class Join:
     ) -> tuple[Node, FrameworkCall | None]:  # fmt: skip
         """The node that a program is, or the first of those, and the use that names it. running: what expressions are
         worth in what it runs."""
-        own = self._select_of_plugin(program.plugin, named) if program.plugin else []
+        own = self._list_plugin_names(program.plugin, named) if program.plugin else []
         in_main = [use for use in named if use.fn in program.roots]
         # Of the classes that name nodes, those that are made first where the program begins; helpers' nodes come later.
         made = [get_tail(name.partition("<")[0]) for root in program.roots for name, _, _ in list_made(root, self.code)]
@@ -419,7 +419,7 @@ class Join:
         )  # fmt: skip
         return node, use
 
-    def _select_of_plugin(self, plugin: str, named: list[FrameworkCall]) -> list[FrameworkCall]:
+    def _list_plugin_names(self, plugin: str, named: list[FrameworkCall]) -> list[FrameworkCall]:
         """The uses that name the nodes of the class of a plugin, its own before those of its bases."""
         ranks: dict[str, int] = {get_tail(plugin): 0}
         for cls in self.code.classes.get(get_tail(plugin), ()):
