@@ -169,13 +169,13 @@ def read_batches(ledger: Path) -> list[dict]:
 
 
 def format_table(rows: list[dict]) -> str:
-    """The ledger as a table of Markdown."""
+    """The rows of the ledger about breaks as a table of Markdown; others are about other questions."""
     lines = [
         "| date | commit | batch | sight | breaks | recall | as errors | hard, tier A | packages | with an error "
         "| warnings each |",
         "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
-    for row in rows:
+    for row in filter(_is_of_breaks, rows):
         sight = "first sight" if row["first_sight"] else "learned"
         lines.append(
             f"| {row['date']} | {row['commit'][:8]} | {row['batch']} | {sight} | {row['breaks']} | {row['recall']:.3f} "
@@ -185,10 +185,15 @@ def format_table(rows: list[dict]) -> str:
     return "\n".join(lines)
 
 
+def _is_of_breaks(row: dict) -> bool:
+    return "breaks" in row
+
+
 def plot(rows: list[dict], file: Path) -> None:
     """Draws recall over the rows of the ledger: batches at first sight as a curve, learned ones as single marks."""
     import matplotlib.pyplot as plt
 
+    rows = list(filter(_is_of_breaks, rows))
     figure, axes = plt.subplots(figsize=(7, 4))
     for key, label, colour in (("recall", "found", "tab:blue"), ("as_errors", "found as an error", "tab:red")):
         for first, style in ((True, "o-"), (False, "x")):

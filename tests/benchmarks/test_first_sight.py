@@ -403,6 +403,11 @@ def test_only_the_first_row_of_a_batch_is_first_sight(tmp_path):
     ]
 
 
+def test_rows_about_other_questions_are_not_in_the_table():
+    row = {"date": "2026-01-01", "commit": "c0ffee" * 6, "batch": "callbacks", "first_sight": True, "callbacks": 3}
+    assert first_sight.format_table([row]) == first_sight.format_table([])
+
+
 @pytest.fixture
 def checkout(clone, commit, monkeypatch) -> Path:
     """A checkout with a batch of one break and one release, and a judgement that finds and alarms nothing."""

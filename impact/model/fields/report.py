@@ -24,8 +24,8 @@ class EscapedField(msgspec.Struct, frozen=True):
 
 class SubscriberFields(msgspec.Struct, frozen=True):
     """A subscriber. node: as in the graph; path, line: where it subscribes. callback: the functions that are called.
-    reads: what is read; sizes: arrays of messages whose length alone is asked for; unread: the fields that are neither
-    read nor part of what escapes."""
+    reads: what is read; sizes: arrays of messages whose length is asked for; unread: the fields that are neither read
+    nor part of what escapes, nor of elements that are counted only."""
 
     node: str
     path: str

@@ -195,8 +195,10 @@ class TopicReader:
         callbacks = self.list_callbacks(endpoint)
         reading = self.read(callbacks, endpoint, type_)
         escaped = [escape.field for escape in reading.escapes]
-        escaped += list(reading.sizes)
         read = reading.reads
+        # As many elements have to be sent; where some of what is in them is read, the rest need not be.
+        used = [*read, *escaped]
+        escaped += [size for size in reading.sizes if not any(each[: len(size)] == size for each in used)]
         unread = [
             leaf
             for leaf in leaves

@@ -418,3 +418,16 @@ int main(int argc, char** argv) {
 )  # fmt: skip
 def test_filters_look_at_the_header(path, code, reads, escapes, tmp_path):
     assert tell(find_subscriber(report(tmp_path, {path: code}))) == (reads, escapes)
+
+
+@pytest.mark.parametrize(
+    ("body", "unread"),
+    [
+        ("n = len(msg.points)", set()),
+        ("n = len(msg.points)\nx = msg.points[0].y", {"points[].x", "points[].z"}),
+        ("elsewhere(msg.points[0].y)\nn = len(msg.points)", {"points[].x", "points[].z"}),
+        ("x = msg.level", {"points[].x", "points[].y", "points[].z"}),
+    ],
+)
+def test_where_the_size_is_asked_for_elements_stay(body, unread, tmp_path):
+    assert {field for field in read_python(tmp_path, body).unread if field.startswith("points")} == unread
